@@ -1,0 +1,2 @@
+//! Luxel.
+fn main() {}

@@ -1,0 +1,3 @@
+//! The machine: registry, scene, stage, acceleration, film, rendering.
+
+pub mod accel;

@@ -4,11 +4,12 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::{Vec2, Vec3};
 
-/// A microfacet normal as seen from `wo`, for roughness `alpha` = (`alpha_x`, `alpha_y`) > 0.
+/// A microfacet normal as seen from `wo`, for roughness `alpha` = (`alpha_x`, `alpha_y`), each ≥ 1e-9.
 ///
 /// `wo` is unit length in the shading frame with z ≥ 0 (flip it for the lower side). The result is
-/// unit length with z > 0 and `wo`·wm ≥ 0. Reflect `wo` about it to get `wi`. At the far end of
-/// `u` (1e-6 of it) rounding may turn the normal away from `wo`: its density is 0 there, drop the sample.
+/// unit length with z > 0 and `wo`·wm ≥ 0. Reflect `wo` about it to get `wi`. At the far end
+/// of `u` (1e-6 of it) rounding may turn the normal away from `wo`; its density is 0 there: drop
+/// the sample.
 ///
 /// # Source
 /// Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3. We keep
@@ -77,7 +78,7 @@ mod tests {
     fn normals_are_unit_and_upward_at_every_extreme() {
         let top = 1.0f32.next_down();
         for wo in [Vec3::Z, Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::new(-1.0, 0.0, 1e-7)] {
-            for a in [1e-5, 1e-3, 1.0] {
+            for a in [1e-9, 1e-5, 1e-3, 1.0] {
                 for u in [[0.0, 0.0], [top, 0.0], [top, 0.5], [0.5, top], [0.3, 0.7]] {
                     let wm = visible_normal(wo, Vec2::splat(a), u);
                     assert!((wm.length() - 1.0).abs() <= 4.0 * f32::EPSILON && wm.z > 0.0);

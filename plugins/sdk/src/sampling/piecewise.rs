@@ -10,6 +10,8 @@ use super::weights::{WeightError, largest, relative};
 pub struct Piecewise1 {
     /// Cumulative probabilities: n + 1 numbers from 0 to 1.
     cdf: Vec<f64>,
+    /// For each of a power of two of equal parts of [0, 1): how many of `cdf` are ≤ its start.
+    guide: Vec<u32>,
     mean: f64,
 }
 
@@ -32,7 +34,7 @@ impl Piecewise1 {
     /// A density proportional to `weights`; uniform if all are zero.
     ///
     /// # Errors
-    /// If there are no weights, or one is negative, infinite or NaN.
+    /// If there are no weights, 2³² or more, or one is negative, infinite or NaN.
     pub fn new(weights: &[f64]) -> Result<Self, WeightError> {
         let largest = largest(weights)?;
         let mut cdf = Vec::with_capacity(weights.len() + 1);
@@ -46,7 +48,7 @@ impl Piecewise1 {
             *c /= sum;
         }
         let mean = if largest > 0.0 { largest * (sum / weights.len() as f64) } else { 0.0 };
-        Ok(Self { cdf, mean })
+        Ok(Self { guide: guide(&cdf)?, cdf, mean })
     }
 
     /// Number of steps.
@@ -65,7 +67,7 @@ impl Piecewise1 {
     pub fn sample(&self, u: f64) -> Piecewise1Sample {
         let n = self.n_steps();
         let u = u.max(0.0).min(1.0f64.next_down());
-        let index = self.cdf.partition_point(|&c| c <= u).clamp(1, n) - 1;
+        let index = self.find(u).clamp(1, n) - 1;
         let pmf = self.pmf(index);
         let within = ((u - self.cdf[index]) / pmf).clamp(0.0, 1.0f64.next_down());
         // The sum may round up to the next step.
@@ -87,12 +89,36 @@ impl Piecewise1 {
         }
     }
 
+    /// How many of the cumulative probabilities are ≤ `u`, in [0, 1).
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "u is in [0, 1)")]
+    fn find(&self, u: f64) -> usize {
+        // A power of two of parts makes product and part exact: `u` is not below its part's start.
+        let part = (u * (self.guide.len() - 1) as f64) as usize;
+        let (low, high) = (self.guide[part] as usize, self.guide[part + 1] as usize);
+        low + self.cdf[low..high].partition_point(|&c| c <= u)
+    }
+
     /// The step that holds `x`; none outside [0, 1).
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "x is in [0, 1)")]
     pub(super) fn step(&self, x: f64) -> Option<usize> {
         let n = self.n_steps();
         (0.0..1.0).contains(&x).then(|| ((x * n as f64) as usize).min(n - 1))
     }
+}
+
+/// Where to look for the numbers of each part: Chen & Asau 1974.
+fn guide(cdf: &[f64]) -> Result<Vec<u32>, WeightError> {
+    let parts = (cdf.len() - 1).next_power_of_two();
+    let mut below = 0;
+    let start = |part: usize| part as f64 / parts as f64;
+    (0..=parts)
+        .map(|part| {
+            while below < cdf.len() && cdf[below] <= start(part) {
+                below += 1;
+            }
+            u32::try_from(below).map_err(|_| WeightError::Size)
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -131,6 +157,21 @@ mod tests {
         let d = Piecewise1::new(&[0.0; 4]).unwrap();
         assert_eq!(d.sample(0.6).index, 2);
         assert!((d.pdf(0.6) - 1.0).abs() <= f64::EPSILON && d.integral() <= 0.0);
+    }
+
+    #[test]
+    fn the_guide_finds_what_a_plain_search_finds() {
+        let mut rng = Rng::new(27);
+        for n in [1, 2, 3, 64, 100, 1000] {
+            let weights: Vec<_> = (0..n).map(|_| (rng.f64() - 0.3).max(0.0).powi(9)).collect();
+            let d = Piecewise1::new(&weights).unwrap();
+            let edges: Vec<_> =
+                d.cdf.iter().flat_map(|&c| [c, c.next_down(), c.next_up()]).collect();
+            let parts = (0..64).map(|i| f64::from(i) / 64.0);
+            for u in edges.into_iter().chain(parts).filter(|u| (0.0..1.0).contains(u)) {
+                assert_eq!(d.find(u), d.cdf.partition_point(|&c| c <= u), "{n} {u}");
+            }
+        }
     }
 
     #[test]

@@ -30,7 +30,7 @@ impl Piecewise2 {
     /// A density proportional to `weights`, `width` to a row, first row at v = 0; uniform if all
     /// are zero.
     ///
-    /// Keeps one f64 for each weight and two for each row.
+    /// Keeps 12 to 16 bytes for each weight.
     ///
     /// # Errors
     /// If a side is zero, if the number of weights is not a multiple of `width`, or if a weight is

@@ -9,7 +9,7 @@ pub enum WeightError {
     Empty,
     /// The weight at this place is negative, infinite or NaN.
     Invalid(usize),
-    /// An image's sides do not multiply to its number of weights.
+    /// An image's sides do not multiply to its number of weights, or a row has 2³² of them.
     Size,
 }
 
@@ -18,7 +18,7 @@ impl fmt::Display for WeightError {
         match self {
             Self::Empty => write!(f, "a distribution needs at least one weight"),
             Self::Invalid(i) => write!(f, "weight {i} is negative, infinite or not a number"),
-            Self::Size => write!(f, "the sides do not multiply to the number of weights"),
+            Self::Size => write!(f, "the number of weights fits neither its sides nor a row"),
         }
     }
 }

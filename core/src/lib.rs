@@ -1,3 +1,9 @@
 //! The machine: registry, scene, stage, acceleration, film, rendering.
+//!
+//! It reads nothing itself (bytes come through `files::Files`) and prints nothing.
 
 pub mod accel;
+pub mod diag;
+pub mod files;
+pub mod registry;
+pub mod scene;

@@ -2,6 +2,13 @@
 //!
 //! A plugin is a plain struct of its parameters plus one trait; this crate does no input or output.
 
+extern crate self as luxel_sdk;
+
 pub mod num;
 pub mod color;
 pub mod sampling;
+pub mod params;
+pub mod kind;
+pub mod abi;
+
+pub use luxel_sdk_derive::{Choice, Params};

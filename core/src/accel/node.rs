@@ -1,0 +1,173 @@
+//! The wide tree in memory: nodes of four boxes, blocks of four triangles, references between them.
+
+use glam::{Vec3, Vec4};
+
+/// Children of a node, triangles of a block, lanes of a register.
+pub(super) const WIDTH: usize = 4;
+
+/// A node or a run of blocks: bit 31 tells a leaf; a leaf holds its first block and, in the low two
+/// bits, how many blocks follow it; a node holds its position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Child(u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+    /// Blocks that one leaf may hold.
+    pub(super) const MAX_BLOCKS: usize = 4;
+    /// What numbers a block: 29 bits.
+    pub(super) const BLOCK_LIMIT: usize = 1 << 29;
+
+    pub(super) fn node(index: usize) -> Self {
+        debug_assert!(index < Self::LEAF as usize);
+        Self(narrow(index))
+    }
+
+    /// `n` blocks, 1..=4, starting at `first`.
+    pub(super) fn leaf(first: usize, n: usize) -> Self {
+        debug_assert!((1..=Self::MAX_BLOCKS).contains(&n) && first < Self::BLOCK_LIMIT);
+        Self(Self::LEAF | (narrow(first) << 2) | narrow(n - 1))
+    }
+
+    #[inline(always)]
+    pub(super) fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    /// The node's position; meaningless for a leaf.
+    #[inline(always)]
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The leaf's blocks; meaningless for a node.
+    #[inline(always)]
+    pub(super) fn blocks(self) -> std::ops::Range<usize> {
+        let first = ((self.0 & !Self::LEAF) >> 2) as usize;
+        first..first + (self.0 & 3) as usize + 1
+    }
+
+    /// The same reference after its array was appended to others of these lengths.
+    pub(super) fn shifted(self, nodes: usize, blocks: usize) -> Self {
+        if self.is_leaf() {
+            let run = self.blocks();
+            Self::leaf(run.start + blocks, run.len())
+        } else {
+            Self::node(self.index() + nodes)
+        }
+    }
+}
+
+/// Narrows an index that the size limits of a build keep below 2³².
+pub(super) fn narrow(index: usize) -> u32 {
+    u32::try_from(index).expect("build limits keep every index below 2^31")
+}
+
+/// An axis-aligned box; empty if `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounds {
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
+}
+
+impl Bounds {
+    pub(super) const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    pub(super) fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    pub(super) fn grow(self, p: Vec3) -> Self {
+        Self { min: self.min.min(p), max: self.max.max(p) }
+    }
+
+    /// Half the surface; 0 for an empty box. Coordinates are at most 2, so nothing overflows.
+    pub(super) fn half_area(self) -> f32 {
+        let e = (self.max - self.min).max(Vec3::ZERO);
+        e.x * e.y + e.y * e.z + e.z * e.x
+    }
+}
+
+/// The first half of every node, whatever its precision: which children, in which order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Order(pub(super) [u8; 8]);
+
+impl Order {
+    /// For each of the eight sign patterns of a direction (bit a set if component a is negative),
+    /// the slots from near to far by their centres, two bits each, the nearest lowest.
+    pub(super) fn of(centres: &[[f64; 3]; WIDTH]) -> Self {
+        let mut orders = [0; 8];
+        for (octant, order) in orders.iter_mut().enumerate() {
+            let key = |slot: u8| -> f64 {
+                let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
+                let c = centres[usize::from(slot)];
+                (0..3).map(|axis| c[axis] * sign(axis)).sum()
+            };
+            let mut slots = [0u8, 1, 2, 3];
+            slots.sort_by(|&a, &b| key(a).total_cmp(&key(b)));
+            *order = slots.iter().rev().fold(0, |bits, slot| bits << 2 | slot);
+        }
+        Self(orders)
+    }
+
+    /// The slot in this place, 0 the nearest, for a direction of this octant.
+    #[inline(always)]
+    pub(super) fn slot(self, octant: usize, place: usize) -> usize {
+        usize::from(self.0[octant & 7] >> (2 * place) & 3)
+    }
+}
+
+/// Four boxes by coordinate: `planes[axis][0]` holds four minima, `[1]` four maxima.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Node {
+    pub(super) planes: [[Vec4; 2]; 3],
+    pub(super) children: [Child; WIDTH],
+    pub(super) order: Order,
+}
+
+impl Node {
+    /// A node over 1..=4 slots; those that are left over have empty boxes, which no ray enters.
+    pub(super) fn of(slots: &[(Child, Bounds)]) -> Self {
+        debug_assert!((1..=WIDTH).contains(&slots.len()));
+        let mut min = [[f32::INFINITY; WIDTH]; 3];
+        let mut max = [[f32::NEG_INFINITY; WIDTH]; 3];
+        let mut children = [Child(0); WIDTH];
+        let mut centres = [[f64::INFINITY; 3]; WIDTH];
+        for (slot, (child, bounds)) in slots.iter().enumerate() {
+            children[slot] = *child;
+            for axis in 0..3 {
+                (min[axis][slot], max[axis][slot]) = (bounds.min[axis], bounds.max[axis]);
+                centres[slot][axis] = f64::from(bounds.min[axis]) + f64::from(bounds.max[axis]);
+            }
+        }
+        let planes =
+            [0, 1, 2].map(|axis| [Vec4::from_array(min[axis]), Vec4::from_array(max[axis])]);
+        Self { planes, children, order: Order::of(&centres) }
+    }
+}
+
+/// Four triangles by coordinate, `points[vertex][axis]`; a lane without a triangle is all NaN,
+/// which fails every comparison.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Block {
+    pub(super) points: [[Vec4; 3]; 3],
+    pub(super) ids: [u32; WIDTH],
+}
+
+impl Block {
+    /// A block of 1..=4 triangles and their numbers.
+    pub(super) fn of(triangles: impl Iterator<Item = (u32, [Vec3; 3])>) -> Self {
+        let mut points = [[[f32::NAN; WIDTH]; 3]; 3];
+        let mut ids = [u32::MAX; WIDTH];
+        for (lane, (id, triangle)) in triangles.take(WIDTH).enumerate() {
+            ids[lane] = id;
+            for (vertex, p) in triangle.iter().enumerate() {
+                for axis in 0..3 {
+                    points[vertex][axis][lane] = p[axis];
+                }
+            }
+        }
+        Self { points: points.map(|vertex| vertex.map(Vec4::from_array)), ids }
+    }
+}

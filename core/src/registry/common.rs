@@ -1,0 +1,40 @@
+//! Parameters that the host adds to every object of a kind.
+
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::{Default, Param, Role, Type};
+
+const fn handle(name: &'static str, kind: Kind, doc: &'static str) -> Param {
+    Param {
+        name,
+        doc,
+        ty: Type::Object(kind),
+        unit: "",
+        role: Role::Plain,
+        default: Default::Absent,
+        min: f64::NEG_INFINITY,
+        max: f64::INFINITY,
+        choices: &[],
+        group: "",
+        required: false,
+        textured: false,
+        deprecated: "",
+        offset: usize::MAX,
+    }
+}
+
+const SHAPE: &[Param] = &[
+    handle("material", Kind::Material, "How the surface scatters; a group's material if absent."),
+    handle("interior", Kind::Medium, "What fills a closed shape."),
+];
+const MATERIAL: &[Param] =
+    &[handle("interior", Kind::Medium, "What fills closed shapes of this material.")];
+
+/// The parameters that the host adds to every object of this kind. A `transform` is not among
+/// them: the language applies it to shapes, lights and groups itself.
+pub fn common_params(kind: Kind) -> &'static [Param] {
+    match kind {
+        Kind::Shape => SHAPE,
+        Kind::Material => MATERIAL,
+        _ => &[],
+    }
+}

@@ -1,0 +1,65 @@
+//! The film: what is measured, and how it is shown. The host's own class.
+
+use luxel_sdk::abi::Class;
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::{Maybe, Text};
+use luxel_sdk::{Choice, Params};
+
+/// Which colour-matching functions turn spectra into colours.
+#[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Observer {
+    /// CIE 1931, 2 degrees.
+    Cie1931,
+    /// CIE 1964, 10 degrees.
+    Cie1964,
+    /// CIE 2015, 2 degrees.
+    Cie2015,
+}
+
+/// How radiance becomes the PNG's colours.
+#[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Display {
+    /// sRGB's transfer function, clipped.
+    Srgb,
+    /// Linear, clipped.
+    Linear,
+    /// A filmic curve that rolls highlights off and keeps hues.
+    Filmic,
+}
+
+/// The picture: its size, exposure and files. The name says how colour is carried: `auto` is `rgb`
+/// where every colour of the scene is given as RGB and nothing depends on wavelength, else
+/// `spectral`.
+///
+/// ```scene
+/// film spectral { resolution = (512, 512), exposure = 9.5 EV }
+/// ```
+#[derive(Params, Clone, Copy, Debug)]
+#[repr(C)]
+pub struct FilmSettings<'a> {
+    /// Width and height in pixels.
+    #[param(default = [640.0, 480.0], min = 1, max = 65536)]
+    pub resolution: glam::Vec2,
+    /// Exposure value at ISO 100 for the PNG: luminance 1.2·2^EV cd/m² is white. Without it a
+    /// radiance of 1 W/m²/sr is white. The EXR is never exposed.
+    #[param(optional, unit = "EV", min = -100, max = 100)]
+    pub exposure: Maybe<f32>,
+    /// The standard observer that turns spectra into colours.
+    #[param(choice, default = Observer::Cie1931)]
+    pub observer: Observer,
+    /// How the PNG shows radiance.
+    #[param(choice, default = Display::Srgb)]
+    pub display: Display,
+    /// Where the EXR is written; the PNG stands beside it. The scene's name if absent.
+    #[param(optional)]
+    pub file: Text<'a>,
+}
+
+/// The film's classes: one struct, three ways of carrying colour.
+pub(super) const CLASSES: &[Class] = &[
+    Class::settings::<FilmSettings<'_>>(Kind::Film, "auto"),
+    Class::settings::<FilmSettings<'_>>(Kind::Film, "rgb"),
+    Class::settings::<FilmSettings<'_>>(Kind::Film, "spectral"),
+];

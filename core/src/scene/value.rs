@@ -1,0 +1,110 @@
+//! Values of parameters, and the hash of a node.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use luxel_sdk::params::{Dimension, Look};
+
+use super::{Color, Node, NodeId};
+
+/// A content hash (BLAKE3).
+pub type Hash = [u8; 32];
+
+/// A value as the scene graph keeps it: evaluated, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// True or false.
+    Bool(bool),
+    /// A number in SI units with what it measures.
+    Number(f64, Dimension),
+    /// Two to four numbers in SI units.
+    Vector(Vec<f64>),
+    /// Text, or the word of a choice.
+    Text(Arc<str>),
+    /// A file, joined to the folder of the scene file that names it.
+    Path(PathBuf),
+    /// The bytes of a file inside another one, with a name for messages.
+    Bytes(Arc<str>, Arc<[u8]>),
+    /// Many numbers in SI units.
+    Table(Arc<[f64]>),
+    /// A colour or spectrum, with the dimension that multiplies it.
+    Color(Color, Dimension),
+    /// Where something stands and looks.
+    Look(Look),
+    /// Another node.
+    Node(NodeId),
+}
+
+/// The hash of a node, its children by theirs. Label and place in the file do not count.
+pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    text(&mut hasher, node.kind.word());
+    text(&mut hasher, &node.class);
+    let mut params: Vec<_> = node.params.iter().collect();
+    params.sort_by_key(|argument| argument.name);
+    for argument in params {
+        text(&mut hasher, argument.name);
+        hash_value(&mut hasher, &argument.value, &child);
+    }
+    *hasher.finalize().as_bytes()
+}
+
+fn text(hasher: &mut blake3::Hasher, text: &str) {
+    hasher.update(&text.len().to_le_bytes());
+    hasher.update(text.as_bytes());
+}
+
+fn numbers(hasher: &mut blake3::Hasher, numbers: &[f64]) {
+    hasher.update(&numbers.len().to_le_bytes());
+    for x in numbers {
+        hasher.update(&x.to_bits().to_le_bytes());
+    }
+}
+
+fn hash_value(hasher: &mut blake3::Hasher, value: &Value, child: &impl Fn(NodeId) -> Hash) {
+    match value {
+        Value::Bool(b) => {
+            hasher.update(&[0, u8::from(*b)]);
+        }
+        Value::Number(x, dimension) => {
+            hasher.update(&[1]);
+            numbers(hasher, &[*x]);
+            hasher.update(&dimension.0.map(i8::cast_unsigned));
+        }
+        Value::Vector(v) => {
+            hasher.update(&[2]);
+            numbers(hasher, v);
+        }
+        Value::Text(t) => {
+            hasher.update(&[3]);
+            text(hasher, t);
+        }
+        Value::Path(path) => {
+            hasher.update(&[4]);
+            text(hasher, &path.to_string_lossy());
+        }
+        Value::Bytes(name, bytes) => {
+            hasher.update(&[5]);
+            text(hasher, name);
+            hasher.update(blake3::hash(bytes).as_bytes());
+        }
+        Value::Table(table) => {
+            hasher.update(&[6]);
+            numbers(hasher, table);
+        }
+        Value::Color(color, dimension) => {
+            hasher.update(&[7]);
+            text(hasher, &format!("{color:?}"));
+            hasher.update(&dimension.0.map(i8::cast_unsigned));
+        }
+        Value::Look(look) => {
+            hasher.update(&[8]);
+            let points = [look.from, look.to, look.up].map(|p| p.to_array());
+            numbers(hasher, points.as_flattened());
+        }
+        Value::Node(id) => {
+            hasher.update(&[9]);
+            hasher.update(&child(*id));
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! The built-in plugins of kind importer.
+
+use luxel_sdk::abi::Class;
+
+/// All of them.
+pub(crate) const CLASSES: &[Class] = &[];

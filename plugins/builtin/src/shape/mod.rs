@@ -1,0 +1,6 @@
+//! The built-in plugins of kind shape.
+
+use luxel_sdk::abi::Class;
+
+/// All of them.
+pub(crate) const CLASSES: &[Class] = &[];

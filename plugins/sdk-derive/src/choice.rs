@@ -1,0 +1,38 @@
+//! `#[derive(Choice)]`.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::{Data, DeriveInput, Error, Result};
+
+use crate::attributes::{has_repr, snake_case};
+
+pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
+    let name = &input.ident;
+    let Data::Enum(data) = &input.data else {
+        return Err(Error::new_spanned(input, "a choice is an enum without fields"));
+    };
+    if !has_repr(&input.attrs, "u32") {
+        return Err(Error::new_spanned(name, "a choice needs #[repr(u32)]: it is written by index"));
+    }
+    let mut words = vec![];
+    for variant in &data.variants {
+        if !variant.fields.is_empty() || variant.discriminant.is_some() {
+            return Err(Error::new_spanned(variant, "no fields and no explicit number"));
+        }
+        words.push(snake_case(&variant.ident.to_string()));
+    }
+    Ok(quote! {
+        // SAFETY: field-less variants count from 0, as checked by the derive.
+        #[automatically_derived]
+        #[expect(unsafe_code, reason = "the derive has checked that every index is a variant")]
+        unsafe impl ::luxel_sdk::params::Choice for #name {
+            const WORDS: &'static [&'static str] = &[#(#words),*];
+        }
+        #[automatically_derived]
+        #[expect(unsafe_code, reason = "the host writes an index below the number of words")]
+        // SAFETY: as above.
+        unsafe impl ::luxel_sdk::params::Field for #name {
+            const TYPE: ::luxel_sdk::params::Type = ::luxel_sdk::params::Type::Choice;
+        }
+    })
+}

@@ -1,0 +1,314 @@
+//! How light is followed: an integrator says what happens when a path arrives.
+//!
+//! The host keeps many paths in flight, traces their rays in batches, and shades every arrival
+//! before it asks. An integrator is a small state machine over plain data (docs/plugins.md).
+
+use glam::{DVec3, Vec2};
+
+use super::Samples;
+use crate::color::Spectrum;
+use crate::num::{Ray, offset_origin};
+use crate::params::Fault;
+
+/// What the host prepares at every arrival: a set of flags.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Wants(pub u32);
+
+impl Wants {
+    /// Where the path is, no more.
+    pub const POSITION: Self = Self(0);
+    /// Emission, and the density with which light sampling would have found it.
+    pub const EMISSION: Self = Self(1);
+    /// One light sample with the material's answer to it.
+    pub const DIRECT: Self = Self(2);
+    /// One scattering sample.
+    pub const SCATTER: Self = Self(4);
+
+    /// Both sets together.
+    #[must_use]
+    pub const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether every flag of `other` is set.
+    pub const fn has(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+/// One path to be followed.
+#[derive(Clone, Copy, Debug)]
+pub struct Job {
+    /// The camera's ray, world space, unit direction.
+    pub ray: Ray,
+    /// What its radiance counts for.
+    pub weight: f32,
+}
+
+/// Where a path arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ArrivalKind {
+    /// It left the scene.
+    #[default]
+    Escaped,
+    /// At a surface.
+    Surface,
+    /// In a medium.
+    Medium,
+}
+
+/// One light sample, with the material's answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Direct {
+    /// From the arrival to the light, offset at both ends.
+    pub ray: Ray,
+    /// f·|cos_i|·le / pdf: what arrives if nothing lies between.
+    pub f_le: Spectrum,
+    /// Solid-angle density of the light sample; infinite for a delta light.
+    pub pdf: f32,
+    /// Density with which scattering would have found it.
+    pub f_pdf: f32,
+}
+
+/// One scattering sample, in world space.
+#[derive(Clone, Copy, Debug)]
+pub struct Scatter {
+    /// eval / pdf.
+    pub weight: Spectrum,
+    /// Unit direction.
+    pub wi: DVec3,
+    /// Solid-angle density; infinite for a delta lobe, which light sampling cannot find.
+    pub pdf: f32,
+    /// Relative index of refraction of a transmission, else 1.
+    pub eta: f32,
+}
+
+/// A point that a path arrived at, shaded as far as the integrator wants.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Arrival {
+    /// Where it is.
+    pub kind: ArrivalKind,
+    /// World space.
+    pub p: DVec3,
+    /// Bound of the error of each coordinate of `p`.
+    pub p_err: DVec3,
+    /// Geometric normal, unit, to the outside of the shape; zero unless at a surface.
+    pub ng: DVec3,
+    /// Shading normal, unit; zero unless at a surface.
+    pub ns: DVec3,
+    /// Surface coordinates.
+    pub uv: Vec2,
+    /// Distance flown by the last ray, metres.
+    pub t: f64,
+    /// Towards where the path came from, unit.
+    pub wo: DVec3,
+    /// Index of the material among the stage's; `u32::MAX` without one.
+    pub material: u32,
+    /// Steps that tracing the last ray took: nodes and primitives.
+    pub steps: u32,
+    /// Emitted radiance towards `wo`.
+    pub le: Spectrum,
+    /// Density with which light sampling at the last point would have found it, sr⁻¹.
+    pub le_pdf: f32,
+    /// A light sample, if one may contribute.
+    pub direct: Option<Direct>,
+    /// A scattering sample, if the path can go on.
+    pub scatter: Option<Scatter>,
+}
+
+impl Arrival {
+    /// A ray that leaves this point along the unit direction `wi`, its origin beyond the error of
+    /// the point.
+    pub fn ray(&self, wi: DVec3) -> Ray {
+        self.ray_to(wi, f64::INFINITY)
+    }
+
+    /// The same, up to a distance in metres.
+    pub fn ray_to(&self, wi: DVec3, distance: f64) -> Ray {
+        Ray { o: offset_origin(self.p, self.p_err, self.ng, wi), d: wi, t_max: distance }
+    }
+}
+
+/// What the host answers while a path arrives.
+pub trait Host {
+    /// Whether something lies along a ray. Media and surfaces without a material do not count.
+    fn occluded(&self, ray: &Ray) -> bool;
+
+    /// A sphere around the scene: centre and radius in metres.
+    fn scene_sphere(&self) -> (DVec3, f64);
+}
+
+/// A shadow ray with the light that it decides about.
+#[derive(Clone, Copy, Debug)]
+pub struct Shadow {
+    /// From the point to the light.
+    pub ray: Ray,
+    /// Whose.
+    pub lane: u32,
+    /// What arrives if nothing lies between.
+    pub l: Spectrum,
+}
+
+/// The rays that a round of arrivals asked for, in asking order.
+#[derive(Debug, Default)]
+pub struct Requests {
+    /// Paths that go on: ray and lane.
+    pub rays: Vec<(Ray, u32)>,
+    /// Light that depends on a shadow ray.
+    pub shadows: Vec<Shadow>,
+}
+
+impl Requests {
+    /// Forgets everything, keeps the memory.
+    pub fn clear(&mut self) {
+        self.rays.clear();
+        self.shadows.clear();
+    }
+}
+
+/// What an arrival leads to. Every call adds to the batch of the next round.
+pub struct Ask<'a> {
+    lane: u32,
+    l: &'a mut Spectrum,
+    requests: &'a mut Requests,
+}
+
+impl Ask<'_> {
+    /// Light for the pixel.
+    pub fn add(&mut self, l: Spectrum) {
+        *self.l += l;
+    }
+
+    /// Goes on: `arrive` is called where this ray ends. A path that does not ask is done. Once per
+    /// arrival.
+    pub fn trace(&mut self, ray: Ray) {
+        self.requests.rays.push((ray, self.lane));
+    }
+
+    /// Light for the pixel if nothing lies between, dimmed by the media along the ray. Any number
+    /// per arrival.
+    pub fn add_if_visible(&mut self, ray: Ray, l: Spectrum) {
+        if !l.is_black() {
+            self.requests.shadows.push(Shadow { ray, lane: self.lane, l });
+        }
+    }
+}
+
+/// An integrator that follows one path at a time, from its point of view.
+pub trait PathIntegrator: Send + Sync {
+    /// What a path remembers.
+    type State: Copy + Default + Send;
+
+    /// Computes the derived fields.
+    fn prepare(&mut self) {}
+
+    /// Rules between parameters.
+    ///
+    /// # Errors
+    /// The parameter at fault.
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// What the host prepares at each arrival.
+    fn wants(&self) -> Wants;
+
+    /// A path begins: usually asks for the camera's ray.
+    fn start(&self, job: &Job, ask: &mut Ask<'_>) -> Self::State;
+
+    /// A path arrived.
+    fn arrive(
+        &self,
+        state: &mut Self::State,
+        at: &Arrival,
+        samples: &mut Samples<'_>,
+        host: &dyn Host,
+        ask: &mut Ask<'_>,
+    );
+}
+
+/// One path in flight, as host and integrator share it.
+#[derive(Clone, Copy)]
+pub struct Lane<'a> {
+    /// Where it arrived.
+    pub at: Arrival,
+    /// Light gathered so far.
+    pub l: Spectrum,
+    /// Its numbers.
+    pub samples: Samples<'a>,
+}
+
+/// The states of many paths, their type forgotten.
+pub trait Erased: Send {
+    /// A path begins in a lane.
+    fn start(&mut self, lane: u32, job: &Job, l: &mut Spectrum, requests: &mut Requests);
+
+    /// The paths in the lanes `arrived` did so.
+    fn arrive_n(
+        &mut self,
+        lanes: &mut [Lane<'_>],
+        arrived: &[u32],
+        host: &dyn Host,
+        requests: &mut Requests,
+    );
+}
+
+/// An integrator, its path state forgotten. Every `PathIntegrator` is one.
+pub trait Integrator: Send + Sync {
+    /// What the host prepares at each arrival.
+    fn wants(&self) -> Wants;
+
+    /// Room for `n` paths.
+    fn lanes<'a>(&'a self, n: usize) -> Box<dyn Erased + 'a>;
+}
+
+struct States<'a, I: PathIntegrator> {
+    integrator: &'a I,
+    states: Vec<I::State>,
+}
+
+impl<I: PathIntegrator> Erased for States<'_, I> {
+    fn start(&mut self, lane: u32, job: &Job, l: &mut Spectrum, requests: &mut Requests) {
+        let mut ask = Ask { lane, l, requests };
+        self.states[lane as usize] = self.integrator.start(job, &mut ask);
+    }
+
+    fn arrive_n(
+        &mut self,
+        lanes: &mut [Lane<'_>],
+        arrived: &[u32],
+        host: &dyn Host,
+        requests: &mut Requests,
+    ) {
+        for &lane in arrived {
+            let path = &mut lanes[lane as usize];
+            let mut ask = Ask { lane, l: &mut path.l, requests };
+            let state = &mut self.states[lane as usize];
+            self.integrator.arrive(state, &path.at, &mut path.samples, host, &mut ask);
+        }
+    }
+}
+
+impl<I: PathIntegrator> Integrator for I {
+    fn wants(&self) -> Wants {
+        PathIntegrator::wants(self)
+    }
+
+    fn lanes<'a>(&'a self, n: usize) -> Box<dyn Erased + 'a> {
+        Box::new(States { integrator: self, states: vec![I::State::default(); n] })
+    }
+}
+
+/// Weight of a sample of density `a` that another technique finds with density `b`: the power
+/// heuristic. `a` infinite means that the other technique cannot find it.
+///
+/// # Source
+/// Veach 1997, §9.2.4; PBR4 §2.2.3.
+pub fn mis(a: f32, b: f32) -> f32 {
+    if a.is_infinite() {
+        return 1.0;
+    }
+    let ratio = b / a;
+    if a > 0.0 { 1.0 / (1.0 + ratio * ratio) } else { 0.0 }
+}

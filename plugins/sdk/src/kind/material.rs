@@ -1,0 +1,126 @@
+//! How a surface scatters light, given its parameters at one point.
+
+use std::ops::Deref;
+
+use glam::Vec3;
+
+use crate::color::Spectrum;
+use crate::params::Fault;
+
+/// Value and density of scattering from `wo` to `wi`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Eval {
+    /// f·|cos_i|, sr⁻¹.
+    pub f: Spectrum,
+    /// Density with which `sample` finds `wi`, sr⁻¹; delta lobes do not count.
+    pub pdf: f32,
+}
+
+impl Eval {
+    /// Nothing is scattered that way.
+    pub const ZERO: Self = Self { f: Spectrum::ZERO, pdf: 0.0 };
+}
+
+/// What kind of lobe a sample came from: a set of flags.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Lobe(pub u32);
+
+impl Lobe {
+    /// Nothing special.
+    pub const NONE: Self = Self(0);
+    /// A direction that `eval` never finds.
+    pub const DELTA: Self = Self(1);
+    /// `wi` is on the other side than `wo`.
+    pub const TRANSMISSION: Self = Self(2);
+    /// `wi` depends on the wavelength: it holds for the first lane alone.
+    pub const DISPERSIVE: Self = Self(4);
+
+    /// Both sets together.
+    #[must_use]
+    pub const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether every flag of `other` is set.
+    pub const fn has(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Sample {
+    /// eval / pdf; for a delta lobe what it carries over the chance that it was chosen.
+    pub weight: Spectrum,
+    /// Unit direction in the local frame.
+    pub wi: Vec3,
+    /// Solid-angle density, sr⁻¹; 1 for a delta lobe.
+    pub pdf: f32,
+    /// Relative index eta_t / eta_i of a transmission (radiance grows by its square), else 1.
+    pub eta: f32,
+    /// Where it came from.
+    pub lobe: Lobe,
+}
+
+impl Sample {
+    /// A perfectly specular direction on the viewer's side.
+    pub const fn delta(wi: Vec3, weight: Spectrum) -> Self {
+        Self { weight, wi, pdf: 1.0, eta: 1.0, lobe: Lobe::DELTA }
+    }
+}
+
+/// The mirror direction of `wo` about the local normal +z.
+pub fn reflect(wo: Vec3) -> Vec3 {
+    Vec3::new(-wo.x, -wo.y, wo.z)
+}
+
+/// How a surface scatters light.
+///
+/// Directions are unit vectors in the local frame: +z is the shading normal on the outside of the
+/// shape, x along dp/du. `wo.z < 0` means that the viewer is inside. All results are finite and not
+/// negative; where the mathematics has no answer (grazing, below the horizon) there is nothing.
+pub trait Material: Send + Sync {
+    /// Computes the derived fields; called after every change of the others.
+    fn prepare(&mut self) {}
+
+    /// Rules between parameters that no schema can state.
+    ///
+    /// # Errors
+    /// The parameter at fault.
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// f·|cos_i| and the density of `sample`, without delta lobes.
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval;
+
+    /// A direction, `u` uniform in [0, 1)³. `None` when nothing is scattered.
+    fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Sample>;
+
+    /// Whether `eval` is zero everywhere, so that light need not be looked for.
+    fn is_delta(&self) -> bool {
+        false
+    }
+}
+
+/// Another material, resolved at the same point.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct MaterialRef<'a>(pub(crate) &'a dyn Material);
+
+impl<'a> MaterialRef<'a> {
+    /// Lends a material.
+    pub const fn new(material: &'a dyn Material) -> Self {
+        Self(material)
+    }
+}
+
+impl<'a> Deref for MaterialRef<'a> {
+    type Target = dyn Material + 'a;
+    fn deref(&self) -> &Self::Target {
+        self.0
+    }
+}

@@ -1,0 +1,40 @@
+//! What fills space: absorption and scattering along a ray.
+
+use super::{Phase, Samples};
+use crate::color::Spectrum;
+use crate::num::Ray;
+use crate::params::Fault;
+
+/// How far a ray flew freely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct FreeFlight {
+    /// Where it met the medium; `None` when it passed through to `t_max`.
+    pub t: Option<f64>,
+    /// Transmittance (times the scattering coefficient where it met the medium) over the density
+    /// with which this was chosen; its mean is 1 in a medium that absorbs nothing.
+    pub weight: Spectrum,
+}
+
+/// What fills space. Rays are in world space, direction of unit length, `t` in metres.
+pub trait Medium: Send + Sync {
+    /// Computes the derived fields.
+    fn prepare(&mut self) {}
+
+    /// Rules between parameters.
+    ///
+    /// # Errors
+    /// The parameter at fault.
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// Chooses how far a ray flies before it is scattered, up to `ray.t_max` (may be infinite).
+    fn sample(&self, ray: &Ray, samples: &mut Samples<'_>) -> FreeFlight;
+
+    /// The fraction of light that passes along the ray up to `ray.t_max`.
+    fn transmittance(&self, ray: &Ray, samples: &mut Samples<'_>) -> Spectrum;
+
+    /// How it scatters.
+    fn phase(&self) -> &dyn Phase;
+}

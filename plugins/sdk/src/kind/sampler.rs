@@ -1,0 +1,74 @@
+//! Where random numbers come from.
+
+use crate::params::Fault;
+
+/// Which number: a pure function of these three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct SampleAt {
+    /// Hash of seed and pixel.
+    pub stream: u32,
+    /// Index of the sample in its pixel.
+    pub index: u32,
+    /// How many dimensions this path has used.
+    pub dimension: u32,
+}
+
+/// A source of numbers in [0, 1), the same for the same arguments on every machine.
+pub trait Sampler: Send + Sync {
+    /// Computes the derived fields.
+    fn prepare(&mut self) {}
+
+    /// Rules between parameters.
+    ///
+    /// # Errors
+    /// The parameter at fault.
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// Samples per pixel.
+    fn samples(&self) -> u32;
+
+    /// The seed.
+    fn seed(&self) -> u32;
+
+    /// One number.
+    fn get_1d(&self, at: SampleAt) -> f32;
+
+    /// Two numbers that are spread over the square together.
+    fn get_2d(&self, at: SampleAt) -> [f32; 2];
+}
+
+/// The numbers of one path, taken in order.
+#[derive(Clone, Copy)]
+pub struct Samples<'a> {
+    source: &'a dyn Sampler,
+    at: SampleAt,
+}
+
+impl<'a> Samples<'a> {
+    /// The numbers of a path from the given place on.
+    pub fn new(source: &'a dyn Sampler, at: SampleAt) -> Self {
+        Self { source, at }
+    }
+
+    /// The next number in [0, 1).
+    pub fn next_1d(&mut self) -> f32 {
+        let u = self.source.get_1d(self.at);
+        self.at.dimension += 1;
+        u
+    }
+
+    /// The next two numbers in [0, 1)².
+    pub fn next_2d(&mut self) -> [f32; 2] {
+        let u = self.source.get_2d(self.at);
+        self.at.dimension += 2;
+        u
+    }
+
+    /// Where it stands.
+    pub fn at(&self) -> SampleAt {
+        self.at
+    }
+}

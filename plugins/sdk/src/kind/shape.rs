@@ -1,0 +1,126 @@
+//! Geometry: where rays meet it, and how points on it are chosen.
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+
+use crate::num::{Bounds3, Ray};
+use crate::params::Fault;
+
+/// Where a ray met a shape, in the shape's own parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Hit {
+    /// Ray parameter, in lengths of the ray's direction.
+    pub t: f64,
+    /// The shape's own coordinates of the point: what `surface` needs to find it again.
+    pub at: DVec2,
+    /// Which face, for shapes with several.
+    pub face: u32,
+}
+
+/// A point of a surface, in the frame of the shape.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Surface {
+    /// The point, on the surface to within `p_err`.
+    pub p: DVec3,
+    /// Bound of the absolute error of each coordinate of `p`.
+    pub p_err: DVec3,
+    /// Geometric normal, unit, to the outside.
+    pub ng: DVec3,
+    /// Shading normal, unit, on the side of `ng`.
+    pub ns: DVec3,
+    /// Surface coordinates for textures.
+    pub uv: DVec2,
+    /// ∂p/∂u, not zero.
+    pub dp_du: DVec3,
+    /// ∂p/∂v.
+    pub dp_dv: DVec3,
+}
+
+/// A sampled point of a surface.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct ShapeSample {
+    /// The point.
+    pub surface: Surface,
+    /// Density per area of the shape's own frame, m⁻².
+    pub pdf: f64,
+}
+
+/// Triangles that the host takes over: it builds their tree and intersects them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    /// What `points` are relative to, in the frame of the shape, metres.
+    pub centre: DVec3,
+    /// Corners, single precision about `centre`.
+    pub points: Vec<Vec3>,
+    /// Three corners each, counter-clockwise from outside.
+    pub indices: Vec<[u32; 3]>,
+    /// A unit shading normal per corner point, or empty.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates per corner point, or empty.
+    pub uvs: Vec<Vec2>,
+}
+
+impl TriangleMesh {
+    /// Rebases corners in double precision about the centre of their bounds.
+    ///
+    /// Non-finite corners are kept as they are, to be reported with their index.
+    pub fn rebased(points: &[DVec3], indices: Vec<[u32; 3]>) -> Self {
+        let bounds = Bounds3::of_points(points.iter().copied().filter(|p| p.is_finite()));
+        let centre = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
+        let points = points.iter().map(|p| (*p - centre).as_vec3()).collect();
+        Self { centre, points, indices, ..Self::default() }
+    }
+
+    /// The corners of a triangle in the frame of the shape, exact in double precision.
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.indices[triangle as usize]
+            .map(|i| self.centre + self.points[i as usize].as_dvec3())
+    }
+}
+
+/// Geometry in its own frame, in double precision.
+///
+/// The host applies the placement: rays arrive in the frame of the shape, and their direction is
+/// not unit length where the placement scales.
+pub trait Shape: Send + Sync {
+    /// Computes the derived fields.
+    fn prepare(&mut self) {}
+
+    /// Rules between parameters.
+    ///
+    /// # Errors
+    /// The parameter at fault.
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// A box that holds every point of the surface.
+    fn bounds(&self) -> Bounds3;
+
+    /// The nearest hit with `0 < t <= ray.t_max`. A NaN in the ray hits nothing.
+    fn intersect(&self, ray: &Ray) -> Option<Hit>;
+
+    /// The point that a hit names.
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
+
+    /// Area in the frame of the shape, m².
+    fn area(&self) -> f64;
+
+    /// A point, `u` uniform in [0, 1)². With `from`, the shape may prefer what is seen from there.
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample>;
+
+    /// The density with which `sample` finds this point of the surface, m⁻².
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64;
+
+    /// Whether the surface encloses a volume.
+    fn is_closed(&self) -> bool {
+        false
+    }
+
+    /// Triangles for the host to take over. Then no other method but `bounds` is called.
+    fn mesh(&self) -> Option<&TriangleMesh> {
+        None
+    }
+}

@@ -1,0 +1,100 @@
+//! What a number measures, checked while a scene is read.
+
+use std::fmt;
+use std::ops::{Div, Mul};
+
+/// Exponents of the seven base units: metre, kilogram, second, kelvin, candela, radian, steradian.
+///
+/// Angle and solid angle are counted, unlike in the SI, because scene authors confuse radiance with
+/// irradiance and degrees with numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Dimension(pub [i8; 7]);
+
+impl Dimension {
+    /// A plain number.
+    pub const NONE: Self = Self([0; 7]);
+    /// Metre.
+    pub const LENGTH: Self = Self([1, 0, 0, 0, 0, 0, 0]);
+    /// Kilogram.
+    pub const MASS: Self = Self([0, 1, 0, 0, 0, 0, 0]);
+    /// Second.
+    pub const TIME: Self = Self([0, 0, 1, 0, 0, 0, 0]);
+    /// Kelvin.
+    pub const TEMPERATURE: Self = Self([0, 0, 0, 1, 0, 0, 0]);
+    /// Candela.
+    pub const LUMINOUS: Self = Self([0, 0, 0, 0, 1, 0, 0]);
+    /// Radian.
+    pub const ANGLE: Self = Self([0, 0, 0, 0, 0, 1, 0]);
+    /// Steradian.
+    pub const SOLID_ANGLE: Self = Self([0, 0, 0, 0, 0, 0, 1]);
+    /// Watt.
+    pub const POWER: Self = Self([2, 1, -3, 0, 0, 0, 0]);
+    /// Joule.
+    pub const ENERGY: Self = Self([2, 1, -2, 0, 0, 0, 0]);
+
+    /// Raised to a whole power; `None` when an exponent leaves the range of `i8`.
+    pub fn powi(self, n: i8) -> Option<Self> {
+        let mut out = [0; 7];
+        for (o, e) in out.iter_mut().zip(self.0) {
+            *o = e.checked_mul(n)?;
+        }
+        Some(Self(out))
+    }
+
+    /// Square root; `None` when an exponent is odd.
+    pub fn sqrt(self) -> Option<Self> {
+        self.0.iter().all(|e| e % 2 == 0).then(|| Self(self.0.map(|e| e / 2)))
+    }
+
+    /// Whether this is a plain number.
+    pub fn is_none(self) -> bool {
+        self == Self::NONE
+    }
+
+    /// The word a person would use, or the base units: `length`, `angle`, `m^2/s`.
+    pub fn name(self) -> String {
+        const WORDS: [(Dimension, &str); 7] = [
+            (Dimension::NONE, "a plain number"),
+            (Dimension::LENGTH, "a length"),
+            (Dimension::TIME, "a time"),
+            (Dimension::TEMPERATURE, "a temperature"),
+            (Dimension::ANGLE, "an angle"),
+            (Dimension::SOLID_ANGLE, "a solid angle"),
+            (Dimension::POWER, "a power"),
+        ];
+        match WORDS.iter().find(|(dimension, _)| *dimension == self) {
+            Some((_, word)) => (*word).to_owned(),
+            None => self.to_string(),
+        }
+    }
+}
+
+impl Mul for Dimension {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].saturating_add(other.0[i])))
+    }
+}
+
+impl Div for Dimension {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].saturating_sub(other.0[i])))
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const BASE: [&str; 7] = ["m", "kg", "s", "K", "cd", "rad", "sr"];
+        let mut first = true;
+        for (name, exponent) in BASE.iter().zip(self.0).filter(|(_, e)| *e != 0) {
+            let sep = if first { "" } else { "*" };
+            match exponent {
+                1 => write!(f, "{sep}{name}")?,
+                e => write!(f, "{sep}{name}^{e}")?,
+            }
+            first = false;
+        }
+        if first { write!(f, "1") } else { Ok(()) }
+    }
+}

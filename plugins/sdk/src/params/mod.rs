@@ -1,0 +1,18 @@
+//! What a plugin's parameters are: the schema that the derive makes, and the field types.
+//!
+//! A plugin is a plain struct that derives `Params`. The struct is the schema: the language checks
+//! scenes against it, `describe` prints it, and the host writes values into the struct at the
+//! offsets that it lists.
+
+mod dimension;
+mod fields;
+mod schema;
+mod unit;
+
+pub use dimension::Dimension;
+pub use fields::{
+    Build, BuildContext, Choice, ComplexIor, Emission, Field, File, Look, Maybe, Plain, Quantity,
+    ShapeSlot, Shared, Table, Text,
+};
+pub use schema::{Default, Fault, Object, Param, Params, Role, SharedFns, Type};
+pub use unit::{UNITS, Unit};

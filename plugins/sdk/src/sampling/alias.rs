@@ -1,5 +1,7 @@
 //! Discrete choice in constant time, for a million lights or triangles.
 
+use crate::num::Sum;
+
 use super::weights::{WeightError, largest, relative};
 
 /// A table that draws an index with probability proportional to its weight, in O(1).
@@ -41,7 +43,7 @@ impl Alias {
     pub fn new(weights: &[f64]) -> Result<Self, WeightError> {
         let largest = largest(weights)?;
         let n = weights.len();
-        let sum: f64 = weights.iter().map(|&w| relative(w, largest)).sum();
+        let sum = weights.iter().map(|&w| relative(w, largest)).collect::<Sum>().value();
         let bin = |w: &f64| Bin { keep: 1.0, other: 0, pmf: relative(*w, largest) / sum };
         let mut bins: Vec<_> = weights.iter().map(bin).collect();
 
@@ -49,10 +51,8 @@ impl Alias {
         let mut share: Vec<f64> = bins.iter().map(|b| b.pmf * n as f64).collect();
         let (mut below, mut above): (Vec<usize>, Vec<usize>) =
             (0..n).partition(|&i| share[i] < 1.0);
-        let mut donor = above.last().copied();
         while let (Some(&low), Some(&high)) = (below.last(), above.last()) {
             below.pop();
-            donor = Some(high);
             bins[low].keep = share[low];
             bins[low].other = high;
             share[high] -= 1.0 - share[low];
@@ -61,13 +61,7 @@ impl Alias {
                 below.push(high);
             }
         }
-        // What is left is full up to rounding, but an index of weight zero must not be drawn.
-        for low in below {
-            if bins[low].pmf == 0.0 {
-                bins[low].keep = 0.0;
-                bins[low].other = donor.unwrap_or(low);
-            }
-        }
+        // Shares left over average 1 up to rounding, so those bins are full: `keep` is 1 already.
         Ok(Self { bins })
     }
 

@@ -194,7 +194,10 @@ mod tests {
         assert!(all.contains(DVec3::splat(1e300)) && all.contains(DVec3::splat(-1e300)));
         let slab = Bounds3 { min: DVec3::new(-1.0, f64::NEG_INFINITY, 0.0), max: DVec3::ONE };
         let b = slab.transform(&DAffine3::IDENTITY);
-        assert!(b.min.x < -1.0 + 1e-9 && b.min.x.is_finite() && b.min.y.is_infinite());
+        assert!(b.min.x <= -1.0 && b.min.x.is_finite() && b.min.y.is_infinite());
+        let y = DVec3::new(1.0, f64::INFINITY, 1.0);
+        let b = Bounds3 { min: -y, max: y }.transform(&DAffine3::IDENTITY);
+        assert!(b.min.x.is_finite() && b.max.z.is_finite() && b.max.y.is_infinite());
     }
 
     #[test]
@@ -225,6 +228,10 @@ mod tests {
         assert!(hit(&flat, DVec3::new(0.5, 0.5, -1.0), DVec3::Z).is_some());
         assert!(hit(&flat, DVec3::new(-1.0, 0.5, 0.5), DVec3::X).is_some());
         assert!(hit(&Bounds3::ALL, DVec3::splat(3.0), DVec3::X).is_some());
+        let far = f64::INFINITY;
+        let beam = Bounds3 { min: DVec3::new(-far, 0.0, 0.0), max: DVec3::new(far, 1.0, 1.0) };
+        assert!(hit(&beam, DVec3::splat(0.5), DVec3::X).is_some());
+        assert!(hit(&beam, DVec3::new(0.0, -0.5, 0.5), DVec3::X).is_none());
     }
 
     #[test]
@@ -232,6 +239,8 @@ mod tests {
         let o = DVec3::splat(0.5);
         assert!(hit(&Bounds3::EMPTY, o, DVec3::X).is_none());
         assert!(hit(&Bounds3::EMPTY, o, DVec3::ONE).is_none());
+        let inverted = Bounds3 { min: DVec3::new(0.0, 1.0, 0.0), max: DVec3::new(1.0, 0.0, 1.0) };
+        assert!(hit(&inverted, DVec3::new(-1.0, 1.0, 0.5), DVec3::X).is_none());
         assert!(hit(&UNIT, DVec3::NAN, DVec3::X).is_none());
         assert!(hit(&UNIT, o, DVec3::NAN).is_none());
     }

@@ -2,8 +2,6 @@
 
 use glam::Vec3;
 
-use super::error::gamma64;
-
 /// A right-handed orthonormal frame: three unit vectors, `z` usually the shading normal.
 ///
 /// Made by [`Frame::from_z`] or [`Frame::from_z_and_tangent`]; whoever fills the fields by hand
@@ -37,16 +35,15 @@ impl Frame {
 
     /// The frame around the unit vector `z` whose `x` is the part of `tangent` across `z`.
     ///
-    /// `tangent` has any length. Where it is zero, not finite or parallel to `z` (its part across
-    /// is below the rounding error of finding it), the result is that of [`Frame::from_z`].
+    /// `tangent` has any length. Where it is zero, not finite or exactly parallel to `z`, the result
+    /// is that of [`Frame::from_z`].
     pub fn from_z_and_tangent(z: Vec3, tangent: Vec3) -> Self {
-        // Products of two f32 are exact in f64 and cannot overflow, so the cross product errs by
-        // at most one rounding of its terms, each at most |z| |t|.
+        // Products of two f32 are exact in f64 and cannot overflow, so that each component of the
+        // cross product is right to one rounding, however close to parallel.
         let (z64, t) = (z.as_dvec3(), tangent.as_dvec3());
         let across = z64.cross(t);
-        let noise = gamma64(2) * z64.length() * t.length();
         let length = across.length();
-        if !(length > noise && length.is_finite()) {
+        if !(length > 0.0 && length.is_finite()) {
             return Self::from_z(z);
         }
         let y = across / length;
@@ -110,7 +107,10 @@ mod tests {
             assert_eq!(Frame::from_z_and_tangent(z, bad), Frame::from_z(z));
         }
         assert_eq!(Frame::from_z_and_tangent(Vec3::Z, -Vec3::Z), Frame::from_z(Vec3::Z));
-        check_orthonormal(Frame::from_z_and_tangent(z, z + Vec3::X * 1e-6));
+        assert_eq!(Frame::from_z_and_tangent(z, z * 4.0), Frame::from_z(z));
+        let close = Frame::from_z_and_tangent(z, z + Vec3::X * 1e-6);
+        check_orthonormal(close);
+        assert!(close.x.x > 0.0);
     }
 
     #[test]

@@ -78,6 +78,11 @@ mod tests {
         check(sphere_roots(o, -DVec3::Y, 1e7), truth, 1e-14);
         let o = DVec3::new(0.0, 0.0, -1e8);
         check(sphere_roots(o, DVec3::Z, 1e8 - 1.0), (1.0, 199999999.0), 1e-14);
+        // A chord at depth δ = 2⁻¹⁰ below the surface: half of it is √(δ(2r − δ)).
+        let (r, depth) = (1e8f64, 0.0009765625);
+        let half = (depth * (2.0 * r - depth)).sqrt();
+        let o = DVec3::new(0.0, r - depth, 0.0);
+        check(sphere_roots(o, DVec3::X, r), (-half, half), 4.0 * f64::EPSILON);
     }
 
     #[test]
@@ -118,6 +123,10 @@ mod tests {
         let found = quadratic_roots(p * r, -(p * s + q * r), q * s);
         // Coefficients round at 2⁻⁵³, and a double root moves by the root of that.
         check(found, (q / p, s / r), 2.0 * f64::EPSILON.sqrt());
+        // b² and 4ac need 55 bits and differ by 16: roots 1 and (n + 2) / (n − 2).
+        let n = 134217729.0;
+        let truth = (1.0, (n + 2.0) / (n - 2.0));
+        check(quadratic_roots(n - 2.0, -2.0 * n, n + 2.0), truth, 2.0 * f64::EPSILON);
         check(quadratic_roots(1.0, -2.0, 1.0), (1.0, 1.0), 0.0);
         check(quadratic_roots(0.0, 2.0, -4.0), (2.0, 2.0), 0.0);
         check(quadratic_roots(3.0, 0.0, 0.0), (0.0, 0.0), 0.0);

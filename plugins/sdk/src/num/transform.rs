@@ -197,6 +197,8 @@ mod tests {
         let p = DVec3::new(0.5, 0.25, 0.125);
         // Exact here: the sums have no more than 53 bits.
         assert_eq!(t.inverse_point(t.point(p)), p);
+        let t = t.compose(&Transform::rotate(DVec3::ONE, 0.7).unwrap()).unwrap();
+        assert_eq!(t.inverse_point(DVec3::splat(1e8) + p), t.inverse_vector(p));
     }
 
     #[test]

@@ -74,6 +74,14 @@ mod tests {
     }
 
     #[test]
+    fn the_sequence_is_that_of_pcg32() {
+        // From the initial state of the reference library, by the formulas of the paper.
+        let mut rng = Rng { state: 0x853c_49e6_748f_ea9b };
+        let expected = [0x152c_a78d, 0x027c_6003, 0xcb07_bbf3, 0xf98b_efee];
+        assert_eq!(expected.map(|_| rng.u32()), expected);
+    }
+
+    #[test]
     fn equal_seeds_repeat_and_others_differ() {
         let draw = |seed| Rng::new(seed).u64();
         assert_eq!(draw(1), draw(1));

@@ -68,6 +68,7 @@ mod tests {
     use super::*;
     use crate::num::Moments;
     use crate::sampling::Rng;
+    use crate::sampling::chi_square::Counts;
 
     /// Cell of `u` among 2^`bits`.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "u is in [0, 1)")]
@@ -140,6 +141,18 @@ mod tests {
         assert!(coarse / fine > 512.0, "{coarse} {fine}");
         let random = (16.0 / 9.0 - 1.0) / 1024.0;
         assert!(fine < random / 1000.0, "{fine}");
+    }
+
+    #[test]
+    fn one_point_is_uniform_over_seeds() {
+        for index in [0, 5, 1 << 20] {
+            let mut counts = Counts::new(256);
+            for seed in 0..20_000 {
+                let [x, y] = sobol_owen_2d(index, seed);
+                counts.add(cell(x, 4) * 16 + cell(y, 4));
+            }
+            counts.check(|_| 1.0 / 256.0);
+        }
     }
 
     #[test]

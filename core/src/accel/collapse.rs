@@ -3,10 +3,10 @@
 //! Source: Ylitie, Karras and Laine 2017, §4.1: dynamic programming over how many of a node's four
 //! slots each binary subtree takes.
 
-use glam::Vec3;
 use obvhs::bvh2::node::Bvh2Node;
 
-use super::node::{Bounds, Child, WIDTH};
+use super::cluster::bounds;
+use super::node::{Child, WIDTH};
 
 /// Relative costs of a step; only their ratio matters.
 #[derive(Clone, Copy, Debug)]
@@ -45,31 +45,9 @@ struct Plan {
     n_prims: u32,
 }
 
-/// Longest path of a binary tree in nodes, or `None` past `limit`.
-pub(super) fn depth(nodes: &[Bvh2Node], limit: usize) -> Option<usize> {
-    let mut stack = vec![(0u32, 1usize)];
-    let mut deepest = 0;
-    while let Some((index, depth)) = stack.pop() {
-        if depth > limit {
-            return None;
-        }
-        deepest = deepest.max(depth);
-        let node = &nodes[index as usize];
-        if !node.is_leaf() {
-            stack.push((node.first_index, depth + 1));
-            stack.push((node.first_index + 1, depth + 1));
-        }
-    }
-    Some(deepest)
-}
-
 /// Makes the wide tree of a binary one whose root is node 0, whose leaves hold one primitive each,
 /// and whose depth is bounded (this recurses).
-pub(super) fn collapse<S: Sink>(
-    nodes: &[Bvh2Node],
-    costs: Costs,
-    sink: &mut S,
-) -> Root<S::Bounds> {
+pub(super) fn collapse<S: Sink>(nodes: &[Bvh2Node], costs: Costs, sink: &mut S) -> Root<S::Bounds> {
     let mut collapse = Collapse { nodes, plans: vec![Plan::default(); nodes.len()], sink };
     collapse.plan(costs);
     collapse.emit(0)
@@ -114,8 +92,12 @@ impl<S: Sink> Collapse<'_, S> {
         let n_prims = l.n_prims + r.n_prims;
         let leaf_cost = if n_prims <= costs.max_leaf { as_leaf(n_prims) } else { f32::INFINITY };
         let node_cost = share(l, r, WIDTH).0 + area * costs.node;
-        let mut plan =
-            Plan { cost: [leaf_cost.min(node_cost); WIDTH], left: [0; WIDTH], leaf: false, n_prims };
+        let mut plan = Plan {
+            cost: [leaf_cost.min(node_cost); WIDTH],
+            left: [0; WIDTH],
+            leaf: false,
+            n_prims,
+        };
         plan.leaf = leaf_cost <= node_cost;
         for slots in 2..=WIDTH {
             let (cost, k) = share(l, r, slots);
@@ -171,9 +153,4 @@ impl<S: Sink> Collapse<'_, S> {
             self.gather(node.first_index + 1, prims);
         }
     }
-}
-
-fn bounds(node: &Bvh2Node) -> Bounds {
-    let aabb = node.aabb();
-    Bounds { min: Vec3::from(aabb.min), max: Vec3::from(aabb.max) }
 }

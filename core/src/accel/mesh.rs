@@ -64,7 +64,7 @@ impl MeshBvh {
         let prims = triangles.prims();
         let dropped = indices.len() - prims.len();
         let Tree { nodes, blocks, root } = triangles.tree(prims);
-        let size = root.map(|root| root.bounds).unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ZERO });
+        let size = root.map_or(Bounds { min: Vec3::ZERO, max: Vec3::ZERO }, |root| root.bounds);
         Ok(Self {
             nodes,
             blocks,
@@ -96,7 +96,7 @@ impl MeshBvh {
     /// The nearest hit with 0 < t <= `t_max`; of equally near triangles the one that comes first.
     ///
     /// `o` and `d` are in the frame of the points and `d` has any length but zero; `t_max` may be
-    /// infinite. A ray that is not finite, has no direction, or starts more than 2¹⁰⁰ mesh sizes
+    /// infinite. A ray that is not finite (or a `t_max` of NaN), has no direction, or starts more than 2¹⁰⁰ mesh sizes
     /// away hits nothing.
     pub fn intersect(&self, o: Vec3, d: Vec3, t_max: f32) -> Option<MeshHit> {
         self.trace::<false, false>(o, d, t_max).0
@@ -121,6 +121,9 @@ impl MeshBvh {
         t_max: f32,
     ) -> (Option<MeshHit>, u32) {
         let Some(root) = self.root else { return (None, 0) };
+        if t_max.is_nan() {
+            return (None, 0);
+        }
         let Some((ray, t_unit)) = self.prepare(o, d) else { return (None, 0) };
         // An infinite limit would let a ray "enter" the boxes that it misses at infinity.
         let limit = (t_max / t_unit).min(f32::MAX);

@@ -13,6 +13,7 @@ mod ray;
 mod triangle;
 
 mod build;
+mod cluster;
 mod collapse;
 mod error;
 mod partition;

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::build::binary;
+use super::cluster::binary;
 use super::collapse::{Costs, Sink, collapse};
 use super::node::{Bounds, Child, Order, WIDTH, narrow};
 use super::partition::Prim;
@@ -25,8 +25,6 @@ pub struct TopBvh {
     nodes: Vec<TopNode>,
     root: Option<Child>,
     stack: usize,
-    /// Largest finite |coordinate|.
-    reach: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -49,13 +47,10 @@ impl TopBvh {
     /// With more boxes than that.
     pub fn build(boxes: &[(DVec3, DVec3)]) -> Self {
         assert!(boxes.len() < Child::BLOCK_LIMIT, "at most 2^29 placements");
-        let prims = prims(boxes);
-        let reach = boxes.iter().flat_map(|b| [b.0, b.1]).flat_map(|p| p.to_array());
-        let reach = reach.map(f64::abs).filter(|c| c.is_finite()).fold(0.0, f64::max);
+        let mut prims = prims(boxes);
         if prims.is_empty() {
-            return Self { nodes: Vec::new(), root: None, stack: 0, reach };
+            return Self { nodes: Vec::new(), root: None, stack: 0 };
         }
-        let mut prims = prims;
         let binary = binary(&mut prims);
         let mut sink = TopSink { boxes, prims: &prims, nodes: Vec::new() };
         let mut root = collapse(&binary, COSTS, &mut sink);
@@ -63,7 +58,7 @@ impl TopBvh {
             root.child = sink.node(&[(root.child, root.bounds)]).0;
             root.depth = 1;
         }
-        Self { nodes: sink.nodes, root: Some(root.child), stack: 3 * root.depth + 4, reach }
+        Self { nodes: sink.nodes, root: Some(root.child), stack: 3 * root.depth + 4 }
     }
 
     /// Calls `leaf(index, t_enter, t_max)` for the boxes that the ray enters at or before the
@@ -111,7 +106,7 @@ impl TopBvh {
         if !(o.is_finite() && d.is_finite() && d != DVec3::ZERO) {
             return;
         }
-        let ray = TopRay::new(o, d, self.reach);
+        let ray = TopRay::new(o, d);
         let t_max = t_max.min(f64::MAX);
         match self.stack {
             0..=32 => self.walk_with::<32>(root, &ray, t_max, leaf),
@@ -167,11 +162,11 @@ struct TopRay {
 }
 
 impl TopRay {
-    /// Widens boxes by 8u·(|o| + |p|), for the roundings of whoever computed them and of whoever
-    /// carries the ray into a placement's frame.
+    /// Widens every box by 8u·|o|, for the roundings of whoever carries the ray into a placement's
+    /// frame.
     #[inline]
-    fn new(o: DVec3, d: DVec3, reach: f64) -> Self {
-        let slack = 8.0 * U * (o.abs().max_element() + reach);
+    fn new(o: DVec3, d: DVec3) -> Self {
+        let slack = 8.0 * U * o.abs().max_element();
         let negative = d.to_array().map(f64::is_sign_negative);
         let apart = |axis: usize| if negative[axis] { -slack } else { slack };
         Self {
@@ -210,8 +205,7 @@ fn prims(boxes: &[Box64]) -> Vec<Prim> {
     let finite = |c: f64| if c.is_finite() { c } else { 0.0 };
     let largest = boxes.iter().filter(real).flat_map(|b| [b.0, b.1]).flat_map(|p| p.to_array());
     let largest = largest.map(|c| finite(c).abs()).fold(f64::MIN_POSITIVE, f64::max);
-    let narrow_point =
-        |p: DVec3| -> Vec3 { p.map(|c| (c / largest).clamp(-1.0, 1.0)).as_vec3() };
+    let narrow_point = |p: DVec3| -> Vec3 { p.map(|c| (c / largest).clamp(-1.0, 1.0)).as_vec3() };
     boxes
         .iter()
         .enumerate()
@@ -221,6 +215,13 @@ fn prims(boxes: &[Box64]) -> Vec<Prim> {
             Prim { bounds, index: narrow(index) }
         })
         .collect()
+}
+
+/// The box moved outward by 8u of its own coordinates, for the roundings of whoever computed it.
+fn widened((min, max): Box64) -> Box64 {
+    let finite = |c: f64| if c.is_finite() { c.abs() } else { 0.0 };
+    let slack = 8.0 * U * min.map(finite).max(max.map(finite));
+    (min - slack, max + slack)
 }
 
 struct TopSink<'a> {
@@ -234,7 +235,7 @@ impl Sink for TopSink<'_> {
 
     fn leaf(&mut self, prims: &[u32]) -> (Child, Box64) {
         let index = self.prims[prims[0] as usize].index as usize;
-        (Child::leaf(index, 1), self.boxes[index])
+        (Child::leaf(index, 1), widened(self.boxes[index]))
     }
 
     fn node(&mut self, slots: &[(Child, Box64)]) -> (Child, Box64) {
@@ -253,5 +254,131 @@ impl Sink for TopSink<'_> {
             (all.0.min(b.0), all.1.max(b.1))
         });
         (Child::node(self.nodes.len() - 1), all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::soup::Rng;
+    use super::*;
+
+    fn boxes(n: usize, size: f32, rng: &mut Rng) -> Vec<Box64> {
+        (0..n)
+            .map(|_| {
+                let (c, e) = (rng.point().as_dvec3() * 10.0, rng.point().as_dvec3().abs());
+                (c - e * f64::from(size), c + e * f64::from(size))
+            })
+            .collect()
+    }
+
+    /// Entry into one box, by the textbook; `None` if it is missed.
+    fn slab((min, max): Box64, o: DVec3, d: DVec3, t_max: f64) -> Option<f64> {
+        let (a, b) = ((min - o) / d, (max - o) / d);
+        let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element().min(t_max));
+        (near <= far).then_some(near)
+    }
+
+    fn visited(tree: &TopBvh, o: DVec3, d: DVec3, t_max: f64) -> Vec<u32> {
+        let mut seen = Vec::new();
+        let found = tree.any(o, d, t_max, |index, _, _| {
+            seen.push(index);
+            false
+        });
+        assert!(!found);
+        seen.sort_unstable();
+        seen
+    }
+
+    #[test]
+    fn visits_are_those_of_every_box_in_turn() {
+        let mut rng = Rng(21);
+        for n in [1, 2, 4, 5, 17, 40, 1000, 9000] {
+            let boxes = boxes(n, 1.0, &mut rng);
+            let tree = TopBvh::build(&boxes);
+            for _ in 0..20 {
+                let (o, d) = (rng.point().as_dvec3() * 20.0, rng.point().as_dvec3());
+                let t_max = f64::from(rng.next()) * 60.0;
+                let all = (0..).zip(&boxes).filter(|(_, b)| slab(**b, o, d, t_max).is_some());
+                let all: Vec<u32> = all.map(|(i, _)| i).collect();
+                assert_eq!(visited(&tree, o, d, t_max), all, "{n} boxes");
+            }
+        }
+    }
+
+    #[test]
+    fn nearest_entry_is_found_while_the_limit_shrinks() {
+        let mut rng = Rng(22);
+        let boxes = boxes(3000, 0.3, &mut rng);
+        let tree = TopBvh::build(&boxes);
+        for _ in 0..500 {
+            let (o, d) = (rng.point().as_dvec3() * 15.0, rng.point().as_dvec3());
+            let best = boxes.iter().filter_map(|b| slab(*b, o, d, 1e9)).fold(f64::MAX, f64::min);
+            let found = tree.intersect(o, d, 1e9, |index, t_enter, t_max| {
+                let t = slab(boxes[index as usize], o, d, t_max)?;
+                // Three roundings on either side, and the slack of the origin.
+                assert!(t_enter <= t * FAR, "{t_enter} {t}");
+                (t < t_max).then_some(t)
+            });
+            assert_eq!(found.unwrap_or(f64::MAX).to_bits(), best.to_bits());
+        }
+    }
+
+    #[test]
+    fn any_stops_at_the_first_yes() {
+        let mut rng = Rng(23);
+        let tree = TopBvh::build(&boxes(500, 3.0, &mut rng));
+        let mut calls = 0;
+        let found = tree.any(DVec3::splat(-20.0), DVec3::ONE, f64::INFINITY, |_, _, _| {
+            calls += 1;
+            calls == 3
+        });
+        assert!(found);
+        assert_eq!(calls, 3);
+    }
+
+    #[test]
+    fn ten_thousand_equal_boxes_and_no_boxes_are_fine() {
+        let unit = (DVec3::ZERO, DVec3::ONE);
+        let tree = TopBvh::build(&vec![unit; 10_000]);
+        assert_eq!(visited(&tree, DVec3::splat(0.5), DVec3::X, 1.0).len(), 10_000);
+        let none = TopBvh::build(&[]);
+        assert!(visited(&none, DVec3::ZERO, DVec3::X, f64::INFINITY).is_empty());
+    }
+
+    #[test]
+    fn infinite_boxes_are_visited_and_broken_ones_are_not() {
+        let all = (DVec3::NEG_INFINITY, DVec3::INFINITY);
+        let floor = (
+            DVec3::new(f64::NEG_INFINITY, -1.0, f64::NEG_INFINITY),
+            DVec3::new(f64::INFINITY, -1.0, f64::INFINITY),
+        );
+        let broken = (DVec3::NAN, DVec3::ONE);
+        let empty = (DVec3::ONE, DVec3::ZERO);
+        let far = (DVec3::splat(1e300), DVec3::splat(2e300));
+        let tree = TopBvh::build(&[all, floor, broken, empty, far]);
+        let seen = |d| visited(&tree, DVec3::ZERO, d, f64::INFINITY);
+        assert!(seen(DVec3::NEG_Y).contains(&1));
+        assert_eq!(seen(DVec3::ONE), [0, 4]);
+        assert!(visited(&TopBvh::build(&[all]), DVec3::ZERO, DVec3::NAN, 1.0).is_empty());
+    }
+
+    #[test]
+    fn flat_boxes_and_parallel_rays_meet_in_their_plane() {
+        let flat = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(2.0, 1.0, 2.0));
+        let tree = TopBvh::build(&[flat]);
+        let enter = |o, d| visited(&tree, o, d, f64::INFINITY).len();
+        assert_eq!(enter(DVec3::new(-1.0, 1.0, 1.0), DVec3::X), 1);
+        assert_eq!(enter(DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -0.0, 0.0)), 1);
+        assert_eq!(enter(DVec3::new(-1.0, 1.0, 2.0), DVec3::new(1.0, 0.0, -0.0)), 1);
+        assert_eq!(enter(DVec3::new(-1.0, 1.1, 1.0), DVec3::X), 0);
+    }
+
+    #[test]
+    fn distance_from_the_world_origin_does_not_lose_a_box() {
+        let c = DVec3::splat(1e9);
+        let tree = TopBvh::build(&[(c, c + 1e-3), (c + 2.0, c + 3.0)]);
+        let o = c + DVec3::new(5e-4, 5e-4, -3.0);
+        assert!(visited(&tree, o, DVec3::Z, 10.0).contains(&0));
+        assert!(visited(&tree, o, DVec3::NEG_Z, 10.0).is_empty());
     }
 }

@@ -68,14 +68,11 @@ impl Block {
         // Translate to the ray's origin, shear its direction onto the z axis.
         let [a, b, c] = &self.points;
         let (az, bz, cz) = (a[kz] - oz, b[kz] - oz, c[kz] - oz);
-        let (ax, bx, cx) =
-            ((a[kx] - ox) - sx * az, (b[kx] - ox) - sx * bz, (c[kx] - ox) - sx * cz);
-        let (ay, by, cy) =
-            ((a[ky] - oy) - sy * az, (b[ky] - oy) - sy * bz, (c[ky] - oy) - sy * cz);
+        let (ax, bx, cx) = ((a[kx] - ox) - sx * az, (b[kx] - ox) - sx * bz, (c[kx] - ox) - sx * cz);
+        let (ay, by, cy) = ((a[ky] - oy) - sy * az, (b[ky] - oy) - sy * bz, (c[ky] - oy) - sy * cz);
 
         // Edge functions at the origin of the plane.
-        let mut edges =
-            Edges { u: cx * by - cy * bx, v: ax * cy - ay * cx, w: bx * ay - by * ax };
+        let mut edges = Edges { u: cx * by - cy * bx, v: ax * cy - ay * cx, w: bx * ay - by * ax };
         let mut inside = edges.inside();
         if !inside.any() {
             return None;

@@ -5,5 +5,6 @@
 pub mod accel;
 pub mod diag;
 pub mod files;
+pub mod object;
 pub mod registry;
 pub mod scene;

@@ -16,7 +16,7 @@ pub use film::FilmSettings;
 /// Every class that a scene may name.
 #[derive(Clone, Debug, Default)]
 pub struct Registry {
-    classes: BTreeMap<(Kind, &'static str), Entry>,
+    classes: BTreeMap<Kind, BTreeMap<&'static str, Entry>>,
 }
 
 /// A class and where it comes from.
@@ -64,15 +64,15 @@ impl Registry {
     /// The first class that another origin has already added.
     pub fn add(&mut self, origin: &str, classes: &[Class]) -> Result<(), Conflict> {
         for class in classes {
-            let key = (class.kind, class.name);
-            if let Some(first) = self.classes.get(&key) {
+            if let Some(first) = self.entry(class.kind, class.name) {
                 return Err(Conflict {
                     class: format!("{} {}", class.kind, class.name),
                     first: first.origin.clone(),
                     second: origin.to_owned(),
                 });
             }
-            self.classes.insert(key, Entry { class: *class, origin: origin.to_owned() });
+            let entry = Entry { class: *class, origin: origin.to_owned() };
+            self.classes.entry(class.kind).or_default().insert(class.name, entry);
         }
         Ok(())
     }
@@ -84,17 +84,17 @@ impl Registry {
 
     /// The class and its origin.
     pub fn entry(&self, kind: Kind, name: &str) -> Option<&Entry> {
-        self.classes.get(&(kind, name))
+        self.classes.get(&kind)?.get(name)
     }
 
     /// Every class of a kind, by name.
     pub fn of_kind(&self, kind: Kind) -> impl Iterator<Item = &Entry> {
-        self.classes.range((kind, "")..).take_while(move |((k, _), _)| *k == kind).map(|(_, e)| e)
+        self.classes.get(&kind).into_iter().flat_map(BTreeMap::values)
     }
 
     /// Every class, by kind and name.
     pub fn all(&self) -> impl Iterator<Item = &Entry> {
-        self.classes.values()
+        self.classes.values().flat_map(BTreeMap::values)
     }
 
     /// The parameters that a scene may give an object of this class: its own, then those that the

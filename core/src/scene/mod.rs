@@ -39,7 +39,7 @@ pub struct Node {
     /// Where it is written.
     pub span: Span,
     /// Hash of kind, class and parameters, children by their hash.
-    pub hash: value::Hash,
+    pub hash: Hash,
 }
 
 /// A parameter that was given.

@@ -1,0 +1,400 @@
+//! From a node of the scene graph to an object: its template and what varies.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DVec3, Vec2, Vec3};
+use luxel_sdk::abi::Class;
+use luxel_sdk::color::Spectrum;
+use luxel_sdk::kind::{Kind, MaterialRef, PhaseRef};
+use luxel_sdk::params::{
+    Default as Preset, Emission, Fault, File, Maybe, Param, Quantity, Role, Table, Text, Type,
+};
+
+use super::block::Block;
+use super::colour::{self, Amount, Lanes};
+use super::context::{self, Embedded, Reader};
+use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
+use super::resolve::SCRATCH;
+use super::Object;
+use crate::diag::{Diagnostic, Span};
+use crate::files::Files;
+use crate::registry::Registry;
+use crate::scene::{Argument, Color, Hash, Node, NodeId, Scene, Value};
+
+/// How colour is carried along a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ColorMode {
+    /// Lanes are linear sRGB.
+    Rgb,
+    /// Lanes are four wavelengths.
+    Spectral,
+}
+
+/// Objects of the last builds, by content.
+pub type Objects = BTreeMap<(Hash, ColorMode), Arc<Object>>;
+
+/// Makes objects of the nodes of one scene.
+pub struct Builder<'a> {
+    registry: &'a Registry,
+    scene: &'a Scene,
+    files: &'a dyn Files,
+    mode: ColorMode,
+    embedded: Embedded,
+    before: &'a Objects,
+    /// What this build made or kept.
+    pub objects: Objects,
+    /// What was found wrong.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl<'a> Builder<'a> {
+    /// A builder that keeps what `before` holds and what has not changed.
+    pub fn new(
+        registry: &'a Registry,
+        scene: &'a Scene,
+        files: &'a dyn Files,
+        mode: ColorMode,
+        before: &'a Objects,
+    ) -> Self {
+        let embedded = embedded_files(scene);
+        let (objects, diagnostics) = (Objects::new(), vec![]);
+        Self { registry, scene, files, mode, embedded, before, objects, diagnostics }
+    }
+
+    /// The object of a node. `None` when something is wrong with it, which has then been said.
+    pub fn build(&mut self, id: NodeId) -> Option<Arc<Object>> {
+        let node = self.scene.node(id);
+        let key = (node.hash, self.mode);
+        if let Some(object) = self.objects.get(&key) {
+            return Some(object.clone());
+        }
+        if let Some(object) = self.before.get(&key)
+            && context::unchanged(&object.reads, self.files)
+        {
+            self.objects.insert(key, object.clone());
+            return Some(object.clone());
+        }
+        let Some(class) = self.registry.class(node.kind, &node.class) else {
+            let message = format!("there is no {} `{}`", node.kind, node.class);
+            self.diagnostics.push(Diagnostic::error("E0401", node.span, message));
+            return None;
+        };
+        let object = self.make(class, Some(node))?;
+        self.objects.insert(key, object.clone());
+        Some(object)
+    }
+
+    /// An object of a class with its defaults alone.
+    ///
+    /// # Panics
+    /// If there is no such class, or it has required parameters.
+    pub fn preset(&mut self, kind: Kind, name: &str) -> Arc<Object> {
+        let class = self.registry.class(kind, name).expect("the host's presets are registered");
+        self.make(class, None).expect("the host's presets need no parameters")
+    }
+
+    fn make(&mut self, class: &Class, node: Option<&Node>) -> Option<Arc<Object>> {
+        let errors = self.diagnostics.len();
+        let mut draft = Draft {
+            block: Block::zeroed(class.size),
+            patches: Patches::default(),
+            owned: vec![],
+            mode: self.mode,
+        };
+        for param in class.params.iter().filter(|param| param.offset != usize::MAX) {
+            let argument = node.and_then(|node| node.get(param.name));
+            if let Err(message) = self.field(&mut draft, param, argument, node) {
+                let span = argument.map(|a| a.span).or(node.map(|n| n.span));
+                self.fault(Fault::range(param.name, message), span, node);
+            }
+        }
+        let mut object = Object {
+            class: *class,
+            need: draft.block.chunks().len().saturating_add(draft.patches.need()),
+            template: draft.block,
+            patches: draft.patches,
+            owned: draft.owned,
+            reads: vec![],
+        };
+        if object.need > SCRATCH {
+            let message = format!(
+                "objects nested too deeply: {} bytes at a point, {} allowed",
+                object.need * super::block::CHUNK,
+                SCRATCH * super::block::CHUNK
+            );
+            self.fault(Fault { field: "", code: "E0416", message }, None, node);
+        }
+        if self.diagnostics[errors..].iter().any(Diagnostic::is_error) {
+            return None;
+        }
+        self.complete(&mut object, node)?;
+        Some(Arc::new(object))
+    }
+
+    /// Checks, builds the shared table, prepares.
+    fn complete(&mut self, object: &mut Object, node: Option<&Node>) -> Option<()> {
+        if let Err(fault) = object.run_check() {
+            self.fault(fault, None, node);
+            return None;
+        }
+        let reader = Reader::new(self.files, &self.embedded);
+        let built = object.build_shared(&reader);
+        let (reads, warnings) = reader.finish();
+        object.reads = reads;
+        for warning in warnings {
+            if let Some(node) = node {
+                self.diagnostics.push(Diagnostic::warning("E0417", node.span, warning));
+            }
+        }
+        if let Err(faults) = built {
+            for fault in faults {
+                self.fault(fault, None, node);
+            }
+            return None;
+        }
+        object.prepare();
+        Some(())
+    }
+
+    fn fault(&mut self, fault: Fault, span: Option<Span>, node: Option<&Node>) {
+        let place = span.or_else(|| {
+            let node = node?;
+            Some(node.get(fault.field).map_or(node.span, |argument| argument.span))
+        });
+        self.diagnostics.push(match place {
+            Some(span) => Diagnostic::error(fault.code, span, fault.message),
+            None => Diagnostic::unplaced(fault.code, fault.message),
+        });
+    }
+
+    fn field(
+        &mut self,
+        draft: &mut Draft,
+        param: &Param,
+        argument: Option<&Argument>,
+        node: Option<&Node>,
+    ) -> Result<(), String> {
+        let value = argument.map(|argument| &argument.value);
+        match (param.ty, value) {
+            (Type::Emission, _) => return self.emission(draft, param, value, node),
+            (Type::Object(Kind::Shape), _) => {}
+            (Type::Object(kind), Some(Value::Node(id))) => {
+                if let Some(child) = self.build(*id) {
+                    draft.child(param.offset, kind, &child);
+                }
+            }
+            (Type::Object(Kind::Phase), None) => {
+                let child = self.preset(Kind::Phase, "isotropic");
+                draft.child(param.offset, Kind::Phase, &child);
+            }
+            (_, Some(Value::Node(id))) => {
+                if let Some(texture) = self.build(*id) {
+                    draft.texture(param, texture, 1.0)?;
+                }
+            }
+            (Type::Spectrum | Type::ComplexIor, Some(Value::Color(color, _))) => {
+                draft.lanes(param.offset, colour::lanes(color, param.role, draft.mode)?);
+                if param.ty == Type::ComplexIor
+                    && let Some(k) = colour::extinction(color, draft.mode)
+                {
+                    draft.lanes(param.offset + size_of::<Spectrum>(), k);
+                }
+            }
+            // A metal's `eta` has written it already.
+            (Type::Spectrum, None) if param.role == Role::ComplexIor => {
+                let metal = node.and_then(|node| node.get("eta")).map(|argument| &argument.value);
+                if !matches!(metal, Some(Value::Color(Color::Metal(_), _))) {
+                    return Err("`k` is missing: `eta` names no measured metal".to_owned());
+                }
+            }
+            (_, Some(value)) => draft.value(param, value)?,
+            (_, None) => draft.preset(param),
+        }
+        Ok(())
+    }
+
+    /// The light's field: written once, at its spectrum; the amounts are read along with it.
+    fn emission(
+        &mut self,
+        draft: &mut Draft,
+        param: &Param,
+        value: Option<&Value>,
+        node: Option<&Node>,
+    ) -> Result<(), String> {
+        if param.group == "amount" {
+            return Ok(());
+        }
+        let given = Quantity::ALL.iter().find_map(|(quantity, name, _)| {
+            match &node?.get(name)?.value {
+                Value::Number(value, dimension) => {
+                    Some(Amount { quantity: *quantity, value: *value, dimension: *dimension })
+                }
+                _ => None,
+            }
+        });
+        let dimension = colour::dimension("");
+        let amount = given.unwrap_or(Amount { quantity: Quantity::Scale, value: 1.0, dimension });
+        draft.block.write(param.offset, Emission {
+            spectrum: Spectrum::ZERO,
+            quantity: amount.quantity,
+        });
+        match value {
+            Some(Value::Node(id)) => {
+                if let Some(texture) = self.build(*id) {
+                    draft.texture(param, texture, colour::texture_factor(amount))?;
+                }
+            }
+            Some(Value::Color(color, _)) => {
+                draft.lanes(param.offset, colour::emission(color, amount, draft.mode)?);
+            }
+            Some(other) => return Err(format!("a spectrum cannot be made of {other:?}")),
+            None => {
+                let lanes = colour::emission(&colour::white(), amount, draft.mode)?;
+                draft.lanes(param.offset, lanes);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Every file that stands inside an imported one, under the path that `File` parameters see.
+fn embedded_files(scene: &Scene) -> Embedded {
+    let arguments = scene.nodes.iter().flat_map(|node| &node.params);
+    let embedded = arguments.filter_map(|argument| match &argument.value {
+        Value::Bytes(name, bytes) => Some((name.as_ref().into(), bytes.clone())),
+        _ => None,
+    });
+    embedded.collect()
+}
+
+/// A template in the making.
+struct Draft {
+    block: Block,
+    patches: Patches,
+    owned: Vec<Arc<dyn std::any::Any + Send + Sync>>,
+    mode: ColorMode,
+}
+
+impl Draft {
+    fn lanes(&mut self, offset: usize, lanes: Lanes) {
+        match lanes {
+            Lanes::Constant(value) => self.block.write(offset, value),
+            Lanes::Curve(curve) => self.patches.curves.push(CurvePatch { offset, curve }),
+            Lanes::Rgb(rgb, uplift) => self.patches.colours.push(RgbPatch { offset, rgb, uplift }),
+        }
+    }
+
+    fn child(&mut self, offset: usize, kind: Kind, child: &Arc<Object>) {
+        // A reference is never null: where the child varies, this one is replaced at each point.
+        match kind {
+            Kind::Phase => self.block.write_raw(offset, PhaseRef::new(child.fixed().phase())),
+            _ => self.block.write_raw(offset, MaterialRef::new(child.fixed().material())),
+        }
+        if child.is_constant() {
+            self.owned.push(child.clone());
+        } else {
+            self.patches.children.push(ChildPatch { offset, child: child.clone() });
+        }
+    }
+
+    fn texture(
+        &mut self,
+        param: &Param,
+        texture: Arc<Object>,
+        factor: f32,
+    ) -> Result<(), String> {
+        let target = match param.ty {
+            Type::Float => Target::Float,
+            Type::Vec3 => Target::Vec3,
+            Type::Spectrum | Type::Emission | Type::ComplexIor => Target::Spectrum,
+            _ => return Err(format!("`{}` cannot be textured", param.name)),
+        };
+        let uplift = match (self.mode, target, param.role) {
+            (ColorMode::Rgb, ..) | (_, Target::Float | Target::Vec3, _) => Uplift::None,
+            (_, _, Role::Illuminant) => Uplift::Illuminant,
+            _ => Uplift::Reflectance,
+        };
+        self.patches.textures.push(TexturePatch {
+            offset: param.offset,
+            output: texture.fixed().texture().output(),
+            texture,
+            uplift,
+            factor,
+            range: [param.min as f32, param.max as f32],
+            target,
+        });
+        Ok(())
+    }
+
+    fn value(&mut self, param: &Param, value: &Value) -> Result<(), String> {
+        let at = param.offset;
+        match (param.ty, value) {
+            (Type::Float, Value::Number(x, _)) => self.block.write(at, *x as f32),
+            (Type::Double, Value::Number(x, _)) => self.block.write(at, *x),
+            (Type::Int, Value::Number(x, _)) => self.block.write(at, *x as u32),
+            (Type::Bool, Value::Bool(b)) => self.block.write(at, *b),
+            (Type::MaybeFloat, Value::Number(x, _)) => {
+                self.block.write(at, Maybe { given: true, value: *x as f32 });
+            }
+            (Type::Spectrum | Type::ComplexIor, Value::Number(x, _)) => {
+                self.block.write(at, Spectrum::splat(*x as f32));
+            }
+            (Type::Vec2 | Type::Vec3 | Type::DVec3, Value::Vector(v)) => self.vector(param, v),
+            (Type::Choice, Value::Text(word)) => {
+                let index = param.choices.iter().position(|choice| **choice == **word);
+                let index = index.ok_or_else(|| format!("`{word}` is not among the choices"))?;
+                self.block.write_raw(at, index as u32);
+            }
+            (Type::Text, Value::Text(text)) => {
+                self.block.write_raw(at, Text::new(text));
+                self.owned.push(Arc::new(text.clone()));
+            }
+            (Type::File, Value::Path(path)) => self.file(at, path.to_string_lossy().into()),
+            (Type::File, Value::Bytes(name, _)) => self.file(at, name.clone()),
+            (Type::Table, Value::Table(table)) => {
+                self.block.write_raw(at, Table::new(table));
+                self.owned.push(Arc::new(table.clone()));
+            }
+            (Type::Look, Value::Look(look)) => self.block.write(at, *look),
+            _ => return Err(format!("`{}` has a value of the wrong type", param.name)),
+        }
+        Ok(())
+    }
+
+    fn file(&mut self, offset: usize, path: Arc<str>) {
+        self.block.write_raw(offset, File { path: Text::new(&path) });
+        self.owned.push(Arc::new(path));
+    }
+
+    fn vector(&mut self, param: &Param, v: &[f64]) {
+        let get = |i: usize| v.get(i).copied().unwrap_or(0.0);
+        let v = DVec3::new(get(0), get(1), get(2));
+        match param.ty {
+            Type::Vec2 => self.block.write::<Vec2>(param.offset, v.truncate().as_vec2()),
+            Type::Vec3 => self.block.write::<Vec3>(param.offset, v.as_vec3()),
+            _ => self.block.write(param.offset, v),
+        }
+    }
+
+    fn preset(&mut self, param: &Param) {
+        let at = param.offset;
+        match (param.default, param.ty) {
+            (Preset::Numbers(n), Type::Float) => self.block.write(at, n[0] as f32),
+            (Preset::Numbers(n), Type::Double) => self.block.write(at, n[0]),
+            (Preset::Numbers(n), Type::Int) => self.block.write(at, n[0] as u32),
+            (Preset::Numbers(n), Type::Bool) => self.block.write(at, n[0] > 0.5),
+            (Preset::Numbers(n), Type::Vec2 | Type::Vec3 | Type::DVec3) => self.vector(param, &n),
+            (Preset::Numbers(n), Type::Spectrum | Type::ComplexIor) => {
+                self.block.write(at, Spectrum::splat(n[0] as f32));
+            }
+            (Preset::Numbers(n), Type::MaybeFloat) => {
+                self.block.write(at, Maybe { given: true, value: n[0] as f32 });
+            }
+            (Preset::Index(index), Type::Choice) => self.block.write_raw(at, index),
+            (Preset::Text(text), Type::Text) => self.block.write_raw(at, Text::new(text)),
+            // Absent: zero bytes, which every optional type takes for nothing.
+            _ => {}
+        }
+    }
+}

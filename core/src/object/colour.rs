@@ -1,0 +1,178 @@
+//! Colours as described into what a field needs, by role and colour mode.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use luxel_sdk::color::{
+    Curve, K_CD, Observer, Outside, Spectrum, blackbody, emission_rgb, glass, illuminant,
+    ior_rgb, metal, reflectance_rgb, uplift_illuminant,
+};
+use luxel_sdk::params::{Dimension, Quantity, Role, Unit};
+
+use super::build::ColorMode;
+use super::patch::Uplift;
+use crate::scene::Color;
+
+/// What a field of four lanes takes.
+pub(super) enum Lanes {
+    /// The same lanes for every path.
+    Constant(Spectrum),
+    /// A curve over the wavelengths.
+    Curve(Curve),
+    /// A colour that is uplifted.
+    Rgb(Vec3, Uplift),
+}
+
+/// The white that a light has when its scene gives no spectrum: RGB (1, 1, 1), so D65.
+pub fn white() -> Color {
+    Color::Rgb([1.0; 3])
+}
+
+fn rgb32(rgb: [f64; 3]) -> Vec3 {
+    glam::DVec3::from_array(rgb).as_vec3()
+}
+
+/// A colour as a curve; `None` for RGB. Names have been checked by the language.
+fn curve_of(color: &Color, outside: Outside) -> Result<Option<Curve>, String> {
+    let unknown = |what: &str, name: &Arc<str>| format!("there is no {what} `{name}`");
+    Ok(Some(match color {
+        Color::Rgb(_) => return Ok(None),
+        Color::Constant(x) => Curve::constant(*x as f32),
+        Color::Curve(points) => Curve::from_points(points, outside).map_err(|e| e.to_string())?,
+        Color::Blackbody(t) => blackbody(*t).ok_or("a temperature is finite and at least 1 K")?,
+        Color::Illuminant(name) => illuminant(name).ok_or_else(|| unknown("illuminant", name))?,
+        Color::Metal(name) => metal(name).ok_or_else(|| unknown("metal", name))?.eta,
+        Color::Glass(name) => glass(name).ok_or_else(|| unknown("glass", name))?.curve(),
+        Color::Scaled(inner, factor) => match curve_of(inner, outside)? {
+            Some(curve) => curve.map(|_, x| x * factor),
+            None => return Ok(None),
+        },
+    }))
+}
+
+/// The RGB inside a colour that is one, times its factor.
+fn rgb_of(color: &Color) -> Option<[f64; 3]> {
+    match color {
+        Color::Rgb(rgb) => Some(*rgb),
+        Color::Scaled(inner, factor) => rgb_of(inner).map(|rgb| rgb.map(|x| x * factor)),
+        _ => None,
+    }
+}
+
+/// Lanes of a reflectance, a coefficient or an index of refraction.
+pub(super) fn lanes(color: &Color, role: Role, mode: ColorMode) -> Result<Lanes, String> {
+    if let Color::Constant(x) = color {
+        return Ok(Lanes::Constant(Spectrum::splat(*x as f32)));
+    }
+    if let Some(rgb) = rgb_of(color) {
+        let rgb = rgb32(rgb);
+        let grey = rgb.min_element() >= rgb.max_element();
+        return Ok(match mode {
+            _ if grey => Lanes::Constant(Spectrum::splat(rgb.x)),
+            ColorMode::Rgb => Lanes::Constant(Spectrum::from_rgb(rgb)),
+            ColorMode::Spectral => Lanes::Rgb(rgb, Uplift::Reflectance),
+        });
+    }
+    let curve = curve_of(color, Outside::Constant)?.expect("only RGB has no curve");
+    Ok(match (mode, role) {
+        (ColorMode::Spectral, _) => Lanes::Curve(curve),
+        (ColorMode::Rgb, Role::Ior) => Lanes::Constant(Spectrum::splat(curve.at(587.5618))),
+        (ColorMode::Rgb, Role::ComplexIor) => {
+            Lanes::Constant(Spectrum::from_rgb(ior_rgb(&curve)))
+        }
+        (ColorMode::Rgb, _) => Lanes::Constant(Spectrum::from_rgb(reflectance_rgb(&curve))),
+    })
+}
+
+/// Extinction of a metal, where the colour names one.
+pub(super) fn extinction(color: &Color, mode: ColorMode) -> Option<Lanes> {
+    let Color::Metal(name) = color else { return None };
+    let k = metal(name)?.k;
+    Some(match mode {
+        ColorMode::Spectral => Lanes::Curve(k),
+        ColorMode::Rgb => Lanes::Constant(Spectrum::from_rgb(ior_rgb(&k))),
+    })
+}
+
+/// An amount of light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Amount {
+    pub(super) quantity: Quantity,
+    pub(super) value: f64,
+    pub(super) dimension: Dimension,
+}
+
+impl Amount {
+    /// Whether it is counted in lumens: some power of the candela.
+    fn is_photometric(self) -> bool {
+        self.dimension.0[4] != 0
+    }
+
+    /// The factor that turns a spectrum of the given mean over the band and luminous Y into this
+    /// amount (see `luxel_sdk::color` for the lanes' unit).
+    fn factor(self, mean: f64, y: f64) -> f64 {
+        match self.quantity {
+            Quantity::Scale => self.value,
+            _ if self.is_photometric() => {
+                let band = f64::from(luxel_sdk::color::BAND_NM);
+                self.value / K_CD * band / Observer::Cie1931.y_integral() / y
+            }
+            _ => self.value / mean,
+        }
+    }
+}
+
+/// Lanes of a source of light: its spectrum times the amount.
+///
+/// # Errors
+/// A spectrum without any light, which no amount can scale.
+pub(super) fn emission(color: &Color, amount: Amount, mode: ColorMode) -> Result<Lanes, String> {
+    let curve = match rgb_of(color) {
+        Some(rgb) => rgb_curve(rgb32(rgb)),
+        None => curve_of(color, Outside::Zero)?.expect("only RGB has no curve"),
+    };
+    let (mean, y) = (curve.mean(), curve.y());
+    let factor = amount.factor(mean, y);
+    if !factor.is_finite() {
+        return Err("a spectrum without light cannot be scaled to an amount".to_owned());
+    }
+    Ok(match (mode, rgb_of(color)) {
+        (ColorMode::Rgb, Some(rgb)) => {
+            Lanes::Constant(Spectrum::from_rgb(rgb32(rgb.map(|x| x * factor))))
+        }
+        (ColorMode::Spectral, Some(rgb)) => {
+            Lanes::Rgb(rgb32(rgb.map(|x| x * factor)), Uplift::Illuminant)
+        }
+        (ColorMode::Spectral, None) => Lanes::Curve(curve.map(|_, x| x * factor)),
+        (ColorMode::Rgb, None) => {
+            Lanes::Constant(Spectrum::from_rgb(emission_rgb(&curve) * factor as f32))
+        }
+    })
+}
+
+/// The factor on a texture's colours that gives the amount for white.
+pub(super) fn texture_factor(amount: Amount) -> f32 {
+    let curve = rgb_curve(Vec3::ONE);
+    amount.factor(curve.mean(), curve.y()) as f32
+}
+
+/// RGB light as a curve.
+fn rgb_curve(rgb: Vec3) -> Curve {
+    Curve::from_fn(|nm| {
+        let mut w = luxel_sdk::color::Wavelengths::sample(0.5);
+        w.lambda = Spectrum::splat(nm as f32);
+        f64::from(uplift_illuminant(rgb, &w).lane(0))
+    })
+}
+
+/// The dimension of a unit of the schema.
+///
+/// # Panics
+/// If a schema's unit is not one: a mistake of the plugin's author that a test catches.
+pub(super) fn dimension(unit: &str) -> Dimension {
+    if unit.is_empty() {
+        return Dimension::NONE;
+    }
+    Unit::parse(unit).expect("units in schemas exist").dimension
+}
+

@@ -1,0 +1,80 @@
+//! What an object may read while it is built, and a record of what it read.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use luxel_sdk::params::BuildContext;
+
+use crate::files::Files;
+use crate::scene::Hash;
+
+/// Files that stand inside imported files, by the name that messages show.
+pub type Embedded = BTreeMap<PathBuf, Arc<[u8]>>;
+
+/// A file that was read: its path and the hash of its bytes, `None` when it could not be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Read {
+    pub(super) path: PathBuf,
+    pub(super) hash: Option<Hash>,
+}
+
+/// Reads through `Files` and remembers what.
+pub struct Reader<'a> {
+    files: &'a dyn Files,
+    embedded: &'a Embedded,
+    reads: Mutex<Vec<Read>>,
+    warnings: Mutex<Vec<String>>,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader of files, and of those inside imported files.
+    pub fn new(files: &'a dyn Files, embedded: &'a Embedded) -> Self {
+        Self { files, embedded, reads: Mutex::default(), warnings: Mutex::default() }
+    }
+
+    /// What was read and warned of.
+    pub(super) fn finish(self) -> (Vec<Read>, Vec<String>) {
+        let reads = self.reads.into_inner().unwrap_or_else(PoisonError::into_inner);
+        (reads, self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// The warnings so far.
+    pub fn into_warnings(self) -> Vec<String> {
+        self.finish().1
+    }
+
+    fn read_path(&self, path: &Path) -> Result<Arc<[u8]>, String> {
+        if let Some(bytes) = self.embedded.get(path) {
+            return Ok(bytes.clone());
+        }
+        let result = self.files.read(path);
+        let hash = result.as_ref().ok().map(|bytes| *blake3::hash(bytes).as_bytes());
+        let read = Read { path: path.to_path_buf(), hash };
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner).push(read);
+        result.map_err(|error| format!("`{}`: {error}", path.display()))
+    }
+}
+
+/// Whether every file is still what it was.
+pub(super) fn unchanged(reads: &[Read], files: &dyn Files) -> bool {
+    reads.iter().all(|read| {
+        let now = files.read(&read.path).ok().map(|bytes| *blake3::hash(&bytes).as_bytes());
+        now == read.hash
+    })
+}
+
+impl BuildContext for Reader<'_> {
+    fn read(&self, path: &str) -> Result<Arc<[u8]>, String> {
+        self.read_path(Path::new(path))
+    }
+
+    fn read_beside(&self, base: &str, path: &str) -> Result<Arc<[u8]>, String> {
+        let folder = Path::new(base).parent().unwrap_or(Path::new(""));
+        self.read_path(&folder.join(path))
+    }
+
+    fn warn(&self, message: &str) {
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(message.to_owned());
+    }
+}

@@ -1,0 +1,56 @@
+//! Objects: a class with its parameters, ready to be asked at a point.
+//!
+//! An object keeps the bytes of its parameter struct as a template, and a list of what varies from
+//! point to point (textures) or path to path (wavelengths). Where nothing varies the template itself
+//! is what the plugin sees; else the host copies it, fills the varying fields, and runs `prepare`.
+
+mod block;
+mod build;
+mod colour;
+mod context;
+mod patch;
+mod resolve;
+
+use std::any::Any;
+use std::sync::Arc;
+
+use luxel_sdk::abi::Class;
+
+use block::Block;
+use patch::Patches;
+
+pub use build::{Builder, ColorMode, Objects};
+pub use colour::white;
+pub use context::{Embedded, Reader};
+pub use resolve::{Resolved, Scratch};
+
+/// A built object. Immutable; shared by everything that uses it.
+pub struct Object {
+    class: Class,
+    template: Block,
+    patches: Patches,
+    /// Scratch that resolving takes, children included, in chunks.
+    need: usize,
+    /// Objects and tables that the template's bytes point into.
+    owned: Vec<Arc<dyn Any + Send + Sync>>,
+    /// Files that were read to build it, with the hash of their bytes.
+    reads: Vec<context::Read>,
+}
+
+impl Object {
+    /// Its class.
+    pub fn class(&self) -> &Class {
+        &self.class
+    }
+
+    /// Whether its parameters are the same everywhere and at every wavelength.
+    pub fn is_constant(&self) -> bool {
+        self.patches.is_empty()
+    }
+}
+
+impl std::fmt::Debug for Object {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:?}", self.class)
+    }
+}

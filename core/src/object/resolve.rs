@@ -1,0 +1,229 @@
+//! Parameters at a point.
+#![expect(unsafe_code, reason = "templates are copied and filled by offset")]
+
+use std::cell::{Cell, UnsafeCell};
+use std::marker::PhantomData;
+use std::mem::MaybeUninit;
+use std::sync::Arc;
+
+use luxel_sdk::abi::View;
+use luxel_sdk::color::{Spectrum, Wavelengths};
+use luxel_sdk::kind::{
+    Camera, Filter, Importer, Integrator, Light, Material, MaterialRef, Medium, Output, Phase,
+    PhaseRef, Sampler, Shape, Texture, TexturePoint,
+};
+
+use luxel_sdk::params::{BuildContext, Fault};
+
+use super::Object;
+use super::block::Chunk;
+use super::patch::{Target, TexturePatch};
+
+/// Chunks in a scratch: 4 KiB.
+pub(super) const SCRATCH: usize = 64;
+
+/// Room for the parameters of everything that is resolved at one point.
+///
+/// Nested objects are resolved while their parent is half filled, so the room is shared by
+/// reference and hands out separate pieces.
+pub struct Scratch {
+    room: Box<[UnsafeCell<MaybeUninit<Chunk>>; SCRATCH]>,
+    used: Cell<usize>,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        let room = std::array::from_fn(|_| UnsafeCell::new(MaybeUninit::uninit()));
+        Self { room: Box::new(room), used: Cell::new(0) }
+    }
+}
+
+impl Scratch {
+    /// Forgets everything: nothing that was resolved is still borrowed, says the borrow.
+    pub fn reset(&mut self) {
+        self.used.set(0);
+    }
+
+    /// A copy of `template`, in a piece of its own.
+    fn copy(&self, template: &[Chunk]) -> *mut u8 {
+        let at = self.used.get();
+        let end = at + template.len();
+        assert!(end <= SCRATCH, "the builder bounds what one point needs");
+        self.used.set(end);
+        for (slot, chunk) in self.room[at..end].iter().zip(template) {
+            // SAFETY: `used` has passed this slot, so no one else refers to it.
+            unsafe { slot.get().write(MaybeUninit::new(*chunk)) };
+        }
+        self.room[at..].as_ptr().cast_mut().cast()
+    }
+}
+
+/// An object's parameters at one point: a valid struct of its class, lent for `'a`.
+#[derive(Clone, Copy)]
+pub struct Resolved<'a> {
+    at: *const u8,
+    view: View,
+    lent: PhantomData<&'a ()>,
+}
+
+macro_rules! views {
+    ($($(#[$doc:meta])* $name:ident: $kind:ident),* $(,)?) => { $(
+        $(#[$doc])*
+        ///
+        /// # Panics
+        /// If the object is of another kind: the builder has checked it.
+        pub fn $name(self) -> &'a (dyn $kind + 'a) {
+            let View::$kind(view) = self.view else { panic!("an object of another kind") };
+            // SAFETY: `at` is a valid struct of the class that this view belongs to, for 'a.
+            unsafe { view(self.at, PhantomData) }
+        }
+    )* };
+}
+
+impl<'a> Resolved<'a> {
+    views! {
+        /// As a shape.
+        shape: Shape,
+        /// As a material.
+        material: Material,
+        /// As a texture.
+        texture: Texture,
+        /// As a light.
+        light: Light,
+        /// As a medium.
+        medium: Medium,
+        /// As a phase function.
+        phase: Phase,
+        /// As a camera.
+        camera: Camera,
+        /// As a sampler.
+        sampler: Sampler,
+        /// As a filter.
+        filter: Filter,
+        /// As an integrator.
+        integrator: Integrator,
+        /// As an importer.
+        importer: Importer,
+    }
+
+    /// As settings that the host reads itself.
+    ///
+    /// # Safety
+    /// `T` is the struct of the object's class.
+    pub(crate) unsafe fn settings<T>(self) -> &'a T {
+        // SAFETY: the caller names the right type; the struct is valid for 'a.
+        unsafe { &*self.at.cast::<T>() }
+    }
+}
+
+impl Object {
+    /// Its parameters where nothing varies: those that are written in the scene. Varying fields
+    /// hold their defaults.
+    pub fn fixed(&self) -> Resolved<'_> {
+        Resolved { at: self.template.address(), view: self.class.view, lent: PhantomData }
+    }
+
+    /// Its parameters at a point.
+    pub fn resolve<'a>(&'a self, at: &TexturePoint, scratch: &'a Scratch) -> Resolved<'a> {
+        if self.patches.is_empty() {
+            return self.fixed();
+        }
+        self.resolve_varying(at, scratch)
+    }
+
+    #[inline(never)]
+    fn resolve_varying<'a>(&'a self, at: &TexturePoint, scratch: &'a Scratch) -> Resolved<'a> {
+        let base = scratch.copy(self.template.chunks());
+        let write = Writer { base, size: self.class.size };
+        self.fill_curves(write, &at.lambda);
+        self.fill_colours(write, &at.lambda);
+        for patch in &self.patches.textures {
+            fill_texture(write, patch, at, scratch);
+        }
+        for patch in &self.patches.children {
+            let child = patch.child.resolve(at, scratch);
+            match child.view {
+                View::Material(_) => write.put(patch.offset, MaterialRef::new(child.material())),
+                View::Phase(_) => write.put(patch.offset, PhaseRef::new(child.phase())),
+                _ => unreachable!("the builder makes children of materials and phases alone"),
+            }
+        }
+        if let Some(prepare) = self.class.prepare {
+            // SAFETY: `base` is a valid struct of this class that no one else refers to.
+            unsafe { prepare(base) };
+        }
+        Resolved { at: base, view: self.class.view, lent: PhantomData }
+    }
+
+    #[inline(never)]
+    fn fill_curves(&self, write: Writer, lambda: &Wavelengths) {
+        for patch in &self.patches.curves {
+            write.put(patch.offset, patch.curve.eval(lambda));
+        }
+    }
+
+    #[inline(never)]
+    fn fill_colours(&self, write: Writer, lambda: &Wavelengths) {
+        for patch in &self.patches.colours {
+            write.put(patch.offset, patch.uplift.lanes(patch.rgb, lambda));
+        }
+    }
+}
+
+/// A struct that is being filled.
+#[derive(Clone, Copy)]
+struct Writer {
+    base: *mut u8,
+    size: usize,
+}
+
+impl Writer {
+    fn put<T: Copy>(self, offset: usize, value: T) {
+        assert!(offset + size_of::<T>() <= self.size, "a field outside its struct");
+        // SAFETY: inside the struct, as just asserted.
+        let at = unsafe { self.base.add(offset) };
+        // SAFETY: the schema says that a `T` stands there; no one else refers to the struct.
+        unsafe { at.cast::<T>().write_unaligned(value) }
+    }
+}
+
+#[inline(never)]
+fn fill_texture(write: Writer, patch: &TexturePatch, at: &TexturePoint, scratch: &Scratch) {
+    let value = patch.texture.resolve(at, scratch).texture().eval(at);
+    let lanes = match patch.output {
+        Output::Rgb => patch.uplift.lanes(value.rgb(), &at.lambda),
+        Output::Value => value,
+    };
+    let lanes: Spectrum = (lanes * patch.factor).clamp(patch.range[0], patch.range[1]);
+    match patch.target {
+        Target::Float => write.put(patch.offset, lanes.lane(0)),
+        Target::Vec3 => write.put(patch.offset, lanes.rgb()),
+        Target::Spectrum => write.put(patch.offset, lanes),
+    }
+}
+
+impl Object {
+    /// The class's rules between parameters.
+    pub(super) fn run_check(&self) -> Result<(), Fault> {
+        // SAFETY: the template is a valid struct of this class: every field has been written.
+        unsafe { (self.class.check)(self.template.address()) }
+    }
+
+    /// Computes the derived fields of the template.
+    pub(super) fn prepare(&mut self) {
+        if let Some(prepare) = self.class.prepare {
+            // SAFETY: as above, and `&mut self` says that no one else refers to it.
+            unsafe { prepare(self.template.address_mut()) };
+        }
+    }
+
+    /// Builds the shared table, if the class has one.
+    pub(super) fn build_shared(&mut self, context: &dyn BuildContext) -> Result<(), Vec<Fault>> {
+        let Some(shared) = self.class.shared else { return Ok(()) };
+        // SAFETY: the template is a valid struct of this class.
+        let table = unsafe { (shared.build)(self.template.address(), context) }?;
+        self.template.write_raw(shared.offset, table.address);
+        self.owned.push(Arc::from(table.owner));
+        Ok(())
+    }
+}

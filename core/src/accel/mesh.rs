@@ -113,7 +113,7 @@ impl MeshBvh {
         self.trace::<false, true>(o, d, t_max)
     }
 
-    #[inline]
+    #[inline(always)]
     fn trace<const ANY: bool, const COUNT: bool>(
         &self,
         o: Vec3,
@@ -130,8 +130,8 @@ impl MeshBvh {
         let mut best = Nearest { t: limit, id: u32::MAX, b1: 0.0, b2: 0.0 };
         // A stack is cleared for each ray, so small trees get small ones.
         let steps = match self.stack {
-            0..=32 => self.walk::<ANY, COUNT, 32>(root, &ray, &mut best),
-            33..=64 => self.walk::<ANY, COUNT, 64>(root, &ray, &mut best),
+            0..=16 => self.walk::<ANY, COUNT, 16>(root, &ray, &mut best),
+            17..=64 => self.walk::<ANY, COUNT, 64>(root, &ray, &mut best),
             _ => self.walk::<ANY, COUNT, 256>(root, &ray, &mut best),
         };
         let hit = (best.id != u32::MAX).then(|| MeshHit {
@@ -145,7 +145,7 @@ impl MeshBvh {
 
     /// The ray in the tree's frame with a direction of moderate length, and the power of two by
     /// which a parameter of that ray is multiplied to be one of the caller's.
-    #[inline]
+    #[inline(always)]
     fn prepare(&self, o: Vec3, d: Vec3) -> Option<(MeshRay, f32)> {
         let o = o * self.unit;
         let mut d = d * self.unit;
@@ -168,7 +168,7 @@ impl MeshBvh {
         ray: &MeshRay,
         best: &mut Nearest,
     ) -> u32 {
-        let mut stack = [(root, 0.0f32); LEN];
+        let (mut children, mut enters) = ([Child::default(); LEN], [0.0f32; LEN]);
         let mut top = 0;
         let mut current = root;
         let mut steps = 0;
@@ -187,15 +187,16 @@ impl MeshBvh {
                 let (entered, t) = ray.enter(node, best.t);
                 if entered != 0 {
                     // Writes all four, keeps those that are entered; the nearest comes last. The
-                    // mask on the index changes nothing, as `stack` bounds it, but tells so.
+                    // mask on the index changes nothing, as `self.stack` bounds it, but tells so.
                     let t = t.to_array();
                     for place in (0..4).rev() {
                         let slot = node.order.slot(ray.octant, place);
-                        stack[top & (LEN - 1)] = (node.children[slot], t[slot]);
+                        children[top & (LEN - 1)] = node.children[slot];
+                        enters[top & (LEN - 1)] = t[slot];
                         top += entered as usize >> slot & 1;
                     }
                     top -= 1;
-                    current = stack[top & (LEN - 1)].0;
+                    current = children[top & (LEN - 1)];
                     continue;
                 }
             }
@@ -204,9 +205,8 @@ impl MeshBvh {
                     return steps;
                 }
                 top -= 1;
-                let (child, t) = stack[top & (LEN - 1)];
-                if t <= cull(best.t) {
-                    current = child;
+                if enters[top & (LEN - 1)] <= cull(best.t) {
+                    current = children[top & (LEN - 1)];
                     break;
                 }
             }

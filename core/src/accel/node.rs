@@ -7,7 +7,7 @@ pub(super) const WIDTH: usize = 4;
 
 /// A node or a run of blocks: bit 31 tells a leaf; a leaf holds its first block and, in the low two
 /// bits, how many blocks follow it; a node holds its position.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Child(u32);
 
 impl Child {

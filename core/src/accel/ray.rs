@@ -39,11 +39,13 @@ impl MeshRay {
     /// unit roundoff: two subtractions, a shear factor of two roundings, a product, and again a
     /// subtraction). Boxes widened by 8u·(|o| + |p|) therefore hold every triangle the test
     /// accepts; widening is moving the origin, once per ray.
+    #[inline(always)]
     pub(super) fn new(o: Vec3, d: Vec3, reach: f32) -> Self {
         let slack = 8.0 * U * (o.abs().max_element() + reach);
         let rdir = d.recip();
-        let negative = [d.x, d.y, d.z].map(f32::is_sign_negative);
-        let signed = Vec3::from_array(negative.map(|n| if n { -slack } else { slack }));
+        let sign = |c: f32| usize::from(c.is_sign_negative());
+        let near = [sign(d.x), sign(d.y), sign(d.z)];
+        let apart = slack * Vec3::ONE.copysign(d);
         let a = d.abs();
         let kz = if a.x > a.y && a.x > a.z {
             0
@@ -52,17 +54,17 @@ impl MeshRay {
         } else {
             2
         };
-        let axes = [(kz + 1) % 3, (kz + 2) % 3, kz];
+        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][kz];
         let rz = 1.0 / d[kz];
         let splat = |v: Vec3| [Vec4::splat(v.x), Vec4::splat(v.y), Vec4::splat(v.z)];
         Self {
-            near_o: splat(o + signed),
-            far_o: splat(o - signed),
+            near_o: splat(o + apart),
+            far_o: splat(o - apart),
             rdir: splat(rdir),
-            near: negative.map(usize::from),
-            octant: (0..3).map(|axis| usize::from(negative[axis]) << axis).sum(),
+            near,
+            octant: near[0] | near[1] << 1 | near[2] << 2,
             axes,
-            o: axes.map(|k| o[k]),
+            o: [o[axes[0]], o[axes[1]], o[axes[2]]],
             shear: [d[axes[0]] * rz, d[axes[1]] * rz, rz],
         }
     }

@@ -108,8 +108,10 @@ impl TopBvh {
         }
         let ray = TopRay::new(o, d);
         let t_max = t_max.min(f64::MAX);
+        // A stack is cleared for each ray, so small trees get small ones.
         match self.stack {
-            0..=32 => self.walk_with::<32>(root, &ray, t_max, leaf),
+            0..=16 => self.walk_with::<16>(root, &ray, t_max, leaf),
+            17..=64 => self.walk_with::<64>(root, &ray, t_max, leaf),
             _ => self.walk_with::<256>(root, &ray, t_max, leaf),
         }
     }
@@ -122,11 +124,12 @@ impl TopBvh {
         mut t_max: f64,
         mut leaf: impl FnMut(u32, f64, f64) -> Step,
     ) {
-        let mut stack = [(root, 0.0f64); LEN];
+        let (mut children, mut enters) = ([Child::default(); LEN], [0.0f64; LEN]);
+        children[0] = root;
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let (current, t_enter) = stack[top & (LEN - 1)];
+            let (current, t_enter) = (children[top & (LEN - 1)], enters[top & (LEN - 1)]);
             if t_enter > t_max * FAR {
                 continue;
             }
@@ -141,7 +144,8 @@ impl TopBvh {
             let (near, far) = ray.enter(node, t_max);
             for place in (0..WIDTH).rev() {
                 let slot = node.order.slot(ray.octant, place);
-                stack[top & (LEN - 1)] = (node.children[slot], near[slot]);
+                children[top & (LEN - 1)] = node.children[slot];
+                enters[top & (LEN - 1)] = near[slot];
                 top += usize::from(near[slot] <= far[slot]);
             }
         }
@@ -167,14 +171,15 @@ impl TopRay {
     #[inline]
     fn new(o: DVec3, d: DVec3) -> Self {
         let slack = 8.0 * U * o.abs().max_element();
-        let negative = d.to_array().map(f64::is_sign_negative);
-        let apart = |axis: usize| if negative[axis] { -slack } else { slack };
+        let sign = |c: f64| usize::from(c.is_sign_negative());
+        let near = [sign(d.x), sign(d.y), sign(d.z)];
+        let apart = slack * DVec3::ONE.copysign(d);
         Self {
-            near_o: [0, 1, 2].map(|axis| o[axis] + apart(axis)),
-            far_o: [0, 1, 2].map(|axis| o[axis] - apart(axis)),
+            near_o: (o + apart).to_array(),
+            far_o: (o - apart).to_array(),
             rdir: d.recip().to_array(),
-            near: negative.map(usize::from),
-            octant: (0..3).map(|axis| usize::from(negative[axis]) << axis).sum(),
+            near,
+            octant: near[0] | near[1] << 1 | near[2] << 2,
         }
     }
 
@@ -194,7 +199,10 @@ impl TopRay {
                 t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
             }
         }
-        (t_near, t_far.map(|t| t * FAR))
+        for t in &mut t_far {
+            *t *= FAR;
+        }
+        (t_near, t_far)
     }
 }
 

@@ -61,9 +61,11 @@ impl Block {
     #[inline(always)]
     fn lanes(&self, ray: &MeshRay, t_max: f32) -> Option<Lanes> {
         // The bound is known to the compiler here, so indexing costs nothing below.
-        let [kx, ky, kz] = ray.axes.map(|k| k.min(2));
-        let [ox, oy, oz] = ray.o.map(Vec4::splat);
-        let [sx, sy, sz] = ray.shear.map(Vec4::splat);
+        let [kx, ky, kz] = ray.axes;
+        let (kx, ky, kz) = (kx.min(2), ky.min(2), kz.min(2));
+        let (ox, oy, oz) = (Vec4::splat(ray.o[0]), Vec4::splat(ray.o[1]), Vec4::splat(ray.o[2]));
+        let [sx, sy, sz] = ray.shear;
+        let (sx, sy, sz) = (Vec4::splat(sx), Vec4::splat(sy), Vec4::splat(sz));
 
         // Translate to the ray's origin, shear its direction onto the z axis.
         let [a, b, c] = &self.points;

@@ -1,0 +1,176 @@
+//! The parallelogram.
+
+use glam::{DVec2, DVec3};
+use luxel_sdk::Params;
+use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::num::{Bounds3, Ray, gamma64};
+use luxel_sdk::params::Fault;
+
+/// A flat rectangle, or parallelogram, given by its middle and two whole edges.
+///
+/// Its normal is `u` × `v`: with `u` to the right and `v` up it faces the viewer. Texture
+/// coordinates run from 0 to 1 along the edges.
+///
+/// ```scene
+/// shape rectangle "floor" { center = (0, 0, 0) m, u = (0, 0, 2) m, v = (2, 0, 0) m, material = white }
+/// ```
+#[derive(Params, Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct Rectangle {
+    /// The middle.
+    #[param(default = [0.0, 0.0, 0.0], unit = "m")]
+    pub(crate) center: DVec3,
+    /// One edge, from end to end.
+    #[param(required, unit = "m")]
+    pub(crate) u: DVec3,
+    /// The other edge, from end to end.
+    #[param(required, unit = "m")]
+    pub(crate) v: DVec3,
+    #[param(derived)]
+    normal: DVec3,
+    /// Vectors whose products with a point about the centre are its coordinates in edges.
+    #[param(derived)]
+    dual_u: DVec3,
+    #[param(derived)]
+    dual_v: DVec3,
+    #[param(derived)]
+    p_err: DVec3,
+    #[param(derived)]
+    area: f64,
+}
+
+impl Shape for Rectangle {
+    fn prepare(&mut self) {
+        let (u, v) = (self.u, self.v);
+        // Scaled to unit length first, so that squares of tiny and huge edges keep their digits.
+        let (u_length, v_length) = (u.length(), v.length());
+        let across = (u / u_length).cross(v / v_length);
+        let sin = across.length();
+        self.area = sin * u_length * v_length;
+        self.normal = across / sin;
+        self.dual_u = (v / v_length).cross(self.normal) / (sin * u_length);
+        self.dual_v = self.normal.cross(u / u_length) / (sin * v_length);
+        // The point: two products and two sums. The normal: about eight roundings, grown by
+        // 1 / sin where the edges are nearly parallel, tilt the plane about the centre.
+        let tilt = gamma64(8) / sin * 0.5 * (u_length + v_length);
+        self.p_err =
+            (self.center.abs() + 0.5 * (u.abs() + v.abs())) * gamma64(5) + self.normal.abs() * tilt;
+    }
+
+    fn check(&self) -> Result<(), Fault> {
+        // Sine of the angle between the edges: its own rounding error is three roundings.
+        let (u, v) = (self.u / self.u.length(), self.v / self.v.length());
+        if u.cross(v).length() > gamma64(4) {
+            return Ok(());
+        }
+        let message = format!("edges u = {} and v = {} span no area", self.u, self.v);
+        Err(Fault::range("v", message))
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        super::bounds_about(self.center, 0.5 * (self.u.abs() + self.v.abs()))
+    }
+
+    #[inline]
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let to_centre = self.center - ray.o;
+        let t = self.normal.dot(to_centre) / self.normal.dot(ray.d);
+        // An infinite or NaN t makes coordinates that are NaN and fail.
+        let q = ray.d * t - to_centre;
+        let at = DVec2::new(self.dual_u.dot(q), self.dual_v.dot(q));
+        let inside = at.x.abs() <= 0.5 && at.y.abs() <= 0.5;
+        (inside && t > 0.0 && t <= ray.t_max).then_some(Hit { t, at, face: 0 })
+    }
+
+    fn surface(&self, _ray: &Ray, hit: &Hit) -> Surface {
+        self.surface_at(hit.at)
+    }
+
+    fn area(&self) -> f64 {
+        self.area
+    }
+
+    fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let at = DVec2::new(f64::from(u[0]), f64::from(u[1])) - 0.5;
+        Some(ShapeSample { surface: self.surface_at(at), pdf: self.area.recip() })
+    }
+
+    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
+        self.area.recip()
+    }
+}
+
+impl Rectangle {
+    fn surface_at(&self, at: DVec2) -> Surface {
+        Surface {
+            p: self.center + (self.u * at.x + self.v * at.y),
+            p_err: self.p_err,
+            ng: self.normal,
+            ns: self.normal,
+            uv: at + 0.5,
+            dp_du: self.u,
+            dp_dv: self.v,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::testing::{check_convex, check_sampling, check_solid_angle, visible_area};
+
+    fn rectangle(center: DVec3, u: DVec3, v: DVec3) -> Rectangle {
+        let zero = DVec3::ZERO;
+        let (normal, dual_u, dual_v, p_err, area) = (zero, zero, zero, zero, 0.0);
+        let mut r = Rectangle { center, u, v, normal, dual_u, dual_v, p_err, area };
+        r.prepare();
+        r
+    }
+
+    #[test]
+    fn hits_and_offsets_hold_at_every_scale_and_distance() {
+        let (u, v) = (DVec3::new(1.0, 0.3, -0.2), DVec3::new(0.5, 2.0, 1.0));
+        for (center, scale) in [
+            (DVec3::ZERO, 1.0),
+            (DVec3::new(1e6, -1e6, 1e6), 1.0),
+            (DVec3::ZERO, 1e-9),
+            (DVec3::splat(-3.0), 1e6),
+        ] {
+            let r = rectangle(center, u * scale, v * scale);
+            let n = u.cross(v).normalize();
+            check_convex(&r, 11, |p| n.dot(p - center).abs());
+        }
+    }
+
+    #[test]
+    fn the_normal_is_u_cross_v_and_the_coordinates_run_along_the_edges() {
+        let r = rectangle(DVec3::new(0.0, 1.0, 0.0), DVec3::X * 2.0, DVec3::Z * 4.0);
+        let ray = Ray::new(DVec3::new(0.5, 3.0, -1.0), -DVec3::Y * 2.0);
+        let hit = r.intersect(&ray).unwrap();
+        let at = r.surface(&ray, &hit);
+        assert!((hit.t - 1.0).abs() <= f64::EPSILON);
+        assert_eq!((at.ng, at.p), (-DVec3::Y, DVec3::new(0.5, 1.0, -1.0)));
+        assert!((at.uv - DVec2::new(0.75, 0.25)).length() <= 4.0 * f64::EPSILON);
+        let edge = Ray::new(DVec3::new(1.0, 2.0, 2.0), -DVec3::Y);
+        assert!(r.intersect(&edge).is_some(), "the corner belongs to it");
+        assert!(r.intersect(&Ray::new(DVec3::new(0.0, 1.0, 0.0), DVec3::X)).is_none());
+    }
+
+    #[test]
+    fn samples_cover_the_area_and_the_solid_angle() {
+        let (u, v) = (DVec3::X * 2.0, DVec3::new(1.0, 1.5, 0.0));
+        let r = rectangle(DVec3::new(0.0, 0.0, -1.0), u, v);
+        check_sampling(&r, None, 12);
+        assert!((r.area() - 3.0).abs() <= 8.0 * f64::EPSILON);
+        assert!((visible_area(&r, None, 3, 13).mean - 3.0).abs() <= 8.0 * f64::EPSILON);
+        check_solid_angle(&r, DVec3::new(0.2, -0.1, 0.0), 14);
+    }
+
+    #[test]
+    fn edges_that_span_no_area_are_refused() {
+        let flat = rectangle(DVec3::ZERO, DVec3::ONE, DVec3::ONE * 3.0);
+        assert_eq!(flat.check().unwrap_err().field, "v");
+        assert!(rectangle(DVec3::ZERO, DVec3::ZERO, DVec3::X).check().is_err());
+        assert!(rectangle(DVec3::ZERO, DVec3::X * 1e-12, DVec3::Y * 1e12).check().is_ok());
+    }
+}

@@ -1,0 +1,129 @@
+//! What the tests of every analytic shape ask: hits, offsets, densities.
+
+use glam::DVec3;
+use luxel_sdk::kind::{Shape, Surface};
+use luxel_sdk::num::{Moments, Ray, gamma64, offset_origin};
+use luxel_sdk::sampling::{Rng, uniform_sphere};
+
+pub(super) fn direction(rng: &mut Rng) -> DVec3 {
+    uniform_sphere(rng.pair()).as_dvec3().normalize()
+}
+
+/// Checks what holds at every point of a surface.
+fn check_point(shape: &dyn Shape, at: &Surface) {
+    assert!(shape.bounds().contains(at.p), "{} outside {:?}", at.p, shape.bounds());
+    assert!((at.ng.length() - 1.0).abs() <= 8.0 * f64::EPSILON);
+    assert!(at.p_err.cmpge(DVec3::ZERO).all() && at.p_err.is_finite());
+    assert!(at.ns.dot(at.ng) > 0.0 && at.dp_du.length() > 0.0);
+    let n = at.dp_du.cross(at.dp_dv).normalize();
+    assert!(n.dot(at.ng) >= 1.0 - 1e-12, "{n} {}", at.ng);
+}
+
+/// Shoots rays at a surface that lies on one side of each of its tangent planes, and checks the
+/// hits, their residual (m) against their stated error, and that no ray away from it returns.
+pub(super) fn check_convex(shape: &dyn Shape, seed: u64, residual: impl Fn(DVec3) -> f64) {
+    let mut rng = Rng::new(seed);
+    let b = shape.bounds();
+    let (centre, size) = (b.centre(), b.diagonal().length());
+    let mut n_hits = 0;
+    for i in 0..4000 {
+        let target = centre + direction(&mut rng) * (0.3 * size * f64::from(rng.f32()));
+        // From nearby and from 10⁴ sizes away, with directions from short to long.
+        let far = if i % 2 == 0 { 1.5 } else { 1e4 };
+        let o = centre + direction(&mut rng) * (far * size);
+        let d = (target - o) * [1e-6, 1.0, 1e6][i % 3];
+        let ray = Ray::new(o, d);
+        let Some(hit) = shape.intersect(&ray) else { continue };
+        n_hits += 1;
+        let at = shape.surface(&ray, &hit);
+        check_point(shape, &at);
+        let miss = residual(at.p);
+        let slack = at.p_err.dot(at.ng.abs()) + gamma64(4) * (at.p.abs().dot(at.ng.abs()));
+        assert!(miss <= slack, "residual {miss} beyond {slack}");
+        let along = (ray.at(hit.t) - at.p).length();
+        assert!(along <= 1e-9 * far * size + gamma64(16) * o.length(), "{along} off the ray");
+        check_cut(shape, &ray, hit.t);
+        check_leaving(shape, &at, &mut rng);
+    }
+    assert!(n_hits > 400, "{n_hits} hits");
+}
+
+fn check_cut(shape: &dyn Shape, ray: &Ray, t: f64) {
+    assert!(shape.intersect(&Ray { t_max: t, ..*ray }).is_some(), "a hit at t_max counts");
+    assert!(shape.intersect(&Ray { t_max: t.next_down(), ..*ray }).is_none());
+    assert!(shape.intersect(&Ray { t_max: f64::NAN, ..*ray }).is_none());
+    assert!(shape.intersect(&Ray::new(ray.o, DVec3::NAN)).is_none());
+    assert!(shape.intersect(&Ray::new(DVec3::NAN, ray.d)).is_none());
+}
+
+fn check_leaving(shape: &dyn Shape, at: &Surface, rng: &mut Rng) {
+    for k in 0..4 {
+        let mut d = direction(rng);
+        if k == 3 {
+            // Grazing: a millionth of a radian above the surface.
+            d = d.cross(at.ng).normalize() + at.ng * 1e-6;
+        }
+        let out = if d.dot(at.ng) < 0.0 { -d } else { d };
+        let o = offset_origin(at.p, at.p_err, at.ng, out);
+        assert!(shape.intersect(&Ray::new(o, out)).is_none(), "{out} from {o} meets itself");
+        let o = offset_origin(at.p, at.p_err, at.ng, -out);
+        let inside = shape.intersect(&Ray::new(o, -out));
+        assert_eq!(inside.is_some(), shape.is_closed(), "{} from {o}", -out);
+    }
+}
+
+/// Checks that each sample lies on the shape and has the density that `pdf` states.
+pub(super) fn check_sampling(shape: &dyn Shape, from: Option<DVec3>, seed: u64) {
+    let mut rng = Rng::new(seed);
+    let corner = 1.0f32.next_down();
+    let corners = [[0.0, 0.0], [corner, 0.0], [0.0, corner], [corner, corner]];
+    let scattered: Vec<_> = (0..500).map(|_| rng.pair()).collect();
+    for u in corners.into_iter().chain(scattered) {
+        let Some(s) = shape.sample(from, u) else { continue };
+        check_point(shape, &s.surface);
+        assert!(s.pdf > 0.0 && s.pdf.is_finite());
+        let pdf = shape.pdf(from, &s.surface);
+        assert!((pdf / s.pdf - 1.0).abs() <= 1e-12, "{pdf} {}", s.pdf);
+    }
+}
+
+/// Mean of 1 / pdf: the area of the part of the surface that `sample` reaches.
+pub(super) fn visible_area(shape: &dyn Shape, from: Option<DVec3>, n: u32, seed: u64) -> Moments {
+    let mut rng = Rng::new(seed);
+    let mut m = Moments::default();
+    for _ in 0..n {
+        m.push(shape.sample(from, rng.pair()).map_or(0.0, |s| s.pdf.recip()));
+    }
+    m
+}
+
+/// The solid angle (sr) of what faces `from`, by samples of the surface.
+pub(super) fn solid_angle(shape: &dyn Shape, from: DVec3, n: u32, seed: u64) -> Moments {
+    let mut rng = Rng::new(seed);
+    let mut m = Moments::default();
+    for _ in 0..n {
+        m.push(shape.sample(Some(from), rng.pair()).map_or(0.0, |s| {
+            let to = from - s.surface.p;
+            let cos = (to.normalize().dot(s.surface.ng)).max(0.0);
+            cos / (to.length_squared() * s.pdf)
+        }));
+    }
+    m
+}
+
+/// Checks the solid angle by samples against that by rays in all directions.
+pub(super) fn check_solid_angle(shape: &dyn Shape, from: DVec3, seed: u64) {
+    let mut rng = Rng::new(seed);
+    let mut rays = Moments::default();
+    let full = 4.0 * std::f64::consts::PI;
+    for _ in 0..100_000 {
+        let ray = Ray::new(from, direction(&mut rng));
+        let seen =
+            shape.intersect(&ray).is_some_and(|hit| shape.surface(&ray, &hit).ng.dot(ray.d) < 0.0);
+        rays.push(if seen { full } else { 0.0 });
+    }
+    let samples = solid_angle(shape, from, 100_000, seed + 1);
+    let noise = rays.standard_error().hypot(samples.standard_error());
+    assert!((rays.mean - samples.mean).abs() <= 5.0 * noise, "{} {}", rays.mean, samples.mean);
+    assert!(rays.mean > 20.0 * noise, "too few rays hit to tell");
+}

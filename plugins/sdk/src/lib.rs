@@ -7,6 +7,7 @@ extern crate self as luxel_sdk;
 pub mod num;
 pub mod color;
 pub mod sampling;
+pub mod scattering;
 pub mod params;
 pub mod kind;
 pub mod abi;

@@ -3,8 +3,8 @@
 mod fresnel;
 mod ggx;
 
-pub use fresnel::{Fresnel, conductor_reflectance, dielectric_reflectance, refract};
-pub use ggx::Ggx;
+pub use fresnel::{conductor_reflectance, dielectric_reflectance, refract};
+pub use ggx::{Ggx, SMOOTH_ALPHA};
 
 use glam::Vec3;
 

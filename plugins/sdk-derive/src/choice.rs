@@ -15,6 +15,7 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
         return Err(Error::new_spanned(name, "a choice needs #[repr(u32)]: it is written by index"));
     }
     let mut words = vec![];
+    let variants = data.variants.iter().map(|variant| &variant.ident);
     for variant in &data.variants {
         if !variant.fields.is_empty() || variant.discriminant.is_some() {
             return Err(Error::new_spanned(variant, "no fields and no explicit number"));
@@ -22,6 +23,8 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
         words.push(snake_case(&variant.ident.to_string()));
     }
     Ok(quote! {
+        // The host makes variants by index, which the compiler cannot see.
+        const _: &[#name] = &[#(#name::#variants),*];
         // SAFETY: field-less variants count from 0, as checked by the derive.
         #[automatically_derived]
         #[expect(unsafe_code, reason = "the derive has checked that every index is a variant")]

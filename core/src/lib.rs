@@ -5,6 +5,9 @@
 pub mod accel;
 pub mod diag;
 pub mod files;
+pub mod film;
 pub mod object;
 pub mod registry;
+pub mod render;
 pub mod scene;
+pub mod stage;

@@ -12,7 +12,7 @@ const COSTS: Costs = Costs { node: 1.0, block: 1.3, max_leaf: 8 };
 
 /// Parts built before their results are joined: enough to keep threads busy, few enough that what
 /// they hold stays small beside the tree.
-const BATCH: usize = 32;
+const BATCH: usize = 128;
 
 /// Nodes and blocks, and where a ray starts.
 pub(super) struct Tree {

@@ -11,8 +11,8 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use super::node::{Bounds, narrow};
 use super::partition::{Part, Prim, halve};
 
-/// Binary levels a clustered part may have. With the at most 12 + 16 levels above it the stack
-/// need stays under 3·76 + 1 entries.
+/// Binary levels a clustered part may have. With the at most 12 + 18 levels above it the stack
+/// need stays at 3·78 + 4 entries or fewer, and a stack of 256 is always enough.
 const PART_DEPTH: usize = 48;
 
 /// Equal centres that a part may have before it is cut instead of clustered: clustering turns n

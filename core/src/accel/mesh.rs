@@ -65,12 +65,14 @@ impl MeshBvh {
         let dropped = indices.len() - prims.len();
         let Tree { nodes, blocks, root } = triangles.tree(prims);
         let size = root.map_or(Bounds { min: Vec3::ZERO, max: Vec3::ZERO }, |root| root.bounds);
+        // A node takes itself off the stack and puts at most four on it.
+        let stack = root.map_or(0, |root| 3 * root.depth + 4);
+        debug_assert!(stack <= 256, "builders bound the depth");
         Ok(Self {
             nodes,
             blocks,
             root: root.map(|root| root.child),
-            // A node takes itself off the stack and puts at most four on it.
-            stack: root.map_or(0, |root| 3 * root.depth + 4),
+            stack,
             unit,
             reach: size.min.abs().max(size.max.abs()).max_element(),
             bounds: root.map(|_| (size.min / unit, size.max / unit)),

@@ -257,7 +257,7 @@ fn broken_arrays_are_refused_with_their_place() {
 
 #[test]
 fn many_parts_agree_with_the_nearest_of_their_triangles() {
-    // 20·4⁶ triangles are cut into more than eight parts before they are clustered.
+    // 20·4⁶ triangles are cut into more than forty parts before they are clustered.
     let arrays = icosphere(6, 3.0);
     let tree = build(&arrays);
     let mut rng = Rng(8);

@@ -10,7 +10,10 @@ use obvhs::aabb::Aabb;
 use super::node::Bounds;
 
 /// Primitives that one clustering takes; larger parts are cut, and cut in parallel.
-pub(super) const PART: usize = 8192;
+///
+/// Fans and nested shapes cluster one pair at a time, in PART² time per part. On 200 000 triangles
+/// of that kind 8192 took 3.6 s and 2048 1.0 s; on ordinary meshes both build and trace alike.
+pub(super) const PART: usize = 2048;
 
 /// Cuts by area this deep, then by count, which bounds the depth at 12 + log₂ n.
 const AREA_DEPTH: usize = 12;

@@ -11,12 +11,12 @@ use luxel_sdk::params::{
     Default as Preset, Emission, Fault, File, Maybe, Param, Quantity, Role, Table, Text, Type,
 };
 
+use super::Object;
 use super::block::Block;
 use super::colour::{self, Amount, Lanes};
 use super::context::{self, Embedded, Reader};
 use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
 use super::resolve::SCRATCH;
-use super::Object;
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::registry::Registry;
@@ -225,20 +225,18 @@ impl<'a> Builder<'a> {
         if param.group == "amount" {
             return Ok(());
         }
-        let given = Quantity::ALL.iter().find_map(|(quantity, name, _)| {
-            match &node?.get(name)?.value {
+        let given =
+            Quantity::ALL.iter().find_map(|(quantity, name, _)| match &node?.get(name)?.value {
                 Value::Number(value, dimension) => {
                     Some(Amount { quantity: *quantity, value: *value, dimension: *dimension })
                 }
                 _ => None,
-            }
-        });
+            });
         let dimension = colour::dimension("");
         let amount = given.unwrap_or(Amount { quantity: Quantity::Scale, value: 1.0, dimension });
-        draft.block.write(param.offset, Emission {
-            spectrum: Spectrum::ZERO,
-            quantity: amount.quantity,
-        });
+        draft
+            .block
+            .write(param.offset, Emission { spectrum: Spectrum::ZERO, quantity: amount.quantity });
         match value {
             Some(Value::Node(id)) => {
                 if let Some(texture) = self.build(*id) {
@@ -298,12 +296,7 @@ impl Draft {
         }
     }
 
-    fn texture(
-        &mut self,
-        param: &Param,
-        texture: Arc<Object>,
-        factor: f32,
-    ) -> Result<(), String> {
+    fn texture(&mut self, param: &Param, texture: Arc<Object>, factor: f32) -> Result<(), String> {
         let target = match param.ty {
             Type::Float => Target::Float,
             Type::Vec3 => Target::Vec3,

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use luxel_sdk::color::{
-    Curve, K_CD, Observer, Outside, Spectrum, blackbody, emission_rgb, glass, illuminant,
-    ior_rgb, metal, reflectance_rgb, uplift_illuminant,
+    Curve, K_CD, Observer, Outside, Spectrum, blackbody, emission_rgb, glass, illuminant, ior_rgb,
+    metal, reflectance_rgb, uplift_illuminant,
 };
 use luxel_sdk::params::{Dimension, Quantity, Role, Unit};
 
@@ -77,9 +77,7 @@ pub(super) fn lanes(color: &Color, role: Role, mode: ColorMode) -> Result<Lanes,
     Ok(match (mode, role) {
         (ColorMode::Spectral, _) => Lanes::Curve(curve),
         (ColorMode::Rgb, Role::Ior) => Lanes::Constant(Spectrum::splat(curve.at(587.5618))),
-        (ColorMode::Rgb, Role::ComplexIor) => {
-            Lanes::Constant(Spectrum::from_rgb(ior_rgb(&curve)))
-        }
+        (ColorMode::Rgb, Role::ComplexIor) => Lanes::Constant(Spectrum::from_rgb(ior_rgb(&curve))),
         (ColorMode::Rgb, _) => Lanes::Constant(Spectrum::from_rgb(reflectance_rgb(&curve))),
     })
 }
@@ -175,4 +173,3 @@ pub(super) fn dimension(unit: &str) -> Dimension {
     }
     Unit::parse(unit).expect("units in schemas exist").dimension
 }
-

@@ -105,15 +105,6 @@ impl<'a> Resolved<'a> {
         /// As an importer.
         importer: Importer,
     }
-
-    /// As settings that the host reads itself.
-    ///
-    /// # Safety
-    /// `T` is the struct of the object's class.
-    pub(crate) unsafe fn settings<T>(self) -> &'a T {
-        // SAFETY: the caller names the right type; the struct is valid for 'a.
-        unsafe { &*self.at.cast::<T>() }
-    }
 }
 
 impl Object {

@@ -11,7 +11,7 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Param;
 
 pub use common::common_params;
-pub use film::FilmSettings;
+pub use film::{Display, FilmSettings};
 
 /// Every class that a scene may name.
 #[derive(Clone, Debug, Default)]

@@ -36,6 +36,9 @@ pub struct Node {
     pub label: Option<Arc<str>>,
     /// The parameters that were given, by name. Each fits its schema.
     pub params: Vec<Argument>,
+    /// For assets: materials that take the place of the file's own, by their name in the file
+    /// (characters that no identifier has are `_`).
+    pub overrides: Vec<(Arc<str>, NodeId)>,
     /// Where it is written.
     pub span: Span,
     /// Hash of kind, class and parameters, children by their hash.

@@ -46,6 +46,10 @@ pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
         text(&mut hasher, argument.name);
         hash_value(&mut hasher, &argument.value, &child);
     }
+    for (name, material) in &node.overrides {
+        text(&mut hasher, name);
+        hasher.update(&child(*material));
+    }
     *hasher.finalize().as_bytes()
 }
 

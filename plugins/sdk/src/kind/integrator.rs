@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec2};
 
-use super::Samples;
+use super::{Output, Samples};
 use crate::color::Spectrum;
 use crate::num::{Ray, offset_origin};
 use crate::params::Fault;
@@ -214,6 +214,12 @@ pub trait PathIntegrator: Send + Sync {
     /// What the host prepares at each arrival.
     fn wants(&self) -> Wants;
 
+    /// What the lanes of the light that it adds mean. Pictures that are not of light (normals,
+    /// depth) are RGB, whatever the colour mode.
+    fn output(&self) -> Output {
+        Output::Value
+    }
+
     /// A path begins: usually asks for the camera's ray.
     fn start(&self, job: &Job, ask: &mut Ask<'_>) -> Self::State;
 
@@ -259,6 +265,9 @@ pub trait Integrator: Send + Sync {
     /// What the host prepares at each arrival.
     fn wants(&self) -> Wants;
 
+    /// What the lanes of its light mean.
+    fn output(&self) -> Output;
+
     /// Room for `n` paths.
     fn lanes<'a>(&'a self, n: usize) -> Box<dyn Erased + 'a>;
 }
@@ -293,6 +302,10 @@ impl<I: PathIntegrator> Erased for States<'_, I> {
 impl<I: PathIntegrator> Integrator for I {
     fn wants(&self) -> Wants {
         PathIntegrator::wants(self)
+    }
+
+    fn output(&self) -> Output {
+        PathIntegrator::output(self)
     }
 
     fn lanes<'a>(&'a self, n: usize) -> Box<dyn Erased + 'a> {

@@ -1,0 +1,204 @@
+//! Shading an arrival as far as the integrator wants.
+
+use glam::{DVec3, Vec3};
+use luxel_sdk::color::Spectrum;
+use luxel_sdk::kind::{
+    Arrival, ArrivalKind, Direct, Lobe, Phase, Sample, Samples, Scatter, Surface, TexturePoint,
+    Wants,
+};
+use luxel_sdk::num::{Frame, Ray};
+
+use super::path::{Path, Standing};
+use crate::object::{ColorMode, Scratch};
+use crate::stage::{Origin, SceneHit, Skin, Stage};
+
+/// What is needed to shade: borrowed for one arrival.
+pub(super) struct Shader<'a, 's> {
+    pub(super) stage: &'a Stage,
+    pub(super) wants: Wants,
+    pub(super) path: &'a mut Path,
+    pub(super) samples: &'a mut Samples<'s>,
+    pub(super) scratch: &'a mut Scratch,
+    /// What the media between the last arrival and this one let through.
+    pub(super) flight: Spectrum,
+}
+
+impl Shader<'_, '_> {
+    /// The ray left the scene.
+    pub(super) fn escaped(self, ray: &Ray, steps: u32) -> Arrival {
+        let mut at = Arrival { wo: -ray.d, t: f64::INFINITY, steps, ..Arrival::default() };
+        at.material = u32::MAX;
+        if self.wants.has(Wants::EMISSION) {
+            self.scratch.reset();
+            let (le, pdf) = self.stage.escaped(ray.d, &self.path.lambda, self.scratch);
+            (at.le, at.le_pdf) = (le * self.flight, pdf);
+        }
+        at
+    }
+
+    /// The ray was scattered by a medium at `p`.
+    pub(super) fn medium(self, ray: &Ray, t: f64, phase: &dyn Phase) -> Arrival {
+        let p = ray.at(t);
+        let wo = -ray.d;
+        let kind = ArrivalKind::Medium;
+        let mut at = Arrival { kind, p, wo, t, material: u32::MAX, ..Arrival::default() };
+        self.path.on = None;
+        self.path.from = p;
+        self.scratch.reset();
+        let scratch: &Scratch = self.scratch;
+        if self.wants.has(Wants::DIRECT) {
+            let origin = Origin { p, p_err: DVec3::ZERO, ng: DVec3::ZERO };
+            let u = light_numbers(self.samples);
+            let found = self.stage.sample_light(&origin, &self.path.lambda, u, scratch);
+            at.direct = found.map(|found| {
+                let eval = phase.eval(wo.as_vec3(), found.ray.d.as_vec3());
+                let f_le = eval.f * found.le_over_pdf * self.flight;
+                Direct { ray: found.ray, f_le, pdf: found.pdf, f_pdf: eval.pdf }
+            });
+        }
+        if self.wants.has(Wants::SCATTER) {
+            let u = self.samples.next_2d();
+            at.scatter = phase.sample(wo.as_vec3(), u).map(|sample| Scatter {
+                weight: sample.weight * self.flight,
+                wi: sample.wi.as_dvec3().normalize(),
+                pdf: density(&sample),
+                eta: 1.0,
+            });
+        }
+        at
+    }
+
+    /// The ray met a surface.
+    pub(super) fn surface(mut self, ray: &Ray, hit: &SceneHit, steps: u32) -> Arrival {
+        let stage = self.stage;
+        let surface = stage.surface(ray, hit);
+        let placement = &stage.placements[hit.placement as usize];
+        let wo = -ray.d;
+        let mut at = Arrival {
+            kind: ArrivalKind::Surface,
+            p: surface.p,
+            p_err: surface.p_err,
+            ng: surface.ng,
+            ns: surface.ns,
+            uv: surface.uv.as_vec2(),
+            t: hit.hit.t,
+            wo,
+            material: u32::MAX,
+            steps,
+            ..Arrival::default()
+        };
+        if self.wants.has(Wants::EMISSION) && placement.light.is_some() {
+            self.scratch.reset();
+            let from = self.path.from;
+            let lambda = &self.path.lambda;
+            let (le, pdf) =
+                stage.surface_emission(placement, &surface, wo, from, lambda, self.scratch);
+            (at.le, at.le_pdf) = (le * self.flight, pdf);
+        }
+        self.path.from = surface.p;
+        let outside = wo.dot(surface.ng) > 0.0;
+        self.path.on = Some(Standing { placement: hit.placement, ng: surface.ng, outside });
+        if let Skin::Material(material) = placement.skin {
+            at.material = material;
+            self.scatter(&mut at, &surface, material);
+        }
+        at
+    }
+
+    /// The light sample and the scattering sample at a surface.
+    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, material: u32) {
+        if !self.wants.has(Wants::DIRECT) && !self.wants.has(Wants::SCATTER) {
+            return;
+        }
+        self.scratch.reset();
+        let texture = TexturePoint { p: at.p, uv: at.uv, lambda: self.path.lambda };
+        let scratch: &Scratch = self.scratch;
+        let object = &self.stage.materials[material as usize];
+        let material = object.resolve(&texture, scratch).material();
+        let local = Local::new(at, surface);
+        if self.wants.has(Wants::DIRECT) && !material.is_delta() {
+            let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };
+            let u = light_numbers(self.samples);
+            let found = self.stage.sample_light(&origin, &self.path.lambda, u, scratch);
+            at.direct = found.and_then(|found| {
+                let wi = local.of_world(found.ray.d)?;
+                let eval = material.eval(local.wo, wi);
+                let f_le = eval.f * found.le_over_pdf * self.flight;
+                (!f_le.is_black()).then_some(Direct {
+                    ray: found.ray,
+                    f_le,
+                    pdf: found.pdf,
+                    f_pdf: eval.pdf,
+                })
+            });
+        }
+        if self.wants.has(Wants::SCATTER) {
+            let [u0, u1] = self.samples.next_2d();
+            let u2 = self.samples.next_1d();
+            let sample = material.sample(local.wo, [u0, u1, u2]);
+            at.scatter = sample.and_then(|sample| self.scattered(&local, &sample));
+        }
+    }
+
+    fn scattered(&mut self, local: &Local, sample: &Sample) -> Option<Scatter> {
+        let wi = local.to_world(sample.wi)?;
+        let mut weight = sample.weight * self.flight;
+        if sample.lobe.has(Lobe::DISPERSIVE) && self.stage.mode == ColorMode::Spectral {
+            weight *= self.path.end_secondary();
+        }
+        let usable = !weight.is_black();
+        usable.then_some(Scatter { weight, wi, pdf: density(sample), eta: sample.eta })
+    }
+}
+
+/// A number to choose a light by, and two to choose light from it.
+fn light_numbers(samples: &mut Samples<'_>) -> [f32; 3] {
+    let choice = samples.next_1d();
+    let [u, v] = samples.next_2d();
+    [choice, u, v]
+}
+
+/// Density for comparing with light sampling, which cannot find a delta lobe.
+fn density(sample: &Sample) -> f32 {
+    if sample.lobe.has(Lobe::DELTA) { f32::INFINITY } else { sample.pdf }
+}
+
+/// The frame that a material sees.
+struct Local {
+    frame: Frame,
+    wo: Vec3,
+    ng: DVec3,
+    /// Whether `wo` is on the outside of the geometry.
+    outside: bool,
+}
+
+impl Local {
+    fn new(at: &Arrival, surface: &Surface) -> Self {
+        let outside = at.wo.dot(at.ng) > 0.0;
+        // Where the viewer is above one normal and below the other, the shading normal shows a side
+        // that the surface does not have: the geometric one counts.
+        let agree = (at.wo.dot(at.ns) > 0.0) == outside;
+        let normal = if agree { at.ns } else { at.ng };
+        let tangent = surface.dp_du.normalize_or_zero().as_vec3();
+        let frame = Frame::from_z_and_tangent(normal.as_vec3(), tangent);
+        Self { wo: frame.to_local(at.wo.as_vec3()), frame, ng: at.ng, outside }
+    }
+
+    /// A direction of the world; `None` where the normals disagree on its side, so that no light
+    /// leaks through a surface.
+    fn of_world(&self, wi: DVec3) -> Option<Vec3> {
+        let local = self.frame.to_local(wi.as_vec3());
+        self.sides_agree(wi, local).then_some(local)
+    }
+
+    fn to_world(&self, local: Vec3) -> Option<DVec3> {
+        let wi = self.frame.to_world(local).as_dvec3().normalize_or_zero();
+        (wi != DVec3::ZERO && self.sides_agree(wi, local)).then_some(wi)
+    }
+
+    fn sides_agree(&self, wi: DVec3, local: Vec3) -> bool {
+        let same_side = (wi.dot(self.ng) > 0.0) == self.outside;
+        let same_local = local.z * self.wo.z > 0.0;
+        same_side == same_local
+    }
+}

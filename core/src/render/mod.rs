@@ -1,0 +1,114 @@
+//! Passes over the picture's tiles, on several threads, with progress and cancellation.
+
+mod arrival;
+mod path;
+mod shadow;
+mod tile;
+
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use crate::film::{Film, Rect};
+use crate::stage::Stage;
+
+/// What is asked of a render beyond the scene.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Samples per pixel instead of the sampler's.
+    pub spp: Option<u32>,
+    /// Seed instead of the sampler's.
+    pub seed: Option<u32>,
+    /// The part of the picture that is rendered; all if absent.
+    pub crop: Option<Rect>,
+    /// Threads; as many as there are cores if absent.
+    pub threads: Option<NonZeroUsize>,
+}
+
+impl Options {
+    /// Samples per pixel for this stage.
+    pub fn samples(&self, stage: &Stage) -> u32 {
+        self.spp.unwrap_or_else(|| stage.sampler.fixed().sampler().samples())
+    }
+
+    /// The seed for this stage.
+    pub fn seed(&self, stage: &Stage) -> u32 {
+        self.seed.unwrap_or_else(|| stage.sampler.fixed().sampler().seed())
+    }
+}
+
+/// How a render is watched and stopped from another thread.
+#[derive(Debug, Default)]
+pub struct Control {
+    cancelled: AtomicBool,
+    samples: AtomicU64,
+}
+
+impl Control {
+    /// Asks for an end. What has been measured stays valid.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether an end was asked for.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Samples that have been added to pixels so far.
+    pub fn samples_done(&self) -> u64 {
+        self.samples.load(Ordering::Relaxed)
+    }
+}
+
+/// How far a render came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Every pixel has all its samples.
+    Complete,
+    /// It was cancelled; pixels have different numbers of samples, some perhaps none.
+    Cancelled,
+}
+
+/// Most samples of a pixel in one pass.
+const PASS: u32 = 16;
+
+/// Renders the stage.
+///
+/// The same stage, samples and seed give the same bits for any number of threads and any crop.
+///
+/// # Panics
+/// If the system gives no threads.
+pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Outcome) {
+    let size = stage.film.resolution;
+    let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
+    let mut film = Film::new(size, window);
+    let threads = options.threads.map_or(0, NonZeroUsize::get);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("the system gives threads");
+    let (spp, seed) = (options.samples(stage), options.seed(stage));
+    pool.install(|| {
+        let mut from = 0;
+        while from < spp && !control.is_cancelled() {
+            // Passes grow: a first picture comes soon, later ones cost little to gather.
+            let to = spp.min(from + from.clamp(1, PASS));
+            film.tiles_mut().par_iter_mut().for_each_init(
+                || tile::Worker::new(stage, seed),
+                |worker, tile| worker.pass(tile, from..to, control),
+            );
+            from = to;
+        }
+    });
+    let outcome = if control.is_cancelled() { Outcome::Cancelled } else { Outcome::Complete };
+    (film, outcome)
+}
+
+impl Control {
+    fn add(&self, samples: u64) {
+        self.samples.fetch_add(samples, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,63 @@
+//! What the host remembers of a path in flight.
+
+use glam::DVec3;
+use luxel_sdk::color::{Spectrum, Wavelengths};
+use luxel_sdk::num::Ray;
+
+use crate::stage::{MediumStack, Stage};
+
+/// One path, beside the integrator's own state.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    /// Which of the tile's samples it is.
+    pub(super) job: u32,
+    /// What its radiance counts for.
+    pub(super) weight: f32,
+    pub(super) lambda: Wavelengths,
+    /// Whether its other wavelengths have ended at a dispersive surface.
+    pub(super) ended: bool,
+    /// Where it last arrived: light sampling from there competes with the ray that goes on.
+    pub(super) from: DVec3,
+    /// The surface it stands on.
+    pub(super) on: Option<Standing>,
+    /// The media around it, on the side it came from.
+    pub(super) media: MediumStack,
+}
+
+/// A surface that a path stands on: enough to know which side a ray leaves to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Standing {
+    pub(super) placement: u32,
+    pub(super) ng: DVec3,
+    /// Whether the path came from the outside.
+    pub(super) outside: bool,
+}
+
+impl Path {
+    pub(super) fn new(job: u32, weight: f32, lambda: Wavelengths, stage: &Stage) -> Self {
+        let media = stage.camera_media;
+        Self { job, weight, lambda, ended: false, from: DVec3::ZERO, on: None, media }
+    }
+
+    /// The media around a ray that leaves from here.
+    pub(super) fn media_along(&self, ray: &Ray, stage: &Stage) -> MediumStack {
+        let mut media = self.media;
+        if stage.features.media
+            && let Some(on) = self.on
+            && (ray.d.dot(on.ng) > 0.0) != on.outside
+        {
+            stage.cross(&mut media, on.placement, ray.d, on.ng);
+        }
+        media
+    }
+
+    /// What a dispersive refraction leaves of the lanes: the first stands for all four.
+    ///
+    /// # Source
+    /// Wilkie et al. 2014, §4; PBR4 §4.5.4.
+    pub(super) fn end_secondary(&mut self) -> Spectrum {
+        let first = if self.ended { 1.0 } else { 4.0 };
+        self.ended = true;
+        Spectrum::new(first, 0.0, 0.0, 0.0)
+    }
+}

@@ -1,0 +1,311 @@
+//! One worker: keeps many paths of a tile in flight and adds their samples in order.
+
+use std::ops::Range;
+
+use glam::{DVec3, UVec2};
+use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
+use luxel_sdk::kind::{
+    Arrival, Erased, Host, Job, Lane, Output, Raster, Requests, SampleAt, Samples, TexturePoint,
+    Wants,
+};
+use luxel_sdk::num::{Ray, offset_origin};
+use luxel_sdk::sampling::hash_combine;
+
+use super::arrival::Shader;
+use super::path::Path;
+use super::{Control, shadow};
+use crate::film::Tile;
+use crate::object::{ColorMode, Scratch};
+use crate::stage::{Skin, Stage};
+
+/// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
+const LANES: usize = 128;
+
+/// What one thread needs; reused from tile to tile.
+pub(super) struct Worker<'s> {
+    stage: &'s Stage,
+    seed: u32,
+    wants: Wants,
+    states: Box<dyn Erased + 's>,
+    lanes: Vec<Lane<'s>>,
+    paths: Vec<Path>,
+    free: Vec<u32>,
+    /// What the running round answers, and what it asks for.
+    now: Requests,
+    next: Requests,
+    results: Vec<DVec3>,
+    scratch: Scratch,
+    /// For a medium's parameters while its phase function is asked.
+    medium_scratch: Scratch,
+    to_rgb: Develop,
+}
+
+impl<'s> Worker<'s> {
+    pub(super) fn new(stage: &'s Stage, seed: u32) -> Self {
+        let integrator = stage.integrator.fixed().integrator();
+        Self {
+            stage,
+            seed,
+            wants: integrator.wants(),
+            states: integrator.lanes(LANES),
+            lanes: Vec::with_capacity(LANES),
+            paths: Vec::with_capacity(LANES),
+            free: vec![],
+            now: Requests::default(),
+            next: Requests::default(),
+            results: vec![],
+            scratch: Scratch::default(),
+            medium_scratch: Scratch::default(),
+            to_rgb: Develop::new(stage, integrator.output()),
+        }
+    }
+
+    /// Adds the samples of a range to every pixel of a tile. A pass that is cancelled adds none.
+    pub(super) fn pass(&mut self, tile: &mut Tile, range: Range<u32>, control: &Control) {
+        let n_pixels = tile.rect.area();
+        let n = range.len();
+        self.results.clear();
+        self.results.resize(n_pixels * n, DVec3::ZERO);
+        let jobs = Jobs { origin: tile.rect.min, width: tile.rect.size.x, n_pixels, range };
+        if !self.run(&jobs, control) {
+            return;
+        }
+        for (pixel, estimate) in tile.pixels.iter_mut().enumerate() {
+            for sample in 0..n {
+                estimate.push(self.results[sample * n_pixels + pixel]);
+            }
+        }
+        control.add((n_pixels * n) as u64);
+    }
+
+    /// Rounds until every job is done; false when cancelled.
+    fn run(&mut self, jobs: &Jobs, control: &Control) -> bool {
+        let mut started = 0;
+        self.lanes.clear();
+        self.paths.clear();
+        self.free.clear();
+        self.next.clear();
+        loop {
+            self.refill(jobs, &mut started);
+            if self.next.rays.is_empty() && self.next.shadows.is_empty() {
+                return true;
+            }
+            if control.is_cancelled() {
+                return false;
+            }
+            std::mem::swap(&mut self.now, &mut self.next);
+            self.next.clear();
+            self.shadows();
+            self.arrivals();
+            self.retire();
+        }
+    }
+
+    /// Starts jobs in the lanes that are free.
+    fn refill(&mut self, jobs: &Jobs, started: &mut usize) {
+        while *started < jobs.len() {
+            let fresh = self.free.is_empty() && self.lanes.len() < LANES;
+            let lane = match self.free.pop() {
+                Some(lane) => lane as usize,
+                None if fresh => self.lanes.len(),
+                None => return,
+            };
+            let job = *started;
+            *started += 1;
+            let Some((path, samples, ray)) = self.begin(jobs, job) else {
+                if !fresh {
+                    self.free.push(lane as u32);
+                }
+                continue;
+            };
+            let state = Lane { at: Arrival::default(), l: Spectrum::ZERO, samples };
+            if fresh {
+                self.lanes.push(state);
+                self.paths.push(path);
+            } else {
+                self.lanes[lane] = state;
+                self.paths[lane] = path;
+            }
+            let asked = self.next.rays.len() + self.next.shadows.len();
+            let job = Job { ray, weight: path.weight };
+            self.states.start(lane as u32, &job, &mut self.lanes[lane].l, &mut self.next);
+            if asked == self.next.rays.len() + self.next.shadows.len() {
+                self.finish(lane);
+            }
+        }
+    }
+
+    /// The camera's ray of a job; `None` where the camera sees nothing.
+    fn begin(&self, jobs: &Jobs, job: usize) -> Option<(Path, Samples<'s>, Ray)> {
+        let (pixel, index) = jobs.at(job);
+        let stream = hash_combine(hash_combine(self.seed, pixel.x), pixel.y);
+        let source = self.stage.sampler.fixed().sampler();
+        let mut samples = Samples::new(source, SampleAt { stream, index, dimension: 0 });
+        let [dx, dy] = self.stage.filter.fixed().filter().sample(samples.next_2d());
+        let lens = samples.next_2d();
+        let lambda = Wavelengths::sample(samples.next_1d());
+        let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
+        let p = pixel.as_dvec2() + 0.5 + offset;
+        let raster = Raster { size: self.stage.film.resolution };
+        let camera = self.stage.camera.fixed().camera();
+        let found = camera.ray(raster, p, lens)?;
+        let mut path = Path::new(job as u32, found.weight, lambda, self.stage);
+        path.from = found.ray.o;
+        Some((path, samples, found.ray))
+    }
+
+    /// Light that depended on shadow rays, in asking order.
+    fn shadows(&mut self) {
+        for request in &self.now.shadows {
+            let lane = &mut self.lanes[request.lane as usize];
+            let path = &self.paths[request.lane as usize];
+            let media = path.media_along(&request.ray, self.stage);
+            let left = shadow::passes(
+                self.stage,
+                &request.ray,
+                media,
+                &path.lambda,
+                &mut lane.samples,
+                &mut self.scratch,
+            );
+            lane.l += request.l * left;
+        }
+    }
+
+    /// Traces the paths that go on, shades where they arrive, and asks what now.
+    fn arrivals(&mut self) {
+        for i in 0..self.now.rays.len() {
+            let (ray, lane) = self.now.rays[i];
+            self.lanes[lane as usize].at = self.fly(ray, lane as usize);
+            let host = StageHost(self.stage);
+            self.states.arrive_n(&mut self.lanes, &[lane], &host, &mut self.next);
+        }
+    }
+
+    /// Follows a ray through media and open surfaces to where the path arrives.
+    fn fly(&mut self, mut ray: Ray, lane: usize) -> Arrival {
+        let stage = self.stage;
+        let mut media = self.paths[lane].media_along(&ray, stage);
+        let (mut steps, mut flight) = (0, Spectrum::ONE);
+        loop {
+            let hit = stage.intersect(&ray, &mut steps);
+            let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
+            let path = &mut self.paths[lane];
+            let samples = &mut self.lanes[lane].samples;
+            let scratch = &mut self.scratch;
+            let wants = self.wants;
+            if let Some(medium) = media.current(stage.outside) {
+                self.medium_scratch.reset();
+                let uv = glam::Vec2::ZERO;
+                let at = TexturePoint { p: ray.o, uv, lambda: path.lambda };
+                let object = &stage.media[medium as usize];
+                let medium = object.resolve(&at, &self.medium_scratch).medium();
+                let free = medium.sample(&Ray { t_max, ..ray }, samples);
+                flight *= free.weight;
+                if let Some(t) = free.t {
+                    path.media = media;
+                    let shader = Shader { stage, wants, path, samples, scratch, flight };
+                    return shader.medium(&ray, t, medium.phase());
+                }
+            }
+            path.media = media;
+            let shader = Shader { stage, wants, path, samples, scratch, flight };
+            let Some(hit) = hit else { return shader.escaped(&ray, steps) };
+            if stage.placements[hit.placement as usize].skin != Skin::Open {
+                return shader.surface(&ray, &hit, steps);
+            }
+            let surface = stage.surface(&ray, &hit);
+            stage.cross(&mut media, hit.placement, ray.d, surface.ng);
+            let o = offset_origin(surface.p, surface.p_err, surface.ng, ray.d);
+            ray = Ray { o, t_max: ray.t_max - hit.hit.t, ..ray };
+        }
+    }
+
+    /// Lanes that were answered and asked for nothing more are done.
+    fn retire(&mut self) {
+        let mut busy = [false; LANES];
+        for (_, lane) in &self.next.rays {
+            busy[*lane as usize] = true;
+        }
+        for request in &self.next.shadows {
+            busy[request.lane as usize] = true;
+        }
+        let mut seen = [false; LANES];
+        for i in 0..self.now.shadows.len() + self.now.rays.len() {
+            let lane = match i.checked_sub(self.now.shadows.len()) {
+                Some(i) => self.now.rays[i].1,
+                None => self.now.shadows[i].lane,
+            } as usize;
+            if !busy[lane] && !seen[lane] {
+                seen[lane] = true;
+                self.finish(lane);
+            }
+        }
+    }
+
+    /// A path has ended: its light becomes a sample, its lane is free.
+    fn finish(&mut self, lane: usize) {
+        let path = &self.paths[lane];
+        let l = self.lanes[lane].l * path.weight;
+        self.results[path.job as usize] = self.to_rgb.sample(l, &path.lambda);
+        self.free.push(lane as u32);
+    }
+}
+
+/// The samples of one pass over a tile: sample by sample, each over all pixels.
+struct Jobs {
+    origin: UVec2,
+    width: u32,
+    n_pixels: usize,
+    range: Range<u32>,
+}
+
+impl Jobs {
+    fn len(&self) -> usize {
+        self.n_pixels * self.range.len()
+    }
+
+    /// The pixel and the index of its sample.
+    fn at(&self, job: usize) -> (UVec2, u32) {
+        let (sample, pixel) = (job / self.n_pixels, (job % self.n_pixels) as u32);
+        let offset = UVec2::new(pixel % self.width, pixel / self.width);
+        (self.origin + offset, self.range.start + sample as u32)
+    }
+}
+
+/// From lanes to linear sRGB.
+struct Develop {
+    spectral: bool,
+    observer: Observer,
+    from_xyz: glam::DMat3,
+}
+
+impl Develop {
+    fn new(stage: &Stage, output: Output) -> Self {
+        Self {
+            spectral: stage.mode == ColorMode::Spectral && output == Output::Value,
+            observer: stage.film.observer,
+            from_xyz: RgbSpace::LinearSrgb.from_xyz(),
+        }
+    }
+
+    fn sample(&self, l: Spectrum, lambda: &Wavelengths) -> DVec3 {
+        match self.spectral {
+            true => self.from_xyz * to_xyz(self.observer, l, lambda),
+            false => l.rgb().as_dvec3(),
+        }
+    }
+}
+
+/// What an integrator may ask the host while a path arrives.
+struct StageHost<'a>(&'a Stage);
+
+impl Host for StageHost<'_> {
+    fn occluded(&self, ray: &Ray) -> bool {
+        self.0.occluded(ray)
+    }
+
+    fn scene_sphere(&self) -> (DVec3, f64) {
+        self.0.sphere
+    }
+}

@@ -1,0 +1,401 @@
+//! From a scene to a stage.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use luxel_sdk::kind::{Kind, LightForm};
+use luxel_sdk::num::{Bounds3, Transform};
+use luxel_sdk::sampling::Alias;
+
+use super::flatten::{Flat, flatten};
+use super::lights::LightSource;
+use super::{Cache, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage};
+use super::{closed, features, import};
+use crate::accel::{BuildError, MeshBvh, TopBvh};
+use crate::diag::Diagnostic;
+use crate::files::Files;
+use crate::object::{Builder, ColorMode, Object, Objects};
+use crate::registry::Registry;
+use crate::scene::{Hash, NodeId, Scene, Value};
+
+/// A stage with the warnings that arose.
+#[derive(Debug)]
+pub struct Built {
+    /// The stage.
+    pub stage: Stage,
+    /// Warnings.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Makes a scene ready to trace, keeping what has not changed since `before`.
+///
+/// # Errors
+/// Everything that was found wrong, warnings included.
+pub fn build(
+    scene: &Scene,
+    registry: &Registry,
+    files: &dyn Files,
+    before: Option<&Stage>,
+) -> Result<Built, Vec<Diagnostic>> {
+    let (scene, mut diagnostics) = import::expand(scene, registry, files);
+    let film = Film::of_node(scene.film.map(|id| scene.node(id)));
+    let mode = features::color_mode(&scene, film.color);
+    let none = Cache::default();
+    let cache = before.map_or(&none, |stage| &stage.cache);
+    let builder = Builder::new(registry, &scene, files, mode, &cache.objects);
+    let mut maker = Maker { scene: &scene, builder, cache, made: Made::default() };
+    match flatten(&scene) {
+        Ok(flats) => flats.iter().for_each(|flat| maker.place(flat)),
+        Err(diagnostic) => diagnostics.push(*diagnostic),
+    }
+    let settings = maker.settings();
+    diagnostics.append(&mut maker.builder.diagnostics);
+    let (made, objects) = (maker.made, maker.builder.objects);
+    match settings {
+        Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
+            let stage = finish(made, settings, objects, (scene, film, mode));
+            Ok(Built { stage, warnings: diagnostics })
+        }
+        _ => Err(diagnostics),
+    }
+}
+
+/// The objects that a scene has one of.
+struct Settings {
+    camera: Arc<Object>,
+    integrator: Arc<Object>,
+    sampler: Arc<Object>,
+    filter: Arc<Object>,
+    outside: Option<u32>,
+}
+
+/// Lists in the making, each with the index of what is already in it.
+#[derive(Default)]
+struct Made {
+    geometries: Vec<Arc<Geometry>>,
+    geometry_of: BTreeMap<NodeId, u32>,
+    meshes: BTreeMap<Hash, (Arc<Object>, Arc<Geometry>)>,
+    placements: Vec<Placement>,
+    materials: Vec<Arc<Object>>,
+    material_nodes: Vec<NodeId>,
+    material_of: BTreeMap<NodeId, u32>,
+    media: Vec<Arc<Object>>,
+    medium_of: BTreeMap<NodeId, u32>,
+    lights: Vec<LightSource>,
+    default_material: Option<u32>,
+}
+
+struct Maker<'a> {
+    scene: &'a Scene,
+    builder: Builder<'a>,
+    cache: &'a Cache,
+    made: Made,
+}
+
+impl Maker<'_> {
+    fn place(&mut self, flat: &Flat) {
+        if self.scene.node(flat.node).kind == Kind::Shape {
+            self.shape(flat, flat.node, None);
+        } else {
+            self.light(flat);
+        }
+    }
+
+    fn light(&mut self, flat: &Flat) {
+        let Some(object) = self.builder.build(flat.node) else { return };
+        if object.fixed().light().form() == LightForm::Surface {
+            let shape = self.scene.node(flat.node).get("shape").map(|argument| &argument.value);
+            if let Some(Value::Node(shape)) = shape {
+                self.shape(flat, *shape, Some(object));
+            }
+            return;
+        }
+        let transform = self.transform(flat);
+        if let Some(transform) = transform {
+            self.made.lights.push(LightSource::Free { object, transform });
+        }
+    }
+
+    /// `Some(None)` where there is nothing to transform, `None` when the transform is singular.
+    #[expect(clippy::option_option, reason = "absent and faulty are different answers")]
+    fn transform(&mut self, flat: &Flat) -> Option<Option<Box<Transform>>> {
+        if flat.transform == glam::DAffine3::IDENTITY {
+            return Some(None);
+        }
+        let Some(transform) = Transform::new(flat.transform) else {
+            let message = "the transform is singular: it flattens space or is not finite";
+            self.builder.diagnostics.push(Diagnostic::error("E0412", flat.span, message));
+            return None;
+        };
+        Some(Some(Box::new(transform)))
+    }
+
+    fn shape(&mut self, flat: &Flat, shape: NodeId, light: Option<Arc<Object>>) {
+        let Some(geometry) = self.geometry(shape) else { return };
+        let Some(transform) = self.transform(flat) else { return };
+        let interior = self.interior(shape, flat.material);
+        let skin = self.skin(shape, flat.material, light.is_some(), interior.is_some());
+        let Some(skin) = skin else { return };
+        let closed = self.made.geometries[geometry as usize].is_closed();
+        let placement = Placement {
+            geometry,
+            transform,
+            skin,
+            light: light.is_some().then_some(self.made.lights.len() as u32),
+            interior,
+            closed,
+            node: shape,
+        };
+        if let Some(object) = light {
+            self.shining(object, &placement);
+        }
+        self.made.placements.push(placement);
+    }
+
+    /// The source of light that a shining placement is.
+    fn shining(&mut self, object: Arc<Object>, placement: &Placement) {
+        let index = self.made.placements.len() as u32;
+        let geometry = &self.made.geometries[placement.geometry as usize];
+        let (area, triangles) = match &**geometry {
+            Geometry::Mesh(mesh) => {
+                let mesh = mesh.triangles();
+                let area = |i: u32| {
+                    let [a, b, c] = mesh.corners(i);
+                    let normal = (b - a).cross(c - a);
+                    let area = normal.length() / 2.0;
+                    if area > 0.0 {
+                        area * placement.area_scale(normal / (2.0 * area))
+                    } else {
+                        0.0
+                    }
+                };
+                let areas: Vec<f64> = (0..mesh.indices.len() as u32).map(area).collect();
+                (areas.iter().sum(), Alias::new(&areas).ok())
+            }
+            Geometry::Analytic(shape) => (world_area(shape, placement), None),
+        };
+        self.made.lights.push(LightSource::Surface { object, placement: index, area, triangles });
+    }
+
+    fn geometry(&mut self, id: NodeId) -> Option<u32> {
+        if let Some(index) = self.made.geometry_of.get(&id) {
+            return Some(*index);
+        }
+        let object = self.builder.build(id)?;
+        let hash = self.scene.node(id).hash;
+        let geometry = match self.cache.meshes.get(&hash) {
+            // The object itself is kept only where no file that it read has changed.
+            Some((kept, geometry)) if Arc::ptr_eq(kept, &object) => geometry.clone(),
+            _ => Arc::new(self.new_geometry(id, &object)?),
+        };
+        self.made.meshes.insert(hash, (object, geometry.clone()));
+        self.made.geometries.push(geometry);
+        let index = self.made.geometries.len() as u32 - 1;
+        self.made.geometry_of.insert(id, index);
+        Some(index)
+    }
+
+    fn new_geometry(&mut self, id: NodeId, object: &Arc<Object>) -> Option<Geometry> {
+        let shape = object.fixed().shape();
+        let Some(triangles) = shape.mesh() else { return Some(Geometry::Analytic(object.clone())) };
+        let span = self.scene.node(id).span;
+        match MeshBvh::build(&triangles.points, &triangles.indices) {
+            Ok(bvh) => {
+                if bvh.dropped() > 0 {
+                    let message = format!("{} triangles without area left out", bvh.dropped());
+                    self.builder.diagnostics.push(Diagnostic::warning("E0418", span, message));
+                }
+                let closed = closed::is_closed(triangles);
+                Some(Geometry::Mesh(Arc::new(Mesh::new(object.clone(), bvh, closed))))
+            }
+            Err(error) => {
+                self.builder.diagnostics.push(mesh_error(error, span));
+                None
+            }
+        }
+    }
+
+    fn child(&self, id: NodeId, name: &str) -> Option<NodeId> {
+        match self.scene.node(id).get(name)?.value {
+            Value::Node(child) => Some(child),
+            _ => None,
+        }
+    }
+
+    fn interior(&mut self, shape: NodeId, inherited: Option<NodeId>) -> Option<u32> {
+        let material = self.child(shape, "material").or(inherited);
+        let medium = self
+            .child(shape, "interior")
+            .or_else(|| material.and_then(|material| self.child(material, "interior")))?;
+        self.medium(medium)
+    }
+
+    fn medium(&mut self, id: NodeId) -> Option<u32> {
+        if let Some(index) = self.made.medium_of.get(&id) {
+            return Some(*index);
+        }
+        let object = self.builder.build(id)?;
+        self.made.media.push(object);
+        let index = self.made.media.len() as u32 - 1;
+        self.made.medium_of.insert(id, index);
+        Some(index)
+    }
+
+    fn skin(
+        &mut self,
+        shape: NodeId,
+        inherited: Option<NodeId>,
+        shines: bool,
+        filled: bool,
+    ) -> Option<Skin> {
+        let Some(id) = self.child(shape, "material").or(inherited) else {
+            return Some(match (shines, filled) {
+                (true, _) => Skin::Black,
+                (false, true) => Skin::Open,
+                (false, false) => Skin::Material(self.default_material()),
+            });
+        };
+        if let Some(index) = self.made.material_of.get(&id) {
+            return Some(Skin::Material(*index));
+        }
+        let object = self.builder.build(id)?;
+        let index = self.push_material(object, id);
+        self.made.material_of.insert(id, index);
+        Some(Skin::Material(index))
+    }
+
+    fn push_material(&mut self, object: Arc<Object>, node: NodeId) -> u32 {
+        self.made.materials.push(object);
+        self.made.material_nodes.push(node);
+        self.made.materials.len() as u32 - 1
+    }
+
+    /// What a shape without a material looks like: matt, its default grey.
+    fn default_material(&mut self) -> u32 {
+        if let Some(index) = self.made.default_material {
+            return index;
+        }
+        let object = self.builder.preset(Kind::Material, "diffuse");
+        let index = self.push_material(object, NodeId(u32::MAX));
+        self.made.default_material = Some(index);
+        index
+    }
+
+    fn settings(&mut self) -> Option<Settings> {
+        let scene = self.scene;
+        let camera = match scene.camera {
+            Some(id) => self.builder.build(id),
+            None => {
+                let error = Diagnostic::unplaced("E0409", "the scene has no camera")
+                    .help("add `camera perspective { look = look_at(from = …, to = …, up = …) }`");
+                self.builder.diagnostics.push(error);
+                None
+            }
+        };
+        let outside = scene.medium.and_then(|id| self.medium(id));
+        let mut pick = |id: Option<NodeId>, kind, name| match id {
+            Some(id) => self.builder.build(id),
+            None => Some(self.builder.preset(kind, name)),
+        };
+        let integrator = pick(scene.integrator, Kind::Integrator, "path");
+        let sampler = pick(scene.sampler, Kind::Sampler, "sobol");
+        let filter = pick(scene.filter, Kind::Filter, "blackman_harris");
+        Some(Settings {
+            camera: camera?,
+            integrator: integrator?,
+            sampler: sampler?,
+            filter: filter?,
+            outside,
+        })
+    }
+}
+
+/// Area of an analytic shape in the world. Exact for similarities; else the mean scale over points
+/// that the shape samples uniformly.
+fn world_area(shape: &Object, placement: &Placement) -> f64 {
+    let shape = shape.fixed().shape();
+    let Some(transform) = &placement.transform else { return shape.area() };
+    if transform.is_rigid_or_uniform() {
+        return shape.area() * transform.area_scale(DVec3::Z);
+    }
+    const N: u32 = 1024;
+    let scales = (0..N).filter_map(|i| {
+        let u = luxel_sdk::sampling::sobol_owen_2d(i, 0x5eed);
+        Some(transform.area_scale(shape.sample(None, u)?.surface.ng))
+    });
+    shape.area() * scales.sum::<f64>() / f64::from(N)
+}
+
+fn mesh_error(error: BuildError, span: crate::diag::Span) -> Diagnostic {
+    Diagnostic::error("E0411", span, error.to_string())
+}
+
+fn finish(
+    made: Made,
+    settings: Settings,
+    objects: Objects,
+    (scene, film, mode): (Scene, Film, ColorMode),
+) -> Stage {
+    let boxes: Vec<_> = made
+        .placements
+        .iter()
+        .map(|placement| {
+            let local = made.geometries[placement.geometry as usize].bounds();
+            let world = match &placement.transform {
+                Some(transform) => local.transform(transform.affine()),
+                None => local,
+            };
+            (world.min, world.max)
+        })
+        .collect();
+    let all = boxes.iter().fold(Bounds3::EMPTY, |all, (min, max)| {
+        let bounds = Bounds3 { min: *min, max: *max };
+        if bounds.is_empty() || !bounds.diagonal().is_finite() { all } else { all.union(bounds) }
+    });
+    let sphere = if all.is_empty() {
+        (DVec3::ZERO, 1.0)
+    } else {
+        (all.centre(), (all.diagonal().length() / 2.0).max(f64::MIN_POSITIVE))
+    };
+    let features = Features {
+        media: !made.media.is_empty(),
+        open_surfaces: made.placements.iter().any(|placement| placement.skin == Skin::Open),
+    };
+    let mut stage = Stage {
+        lights: Lights::new(made.lights, sphere.1, mode),
+        top: TopBvh::build(&boxes),
+        geometries: made.geometries,
+        placements: made.placements,
+        materials: made.materials,
+        material_nodes: made.material_nodes,
+        media: made.media,
+        outside: settings.outside,
+        camera: settings.camera,
+        integrator: settings.integrator,
+        sampler: settings.sampler,
+        filter: settings.filter,
+        camera_media: MediumStack::default(),
+        cache: Cache { objects, meshes: made.meshes },
+        scene,
+        film,
+        mode,
+        features,
+        sphere,
+    };
+    stage.camera_media = camera_media(&stage);
+    stage
+}
+
+/// The media around the camera, looked for only where there are any.
+fn camera_media(stage: &Stage) -> MediumStack {
+    if !stage.features.media {
+        return MediumStack::default();
+    }
+    let raster = luxel_sdk::kind::Raster { size: stage.film.resolution };
+    let centre = stage.film.resolution.as_dvec2() / 2.0;
+    match stage.camera.fixed().camera().ray(raster, centre, [0.5; 2]) {
+        Some(found) => stage.media_at(found.ray.o),
+        None => MediumStack::default(),
+    }
+}

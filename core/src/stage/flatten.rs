@@ -1,0 +1,57 @@
+//! Groups in their places into one list, with transforms multiplied out.
+
+use glam::DAffine3;
+use luxel_sdk::kind::Kind;
+
+use crate::diag::Diagnostic;
+use crate::scene::{Group, NodeId, Scene, Target};
+
+/// A node in the world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flat {
+    pub(super) node: NodeId,
+    pub(super) transform: DAffine3,
+    /// The material of the nearest placement or group that gives one.
+    pub(super) material: Option<NodeId>,
+    /// Where the outermost placement is written.
+    pub(super) span: crate::diag::Span,
+}
+
+/// Most placements that a stage holds.
+const LIMIT: usize = 100_000_000;
+
+/// Every shape and light of the scene in the world.
+///
+/// # Errors
+/// E0501 when there are too many.
+pub(super) fn flatten(scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
+    let mut out = vec![];
+    walk(scene, &scene.root, DAffine3::IDENTITY, None, &mut out)?;
+    Ok(out)
+}
+
+fn walk(
+    scene: &Scene,
+    group: &Group,
+    transform: DAffine3,
+    material: Option<NodeId>,
+    out: &mut Vec<Flat>,
+) -> Result<(), Box<Diagnostic>> {
+    for item in &group.items {
+        let transform = transform * item.transform;
+        let material = item.material.or(material);
+        match item.target {
+            Target::Group(id) => walk(scene, scene.group(id), transform, material, out)?,
+            Target::Node(node) => {
+                if matches!(scene.node(node).kind, Kind::Shape | Kind::Light) {
+                    out.push(Flat { node, transform, material, span: item.span });
+                }
+            }
+        }
+        if out.len() > LIMIT {
+            let message = format!("more than {LIMIT} instances");
+            return Err(Box::new(Diagnostic::error("E0501", item.span, message)));
+        }
+    }
+    Ok(())
+}

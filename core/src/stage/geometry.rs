@@ -1,0 +1,180 @@
+//! Geometry in its own frame: analytic shapes, and meshes with their tree.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
+use luxel_sdk::num::{Bounds3, Ray, gamma32};
+
+use crate::accel::MeshBvh;
+use crate::object::Object;
+
+/// What a placement places. Shared by every placement of the same shape.
+#[derive(Debug)]
+pub enum Geometry {
+    /// A shape that intersects itself, in double precision.
+    Analytic(Arc<Object>),
+    /// Triangles and their tree.
+    Mesh(Arc<Mesh>),
+}
+
+/// A mesh with its tree.
+#[derive(Debug)]
+pub struct Mesh {
+    /// Keeps the triangles.
+    object: Arc<Object>,
+    bvh: MeshBvh,
+    /// Whether every edge joins exactly two triangles that run along it in opposite directions.
+    closed: bool,
+}
+
+impl Mesh {
+    /// Takes over the triangles of a shape and its finished tree.
+    pub fn new(object: Arc<Object>, bvh: MeshBvh, closed: bool) -> Self {
+        Self { object, bvh, closed }
+    }
+
+    /// The triangles.
+    ///
+    /// # Panics
+    /// Never: only shapes that hand over triangles become meshes.
+    pub fn triangles(&self) -> &TriangleMesh {
+        self.object.fixed().shape().mesh().expect("the shape handed its triangles over")
+    }
+
+    /// Triangles without area that were left out of the tree.
+    pub fn dropped(&self) -> usize {
+        self.bvh.dropped()
+    }
+
+    /// Bytes of the tree.
+    pub fn bytes(&self) -> usize {
+        self.bvh.bytes()
+    }
+
+    /// The local ray in single precision about the mesh's centre, its origin moved to where it
+    /// enters the mesh's box so that nothing is lost by rounding.
+    fn narrow(&self, ray: &Ray, t_enter: f64) -> (glam::Vec3, glam::Vec3, f32) {
+        let o = ray.at(t_enter) - self.triangles().centre;
+        let t_max = ((ray.t_max - t_enter) as f32).next_up();
+        (o.as_vec3(), ray.d.as_vec3(), t_max)
+    }
+
+    fn intersect(&self, ray: &Ray, t_enter: f64, steps: &mut u32) -> Option<Hit> {
+        let (o, d, t_max) = self.narrow(ray, t_enter);
+        let (hit, n) = self.bvh.intersect_counted(o, d, t_max);
+        *steps += n;
+        let hit = hit?;
+        let t = t_enter + f64::from(hit.t);
+        let at = DVec2::new(f64::from(hit.b1), f64::from(hit.b2));
+        (t <= ray.t_max).then_some(Hit { t, at, face: hit.triangle })
+    }
+
+    fn occluded(&self, ray: &Ray, t_enter: f64) -> bool {
+        let (o, d, t_max) = self.narrow(ray, t_enter);
+        self.bvh.occluded(o, d, t_max)
+    }
+
+    /// The point of a triangle with barycentrics `at` of its second and third corner.
+    pub fn surface(&self, triangle: u32, at: DVec2) -> Surface {
+        let mesh = self.triangles();
+        let corners = mesh.indices[triangle as usize].map(|i| i as usize);
+        let [a, b, c] = corners.map(|i| mesh.points[i].as_dvec3());
+        let weights = [1.0 - at.x - at.y, at.x, at.y];
+        let about = a * weights[0] + b * weights[1] + c * weights[2];
+        // The next ray's origin is rounded to single precision about the centre: γ(7) covers the
+        // sum of three products and that rounding (PBR4 §6.8.5).
+        let spread =
+            a.abs() * weights[0].abs() + b.abs() * weights[1].abs() + c.abs() * weights[2].abs();
+        let p = about + mesh.centre;
+        let p_err = spread * f64::from(gamma32(7)) + p.abs() * f64::EPSILON;
+        let ng = (b - a).cross(c - a).normalize_or(DVec3::Z);
+        let ns = shading_normal(mesh, corners, weights, ng);
+        let (uv, dp_du, dp_dv) = parametrisation(mesh, corners, [a, b, c], weights);
+        Surface { p, p_err, ng, ns, uv, dp_du, dp_dv }
+    }
+}
+
+fn shading_normal(mesh: &TriangleMesh, corners: [usize; 3], w: [f64; 3], ng: DVec3) -> DVec3 {
+    if mesh.normals.is_empty() {
+        return ng;
+    }
+    let [a, b, c] = corners.map(|i| mesh.normals[i].as_dvec3());
+    let ns = (a * w[0] + b * w[1] + c * w[2]).normalize_or(ng);
+    if ns.dot(ng) < 0.0 { -ns } else { ns }
+}
+
+/// Surface coordinates and the derivatives of the point by them (PBR4 §6.5.3).
+fn parametrisation(
+    mesh: &TriangleMesh,
+    corners: [usize; 3],
+    [a, b, c]: [DVec3; 3],
+    w: [f64; 3],
+) -> (DVec2, DVec3, DVec3) {
+    let barycentric = (DVec2::new(w[1], w[2]), b - a, c - a);
+    if mesh.uvs.is_empty() {
+        return barycentric;
+    }
+    let [ta, tb, tc] = corners.map(|i| mesh.uvs[i].as_dvec2());
+    let uv = ta * w[0] + tb * w[1] + tc * w[2];
+    let (d1, d2) = (tb - ta, tc - ta);
+    let det = d1.perp_dot(d2);
+    let dp_du = ((b - a) * d2.y - (c - a) * d1.y) / det;
+    let dp_dv = ((c - a) * d1.x - (b - a) * d2.x) / det;
+    if dp_du.is_finite() && dp_dv.is_finite() && dp_du != DVec3::ZERO {
+        (uv, dp_du, dp_dv)
+    } else {
+        (uv, barycentric.1, barycentric.2)
+    }
+}
+
+impl Geometry {
+    /// A box that holds every point, in the geometry's frame.
+    pub fn bounds(&self) -> Bounds3 {
+        match self {
+            Self::Analytic(object) => object.fixed().shape().bounds(),
+            Self::Mesh(mesh) => match mesh.bvh.bounds() {
+                Some((min, max)) => {
+                    let centre = mesh.triangles().centre;
+                    let widen = |p: DVec3, towards: f64| {
+                        p + centre + (p.abs() + centre.abs()) * (towards * f64::EPSILON)
+                    };
+                    Bounds3 { min: widen(min.as_dvec3(), -1.0), max: widen(max.as_dvec3(), 1.0) }
+                }
+                None => Bounds3::EMPTY,
+            },
+        }
+    }
+
+    /// Whether it encloses a volume.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Analytic(object) => object.fixed().shape().is_closed(),
+            Self::Mesh(mesh) => mesh.closed,
+        }
+    }
+
+    /// The nearest hit of a ray in the geometry's frame; it enters the box at `t_enter`.
+    pub fn intersect(&self, ray: &Ray, t_enter: f64, steps: &mut u32) -> Option<Hit> {
+        match self {
+            Self::Analytic(object) => object.fixed().shape().intersect(ray),
+            Self::Mesh(mesh) => mesh.intersect(ray, t_enter, steps),
+        }
+    }
+
+    /// Whether anything is hit.
+    pub fn occluded(&self, ray: &Ray, t_enter: f64) -> bool {
+        match self {
+            Self::Analytic(object) => object.fixed().shape().intersect(ray).is_some(),
+            Self::Mesh(mesh) => mesh.occluded(ray, t_enter),
+        }
+    }
+
+    /// The point that a hit names, in the geometry's frame.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        match self {
+            Self::Analytic(object) => object.fixed().shape().surface(ray, hit),
+            Self::Mesh(mesh) => mesh.surface(hit.face, hit.at),
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! Which light is looked for, and what it sends.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3, Vec2};
+use luxel_sdk::color::{Spectrum, Wavelengths, uplift_illuminant};
+use luxel_sdk::kind::{Light, LightQuery, Output, Surface, TexturePoint};
+use luxel_sdk::num::{Ray, Transform, offset_origin};
+use luxel_sdk::sampling::Alias;
+
+use super::{Geometry, Placement, Stage};
+use crate::object::{ColorMode, Object, Scratch};
+
+/// A source of light of the stage.
+#[derive(Debug)]
+pub enum LightSource {
+    /// A placement whose surface shines.
+    Surface {
+        /// The light's object.
+        object: Arc<Object>,
+        /// Which placement.
+        placement: u32,
+        /// Its area in the world, m².
+        area: f64,
+        /// For meshes: how a triangle is chosen, by its area in the world.
+        triangles: Option<Alias>,
+    },
+    /// A light at a point or far away.
+    Free {
+        /// The light's object.
+        object: Arc<Object>,
+        /// From its frame to the world.
+        transform: Option<Box<Transform>>,
+    },
+}
+
+impl LightSource {
+    fn object(&self) -> &Arc<Object> {
+        match self {
+            Self::Surface { object, .. } | Self::Free { object, .. } => object,
+        }
+    }
+}
+
+/// Every source of light and how one is chosen.
+#[derive(Debug, Default)]
+pub struct Lights {
+    /// The sources.
+    pub sources: Vec<LightSource>,
+    /// Indices of those that escaped rays find.
+    pub infinite: Vec<u32>,
+    choice: Option<Alias>,
+}
+
+/// Light that was found from a point.
+#[derive(Clone, Copy, Debug)]
+pub struct FoundLight {
+    /// From the point to the light, offset at both ends.
+    pub ray: Ray,
+    /// Radiance over density; for a delta light irradiance over the chance of its choice.
+    pub le_over_pdf: Spectrum,
+    /// Solid-angle density; infinite for a delta light.
+    pub pdf: f32,
+}
+
+/// The point from which light is looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Origin {
+    /// World space.
+    pub p: DVec3,
+    /// Bound of its error.
+    pub p_err: DVec3,
+    /// Geometric normal; zero in a medium.
+    pub ng: DVec3,
+}
+
+impl Lights {
+    /// Lights, chosen about in proportion to their power.
+    pub(super) fn new(sources: Vec<LightSource>, stage_radius: f64, mode: ColorMode) -> Self {
+        let power: Vec<f64> =
+            sources.iter().map(|light| f64::from(power(light, stage_radius, mode))).collect();
+        let mean = power.iter().sum::<f64>() / power.len().max(1) as f64;
+        // A floor of 1 % of the mean: a texture that was looked up where it is dark, or an estimate
+        // that is wrong, must not leave a light without a chance.
+        let weights: Vec<f64> = power.iter().map(|p| p + 0.01 * mean).collect();
+        let infinite = (0..sources.len() as u32).filter(|i| {
+            let object = sources[*i as usize].object();
+            object.fixed().light().form() == luxel_sdk::kind::LightForm::Infinite
+        });
+        Self { infinite: infinite.collect(), choice: Alias::new(&weights).ok(), sources }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.sources.is_empty()
+    }
+
+    fn chance(&self, light: u32) -> f64 {
+        self.choice.as_ref().map_or(0.0, |choice| choice.pmf(light as usize))
+    }
+}
+
+fn power(light: &LightSource, radius: f64, mode: ColorMode) -> f32 {
+    let lambda = Wavelengths::sample(0.5);
+    let mut scratch = Scratch::default();
+    let mut sum = 0.0;
+    const GRID: u32 = 4;
+    for i in 0..GRID * GRID {
+        let uv = (Vec2::new((i % GRID) as f32, (i / GRID) as f32) + 0.5) / GRID as f32;
+        scratch.reset();
+        let at = TexturePoint { p: DVec3::ZERO, uv, lambda };
+        let area = match light {
+            LightSource::Surface { area, .. } => *area,
+            LightSource::Free { .. } => 0.0,
+        };
+        let p = light.object().resolve(&at, &scratch).light().power(area, radius);
+        sum += if p.is_finite() && p > 0.0 { p } else { 0.0 };
+        if light.object().is_constant() && mode == ColorMode::Rgb {
+            return sum;
+        }
+    }
+    sum / (GRID * GRID) as f32
+}
+
+/// Lanes of what a light emits: RGB is uplifted where the path is spectral.
+fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, lambda: &Wavelengths) -> Spectrum {
+    match (light.output(), mode) {
+        (Output::Rgb, ColorMode::Spectral) => uplift_illuminant(value.rgb(), lambda),
+        _ => value,
+    }
+}
+
+impl Stage {
+    /// Chooses a light and light from it. `u` uniform in [0, 1).
+    pub fn sample_light(
+        &self,
+        from: &Origin,
+        lambda: &Wavelengths,
+        u: [f32; 3],
+        scratch: &Scratch,
+    ) -> Option<FoundLight> {
+        let chosen = self.lights.choice.as_ref()?.sample(f64::from(u[0]));
+        let source = &self.lights.sources[chosen.index];
+        let u = [u[1], u[2]];
+        match source {
+            LightSource::Surface { object, placement, area, triangles } => {
+                let spot = SurfaceLight { object, placement: *placement, area: *area };
+                self.sample_surface(&spot, triangles.as_ref(), from, lambda, (u, chosen.u), scratch)
+            }
+            LightSource::Free { object, transform } => {
+                let at = TexturePoint { p: from.p, uv: Vec2::ZERO, lambda: *lambda };
+                let light = object.resolve(&at, scratch).light();
+                self.sample_free(light, transform.as_deref(), from, lambda, u)
+            }
+        }
+        .map(|found| found.with_chance(chosen.pmf as f32))
+    }
+
+    fn sample_free(
+        &self,
+        light: &dyn Light,
+        transform: Option<&Transform>,
+        from: &Origin,
+        lambda: &Wavelengths,
+        u: [f32; 2],
+    ) -> Option<FoundLight> {
+        let p = transform.map_or(from.p, |transform| transform.inverse_point(from.p));
+        let found = light.sample(&LightQuery { p, u })?;
+        let mut le = emitted(light, found.le, self.mode, lambda);
+        let (mut wi, mut distance) = (found.wi, found.distance);
+        if let Some(transform) = transform {
+            let to = transform.vector(found.wi);
+            let scale = to.length();
+            wi = to / scale;
+            if distance.is_finite() {
+                // A delta light gave irradiance at its own distance.
+                le = le / (scale * scale) as f32;
+                distance *= scale;
+            }
+        }
+        let pdf = if found.delta { f32::INFINITY } else { found.pdf };
+        let usable = found.pdf > 0.0 && !le.is_black();
+        usable.then(|| FoundLight {
+            ray: Ray { o: offset_origin(from.p, from.p_err, from.ng, wi), d: wi, t_max: distance },
+            le_over_pdf: le / found.pdf,
+            pdf,
+        })
+    }
+
+    fn sample_surface(
+        &self,
+        light: &SurfaceLight<'_>,
+        triangles: Option<&Alias>,
+        from: &Origin,
+        lambda: &Wavelengths,
+        (u, remapped): ([f32; 2], f64),
+        scratch: &Scratch,
+    ) -> Option<FoundLight> {
+        let placement = &self.placements[light.placement as usize];
+        let geometry = &self.geometries[placement.geometry as usize];
+        let (surface, pdf_area) = match (&**geometry, triangles) {
+            (Geometry::Mesh(mesh), Some(choice)) => {
+                let triangle = choice.sample(remapped).index as u32;
+                let at = luxel_sdk::sampling::uniform_triangle(u);
+                let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
+                (placement.to_world(mesh.surface(triangle, at)), 1.0 / light.area)
+            }
+            (Geometry::Analytic(shape), _) => {
+                let local = placement.point_to_local(from.p);
+                let sample = shape.fixed().shape().sample(Some(local), u)?;
+                let scale = placement.area_scale(sample.surface.ng);
+                (placement.to_world(sample.surface), sample.pdf / scale)
+            }
+            (Geometry::Mesh(_), None) => return None,
+        };
+        let ray = ray_between(from, &surface);
+        let to = surface.p - from.p;
+        let distance2 = to.length_squared();
+        let wi = to / distance2.sqrt();
+        let cos_o = -surface.ng.dot(wi);
+        let pdf = pdf_area * distance2 / cos_o.abs();
+        if !(pdf > 0.0 && pdf.is_finite()) {
+            return None;
+        }
+        let uv = surface.uv.as_vec2();
+        let at = TexturePoint { p: surface.p, uv, lambda: *lambda };
+        let resolved = light.object.resolve(&at, scratch).light();
+        let le = emitted(resolved, resolved.le(cos_o as f32, uv, light.area), self.mode, lambda);
+        (!le.is_black()).then(|| FoundLight { ray, le_over_pdf: le / pdf as f32, pdf: pdf as f32 })
+    }
+
+    /// Radiance of a shining surface towards `wo`, and the density with which `sample_light` would
+    /// have found the point from `from`.
+    pub fn surface_emission(
+        &self,
+        placement: &Placement,
+        surface: &Surface,
+        wo: DVec3,
+        from: DVec3,
+        lambda: &Wavelengths,
+        scratch: &Scratch,
+    ) -> (Spectrum, f32) {
+        let Some(light) = placement.light else { return (Spectrum::ZERO, 0.0) };
+        let LightSource::Surface { object, area, .. } = &self.lights.sources[light as usize] else {
+            return (Spectrum::ZERO, 0.0);
+        };
+        let uv = surface.uv.as_vec2();
+        let at = TexturePoint { p: surface.p, uv, lambda: *lambda };
+        let resolved = object.resolve(&at, scratch).light();
+        let cos_o = surface.ng.dot(wo);
+        let le = emitted(resolved, resolved.le(cos_o as f32, uv, *area), self.mode, lambda);
+        if le.is_black() {
+            return (le, 0.0);
+        }
+        let pdf_area = self.surface_pdf(placement, *area, surface, from);
+        let pdf = pdf_area * surface.p.distance_squared(from) / cos_o.abs();
+        (le, (pdf * self.lights.chance(light)) as f32)
+    }
+
+    /// Area density, in the world, with which a point of a shining surface is sampled.
+    fn surface_pdf(&self, place: &Placement, area: f64, surface: &Surface, from: DVec3) -> f64 {
+        match &*self.geometries[place.geometry as usize] {
+            Geometry::Mesh(_) => 1.0 / area,
+            Geometry::Analytic(shape) => {
+                let mut local = *surface;
+                if let Some(transform) = &place.transform {
+                    local.p = transform.inverse_point(surface.p);
+                    local.ng = transform.inverse_normal(surface.ng).normalize();
+                }
+                let pdf = shape.fixed().shape().pdf(Some(place.point_to_local(from)), &local);
+                pdf / place.area_scale(local.ng)
+            }
+        }
+    }
+
+    /// What a ray that leaves the scene along `d` finds, and the density with which `sample_light`
+    /// would have found it.
+    pub fn escaped(&self, d: DVec3, lambda: &Wavelengths, scratch: &Scratch) -> (Spectrum, f32) {
+        let (mut le, mut pdf) = (Spectrum::ZERO, 0.0);
+        for &light in &self.lights.infinite {
+            let LightSource::Free { object, transform } = &self.lights.sources[light as usize]
+            else {
+                continue;
+            };
+            let local = match transform {
+                Some(transform) => transform.inverse_vector(d).normalize(),
+                None => d,
+            };
+            let at = TexturePoint { p: DVec3::ZERO, uv: Vec2::ZERO, lambda: *lambda };
+            let resolved = object.resolve(&at, scratch).light();
+            let found = resolved.escaped(local);
+            le += emitted(resolved, found.le, self.mode, lambda);
+            pdf += found.pdf * self.lights.chance(light) as f32;
+        }
+        (le, pdf)
+    }
+}
+
+struct SurfaceLight<'a> {
+    object: &'a Object,
+    placement: u32,
+    area: f64,
+}
+
+impl FoundLight {
+    fn with_chance(self, chance: f32) -> Self {
+        Self { le_over_pdf: self.le_over_pdf / chance, pdf: self.pdf * chance, ..self }
+    }
+}
+
+/// The ray from a point to a point of a surface, both moved beyond their errors towards each other.
+fn ray_between(from: &Origin, to: &Surface) -> Ray {
+    let d = to.p - from.p;
+    let o = offset_origin(from.p, from.p_err, from.ng, d);
+    let end = offset_origin(to.p, to.p_err, to.ng, -d);
+    let d = end - o;
+    let distance = d.length();
+    Ray { o, d: d / distance, t_max: distance }
+}

@@ -1,0 +1,83 @@
+//! The stage: a scene made ready to trace.
+//!
+//! Immutable. A new edit makes a new stage that shares what did not change with the last one, by
+//! content hash.
+
+mod build;
+mod closed;
+mod features;
+mod flatten;
+mod geometry;
+mod import;
+mod lights;
+mod media;
+mod placement;
+mod settings;
+mod trace;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::accel::TopBvh;
+use crate::object::{ColorMode, Object, Objects};
+use crate::scene::{Hash, NodeId, Scene};
+
+pub use build::{Built, build};
+pub use features::Features;
+pub use geometry::{Geometry, Mesh};
+pub use lights::{FoundLight, LightSource, Lights, Origin};
+pub use media::MediumStack;
+pub use placement::{Placement, SceneHit, Skin};
+pub use settings::{ColorChoice, Film};
+
+/// A scene made ready to trace.
+#[derive(Debug)]
+pub struct Stage {
+    /// The scene, assets expanded: for messages and metadata.
+    pub scene: Scene,
+    /// How colour is carried.
+    pub mode: ColorMode,
+    /// Size, exposure, observer, output.
+    pub film: Film,
+    /// Geometry, each once.
+    pub geometries: Vec<Arc<Geometry>>,
+    /// Geometry in its places.
+    pub placements: Vec<Placement>,
+    /// Over the placements' boxes.
+    pub top: TopBvh,
+    /// Materials that placements use.
+    pub materials: Vec<Arc<Object>>,
+    /// The node of each material.
+    pub material_nodes: Vec<NodeId>,
+    /// Media that placements use.
+    pub media: Vec<Arc<Object>>,
+    /// What fills the space that no shape encloses: an index into `media`.
+    pub outside: Option<u32>,
+    /// Sources of light and how one is chosen.
+    pub lights: Lights,
+    /// The camera.
+    pub camera: Arc<Object>,
+    /// The integrator.
+    pub integrator: Arc<Object>,
+    /// The sampler.
+    pub sampler: Arc<Object>,
+    /// The pixel filter.
+    pub filter: Arc<Object>,
+    /// What the scene needs and what is left out.
+    pub features: Features,
+    /// Centre and radius of a sphere around everything, metres.
+    pub sphere: (DVec3, f64),
+    /// The media that the camera stands in.
+    pub camera_media: MediumStack,
+    /// For the next build.
+    cache: Cache,
+}
+
+/// What one build leaves for the next.
+#[derive(Debug, Default)]
+pub struct Cache {
+    objects: Objects,
+    meshes: BTreeMap<Hash, (Arc<Object>, Arc<Geometry>)>,
+}

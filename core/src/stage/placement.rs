@@ -1,0 +1,84 @@
+//! Geometry in its place: rays into its frame, points back into the world.
+
+use glam::DVec3;
+use luxel_sdk::kind::{Hit, Surface};
+use luxel_sdk::num::{Ray, Transform};
+
+use crate::scene::NodeId;
+
+/// What a placement's surface scatters with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Skin {
+    /// A material of the stage, by index.
+    Material(u32),
+    /// Nothing: light that arrives is lost. Lamps without a material.
+    Black,
+    /// Nothing: rays pass as if it were not there. The boundary of a medium.
+    Open,
+}
+
+/// Geometry in its place.
+#[derive(Clone, Debug)]
+pub struct Placement {
+    /// Which geometry of the stage.
+    pub geometry: u32,
+    /// From the geometry's frame to the world; `None` where they are the same.
+    pub transform: Option<Box<Transform>>,
+    /// How it scatters.
+    pub skin: Skin,
+    /// Which light of the stage it is.
+    pub light: Option<u32>,
+    /// Which medium of the stage fills it.
+    pub interior: Option<u32>,
+    /// Whether it encloses a volume, so that rays that pass it change medium.
+    pub closed: bool,
+    /// The node of the shape.
+    pub node: NodeId,
+}
+
+impl Placement {
+    /// A ray of the world in the geometry's frame; its parameter `t` stays.
+    pub fn to_local(&self, ray: &Ray) -> Ray {
+        match &self.transform {
+            Some(transform) => transform.inverse_ray(ray),
+            None => *ray,
+        }
+    }
+
+    /// A point of the world in the geometry's frame.
+    pub fn point_to_local(&self, p: DVec3) -> DVec3 {
+        match &self.transform {
+            Some(transform) => transform.inverse_point(p),
+            None => p,
+        }
+    }
+
+    /// A surface point in the world.
+    pub fn to_world(&self, s: Surface) -> Surface {
+        let Some(transform) = &self.transform else { return s };
+        let (p, p_err) = transform.point_with_error(s.p, s.p_err);
+        Surface {
+            p,
+            p_err,
+            ng: transform.normal(s.ng).normalize(),
+            ns: transform.normal(s.ns).normalize(),
+            uv: s.uv,
+            dp_du: transform.vector(s.dp_du),
+            dp_dv: transform.vector(s.dp_dv),
+        }
+    }
+
+    /// How much larger an area whose local unit normal is `ng` is in the world.
+    pub fn area_scale(&self, ng: DVec3) -> f64 {
+        self.transform.as_ref().map_or(1.0, |transform| transform.area_scale(ng))
+    }
+}
+
+/// Where a ray met the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneHit {
+    /// Which placement.
+    pub placement: u32,
+    /// Where on it; `t` is along the world's ray.
+    pub hit: Hit,
+}

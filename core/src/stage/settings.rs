@@ -1,0 +1,86 @@
+//! The film's settings, read from its node.
+
+use glam::UVec2;
+use luxel_sdk::color::Observer;
+
+use crate::registry::Display;
+use crate::scene::{Argument, Node, Value};
+
+/// How the scene wants colour to be carried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorChoice {
+    /// RGB where nothing depends on wavelength, else spectral.
+    Auto,
+    /// Linear sRGB.
+    Rgb,
+    /// Four wavelengths.
+    Spectral,
+}
+
+/// What is measured, and how it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Pixels.
+    pub resolution: UVec2,
+    /// How colour is carried.
+    pub color: ColorChoice,
+    /// Exposure value of the PNG at ISO 100.
+    pub exposure: Option<f64>,
+    /// Which eye turns spectra into colours.
+    pub observer: Observer,
+    /// How the PNG shows radiance.
+    pub display: Display,
+    /// Where the EXR is written.
+    pub file: Option<String>,
+}
+
+impl Default for Film {
+    fn default() -> Self {
+        Self {
+            resolution: UVec2::new(640, 480),
+            color: ColorChoice::Auto,
+            exposure: None,
+            observer: Observer::Cie1931,
+            display: Display::Srgb,
+            file: None,
+        }
+    }
+}
+
+impl Film {
+    /// Reads a film node; what it does not give keeps its default. The node fits its schema.
+    pub fn of_node(node: Option<&Node>) -> Self {
+        let mut film = Self::default();
+        let Some(node) = node else { return film };
+        film.color = match &*node.class {
+            "rgb" => ColorChoice::Rgb,
+            "spectral" => ColorChoice::Spectral,
+            _ => ColorChoice::Auto,
+        };
+        for Argument { name, value, .. } in &node.params {
+            match (*name, value) {
+                ("resolution", Value::Vector(v)) if v.len() == 2 => {
+                    film.resolution = UVec2::new(v[0] as u32, v[1] as u32);
+                }
+                ("exposure", Value::Number(ev, _)) => film.exposure = Some(*ev),
+                ("observer", Value::Text(word)) => {
+                    film.observer = match &**word {
+                        "cie1964" => Observer::Cie1964,
+                        "cie2015" => Observer::Cie2015,
+                        _ => Observer::Cie1931,
+                    };
+                }
+                ("display", Value::Text(word)) => {
+                    film.display = match &**word {
+                        "linear" => Display::Linear,
+                        "filmic" => Display::Filmic,
+                        _ => Display::Srgb,
+                    };
+                }
+                ("file", Value::Text(name)) => film.file = Some(name.to_string()),
+                _ => {}
+            }
+        }
+        film
+    }
+}

@@ -1,0 +1,86 @@
+//! Rays through the whole stage.
+
+use luxel_sdk::kind::Surface;
+use luxel_sdk::num::Ray;
+
+use super::{MediumStack, SceneHit, Skin, Stage};
+
+impl Stage {
+    /// The nearest surface along a ray. Counts nodes and primitives in `steps`.
+    pub fn intersect(&self, ray: &Ray, steps: &mut u32) -> Option<SceneHit> {
+        let mut nearest = None;
+        self.top.intersect(ray.o, ray.d, ray.t_max, |index, t_enter, t_max| {
+            *steps += 1;
+            let placement = &self.placements[index as usize];
+            let local = placement.to_local(&Ray { t_max, ..*ray });
+            let geometry = &self.geometries[placement.geometry as usize];
+            let hit = geometry.intersect(&local, t_enter, steps)?;
+            nearest = Some(SceneHit { placement: index, hit });
+            Some(hit.t)
+        });
+        nearest
+    }
+
+    /// Whether a surface that stops light lies along a ray.
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.top.any(ray.o, ray.d, ray.t_max, |index, t_enter, t_max| {
+            let placement = &self.placements[index as usize];
+            let local = placement.to_local(&Ray { t_max, ..*ray });
+            placement.skin != Skin::Open
+                && self.geometries[placement.geometry as usize].occluded(&local, t_enter)
+        })
+    }
+
+    /// The point of a hit, in the world.
+    pub fn surface(&self, ray: &Ray, hit: &SceneHit) -> Surface {
+        let placement = &self.placements[hit.placement as usize];
+        let geometry = &self.geometries[placement.geometry as usize];
+        let local = match (&**geometry, &placement.transform) {
+            (super::Geometry::Mesh(mesh), _) => mesh.surface(hit.hit.face, hit.hit.at),
+            (geometry, _) => geometry.surface(&placement.to_local(ray), &hit.hit),
+        };
+        placement.to_world(local)
+    }
+
+    /// Changes the media that a ray is in as it passes a surface along `d`.
+    pub fn cross(&self, media: &mut MediumStack, placement: u32, d: glam::DVec3, ng: glam::DVec3) {
+        let place = &self.placements[placement as usize];
+        if !place.closed {
+            return;
+        }
+        if d.dot(ng) < 0.0 {
+            media.enter(placement, place.interior);
+        } else {
+            media.leave(placement);
+        }
+    }
+
+    /// The media that a point is in: found by following a ray out of the scene and counting which
+    /// closed shapes it leaves without having entered them.
+    pub fn media_at(&self, p: glam::DVec3) -> MediumStack {
+        let d = glam::DVec3::new(0.267, 0.535, 0.802).normalize();
+        let mut ray = Ray { o: p, d, t_max: f64::INFINITY };
+        let mut entered: Vec<u32> = vec![];
+        let mut left: Vec<u32> = vec![];
+        while let Some(hit) = self.intersect(&ray, &mut 0) {
+            let surface = self.surface(&ray, &hit);
+            if self.placements[hit.placement as usize].closed {
+                let known = entered.iter().rposition(|inside| *inside == hit.placement);
+                match (d.dot(surface.ng) < 0.0, known) {
+                    (true, _) => entered.push(hit.placement),
+                    (false, Some(at)) => drop(entered.remove(at)),
+                    (false, None) => left.push(hit.placement),
+                }
+            }
+            ray.o = luxel_sdk::num::offset_origin(surface.p, surface.p_err, surface.ng, d);
+            if entered.len() + left.len() > self.placements.len() {
+                break;
+            }
+        }
+        let mut media = MediumStack::default();
+        for placement in left.into_iter().rev() {
+            media.enter(placement, self.placements[placement as usize].interior);
+        }
+        media
+    }
+}

@@ -27,7 +27,7 @@ pub(super) struct MeshRay {
     pub(super) axes: [usize; 3],
     /// Origin in the order of `axes`.
     pub(super) o: [f32; 3],
-    /// d[kx]/d[kz], d[ky]/d[kz], 1/d[kz].
+    /// `d[kx]/d[kz]`, `d[ky]/d[kz]`, `1/d[kz]`.
     pub(super) shear: [f32; 3],
 }
 

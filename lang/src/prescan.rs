@@ -1,0 +1,369 @@
+//! One pass over the bytes: where statements begin, and brackets, strings and comments that do not close.
+//!
+//! No recursion and no allocation per token. Between statements it skips by table and by memchr.
+
+use std::ops::Range;
+
+use memchr::{memchr, memchr_iter, memchr3};
+
+/// What is wrong with the brackets, strings or comments of a text; offsets are bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// A bracket at `at` that is nested deeper than the limit. Nothing after it was scanned.
+    TooDeep {
+        /// The bracket.
+        at: usize,
+    },
+    /// A bracket that never closes.
+    Unclosed {
+        /// The bracket.
+        open: usize,
+    },
+    /// A closing bracket of another kind than the open one.
+    Mismatch {
+        /// The open bracket.
+        open: usize,
+        /// The closing one.
+        at: usize,
+    },
+    /// A closing bracket without an open one.
+    Stray {
+        /// The bracket.
+        at: usize,
+    },
+    /// A string that does not end on its line.
+    String {
+        /// From the quote to the end of the line.
+        at: Range<usize>,
+    },
+    /// A block comment that never ends.
+    Comment {
+        /// Its first byte.
+        at: usize,
+    },
+    /// A backslash that begins no known escape.
+    Escape {
+        /// The escape.
+        at: Range<usize>,
+    },
+}
+
+impl Fault {
+    /// The byte that is to blame.
+    pub fn at(&self) -> usize {
+        match self {
+            Self::TooDeep { at }
+            | Self::Mismatch { at, .. }
+            | Self::Stray { at }
+            | Self::Comment { at } => *at,
+            Self::Unclosed { open } => *open,
+            Self::String { at } | Self::Escape { at } => at.start,
+        }
+    }
+}
+
+/// What one pass found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Scan {
+    /// Where statements begin at the wanted depth, their doc comments included.
+    pub starts: Vec<usize>,
+    /// What does not close.
+    pub faults: Vec<Fault>,
+}
+
+/// Words that continue a statement on a new line.
+const CONTINUE: [&[u8]; 4] = [b"else", b"with", b"in", b"as"];
+/// Words after which something must follow: a newline after them ends nothing.
+const PREFIX: [&[u8]; 16] = [
+    b"else", b"with", b"in", b"as", b"let", b"param", b"fn", b"for", b"if", b"include", b"import",
+    b"place", b"set", b"assert", b"units", b"scene",
+];
+
+/// Bytes that matter inside brackets: quotes, slashes, hashes and brackets.
+const STRUCTURAL: [bool; 256] = {
+    let mut table = [false; 256];
+    let bytes = b"\"/#()[]{}";
+    let mut i = 0;
+    while i < bytes.len() {
+        table[bytes[i] as usize] = true;
+        i += 1;
+    }
+    table
+};
+
+/// Scans `text[range]`, noting the statements that begin inside `depth` brackets, up to `limit`
+/// nested brackets.
+pub fn scan(text: &str, range: Range<usize>, depth: usize, limit: usize) -> Scan {
+    let bytes = &text.as_bytes()[..range.end];
+    let mut scanner = Scanner {
+        bytes,
+        at: range.start,
+        depth,
+        limit,
+        open: Vec::with_capacity(limit.min(256) + 1),
+        operand: true,
+        newline: true,
+        first: depth == 0,
+        doc: None,
+        out: Scan::default(),
+    };
+    scanner.run();
+    scanner.out
+}
+
+struct Scanner<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    depth: usize,
+    limit: usize,
+    open: Vec<usize>,
+    /// Whether what stands before could end an expression.
+    operand: bool,
+    newline: bool,
+    /// Whether no statement has begun in this block.
+    first: bool,
+    doc: Option<usize>,
+    out: Scan,
+}
+
+impl Scanner<'_> {
+    fn run(&mut self) {
+        loop {
+            if self.open.len() != self.depth {
+                while self.bytes.get(self.at).is_some_and(|b| !STRUCTURAL[usize::from(*b)]) {
+                    self.at += 1;
+                }
+            }
+            let Some(&byte) = self.bytes.get(self.at) else { break };
+            match byte {
+                b'"' => self.string(),
+                b'/' if self.next_is(b'/') => self.line_comment(),
+                b'/' if self.next_is(b'*') => self.block_comment(),
+                b'#' if self.next_is(b'[') => self.table(),
+                b'(' | b'[' | b'{' => {
+                    if !self.open_bracket(byte) {
+                        return;
+                    }
+                }
+                b')' | b']' | b'}' => self.close_bracket(byte),
+                _ => self.between(byte),
+            }
+        }
+        let unclosed = self.open.iter().map(|&open| Fault::Unclosed { open });
+        self.out.faults.extend(unclosed);
+    }
+
+    fn next_is(&self, byte: u8) -> bool {
+        self.bytes.get(self.at + 1) == Some(&byte)
+    }
+
+    /// A byte outside strings, comments and brackets.
+    fn between(&mut self, byte: u8) {
+        let word = |b: &u8| b.is_ascii_alphanumeric() || *b == b'_';
+        let start = self.at;
+        self.at += 1;
+        match byte {
+            b'\n' => self.newline = true,
+            b' ' | b'\t' | b'\r' | 0xEF | 0xBB | 0xBF => {}
+            b',' | b';' => (self.operand, self.newline) = (true, true),
+            b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'@' => {
+                while self.bytes.get(self.at).is_some_and(word) {
+                    self.at += 1;
+                }
+                let name = &self.bytes[start..self.at];
+                if CONTINUE.contains(&name) {
+                    self.newline = false;
+                } else {
+                    self.word(start);
+                }
+                self.operand = byte != b'@' && !PREFIX.contains(&name);
+            }
+            b'0'..=b'9' => {
+                while self.bytes.get(self.at).is_some_and(word) {
+                    self.at += 1;
+                }
+                (self.operand, self.newline) = (true, false);
+            }
+            _ => (self.operand, self.newline) = (false, false),
+        }
+    }
+
+    fn word(&mut self, start: usize) {
+        if self.open.len() == self.depth {
+            if self.first || (self.operand && self.newline) {
+                self.out.starts.push(self.doc.unwrap_or(start));
+            }
+            self.first = false;
+        }
+        self.doc = None;
+        self.newline = false;
+    }
+
+    fn string(&mut self) {
+        let start = self.at;
+        self.at += 1;
+        loop {
+            let Some(found) = memchr3(b'"', b'\\', b'\n', &self.bytes[self.at..]) else {
+                self.at = self.bytes.len();
+                self.out.faults.push(Fault::String { at: start..self.at });
+                break;
+            };
+            self.at += found;
+            match self.bytes[self.at] {
+                b'"' => {
+                    self.at += 1;
+                    break;
+                }
+                b'\\' => self.escape(),
+                _ => {
+                    self.out.faults.push(Fault::String { at: start..self.at });
+                    break;
+                }
+            }
+        }
+        (self.operand, self.newline, self.doc) = (true, false, None);
+    }
+
+    fn escape(&mut self) {
+        let rest = &self.bytes[self.at + 1..];
+        let length = match rest.first() {
+            Some(b'"' | b'\\' | b'n' | b't') => Some(1),
+            Some(b'u') if rest.get(1) == Some(&b'{') => {
+                let digits = rest[2..].iter().take_while(|b| b.is_ascii_hexdigit()).count();
+                let closed = rest.get(2 + digits) == Some(&b'}');
+                ((1..=6).contains(&digits) && closed).then_some(digits + 3)
+            }
+            _ => None,
+        };
+        if let Some(length) = length {
+            self.at += 1 + length;
+            return;
+        }
+        // The whole character after the backslash, but never the end of the line.
+        let continues = |b: &&u8| (**b & 0xC0) == 0x80;
+        let length = match rest.first() {
+            None | Some(b'\n') => 0,
+            Some(_) => 1 + rest[1..].iter().take_while(continues).count(),
+        };
+        self.out.faults.push(Fault::Escape { at: self.at..self.at + 1 + length });
+        self.at += 1 + length;
+    }
+
+    fn line_comment(&mut self) {
+        let rest = &self.bytes[self.at..];
+        let is_doc = rest.get(2) == Some(&b'/') && rest.get(3) != Some(&b'/');
+        if is_doc && self.doc.is_none() && self.operand && self.open.len() == self.depth {
+            self.doc = Some(self.at);
+        }
+        self.at += memchr(b'\n', rest).unwrap_or(rest.len());
+    }
+
+    fn block_comment(&mut self) {
+        let start = self.at;
+        let inside = &self.bytes[start + 2..];
+        let end = memchr_iter(b'*', inside).find(|&i| inside.get(i + 1) == Some(&b'/'));
+        let end = end.map(|i| start + 2 + i);
+        if end.is_none() {
+            self.out.faults.push(Fault::Comment { at: start });
+        }
+        let stop = end.unwrap_or(self.bytes.len());
+        self.newline |= memchr(b'\n', &self.bytes[start..stop]).is_some();
+        self.at = end.map_or(stop, |end| end + 2);
+    }
+
+    fn table(&mut self) {
+        let rest = &self.bytes[self.at..];
+        match memchr(b']', rest) {
+            Some(end) => self.at += end + 1,
+            None => {
+                self.out.faults.push(Fault::Unclosed { open: self.at + 1 });
+                self.at = self.bytes.len();
+            }
+        }
+        (self.operand, self.newline, self.doc) = (true, false, None);
+    }
+
+    fn open_bracket(&mut self, byte: u8) -> bool {
+        if self.open.len() == self.limit {
+            self.out.faults.push(Fault::TooDeep { at: self.at });
+            return false;
+        }
+        self.open.push(self.at);
+        if self.open.len() == self.depth {
+            self.first = true;
+        }
+        let block = byte == b'{';
+        (self.operand, self.newline, self.doc) = (block, block, None);
+        self.at += 1;
+        true
+    }
+
+    fn close_bracket(&mut self, byte: u8) {
+        match self.open.pop() {
+            None => self.out.faults.push(Fault::Stray { at: self.at }),
+            Some(open) if closing(self.bytes[open]) != byte => {
+                self.out.faults.push(Fault::Mismatch { open, at: self.at });
+                // An outer bracket of this kind closes here too; else only this one does.
+                let outer = self.open.iter().rposition(|&o| closing(self.bytes[o]) == byte);
+                if let Some(outer) = outer {
+                    self.open.truncate(outer);
+                }
+            }
+            Some(_) => {}
+        }
+        (self.operand, self.newline) = (true, false);
+        self.at += 1;
+    }
+}
+
+/// The bracket that closes an open one.
+fn closing(open: u8) -> u8 {
+    match open {
+        b'(' => b')',
+        b'[' => b']',
+        _ => b'}',
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn starts(text: &str) -> Vec<&str> {
+        let scan = scan(text, 0..text.len(), 0, 128);
+        assert_eq!(scan.faults, []);
+        scan.starts.iter().map(|&at| text[at..].lines().next().unwrap()).collect()
+    }
+
+    #[test]
+    fn a_newline_between_an_operand_and_a_word_begins_a_statement() {
+        let text =
+            "scene 1\nlet a = 5 +\n  b\nlet c = [\nx,\ny]\n/// doc\nshape x {\n r = 1 }\n@off\nf()";
+        assert_eq!(starts(text), ["scene 1", "let a = 5 +", "let c = [", "/// doc", "@off"]);
+    }
+
+    #[test]
+    fn words_that_continue_begin_nothing() {
+        assert_eq!(starts("let a = b\n  with { c = 1 }\nif x { y = 1 }\nelse { y = 2 }").len(), 2);
+    }
+
+    #[test]
+    fn brackets_in_strings_comments_and_tables_do_not_count() {
+        assert_eq!(starts("a = \"}{\" // ({[\n/* ) */ b = #[ 1 2 ( ]\nc = 1").len(), 3);
+    }
+
+    #[test]
+    fn what_does_not_close_is_named() {
+        let check = |text: &str, fault| {
+            assert_eq!(scan(text, 0..text.len(), 0, 3).faults, [fault], "{text}");
+        };
+        check("a = \"x\nb = 1", Fault::String { at: 4..6 });
+        check("a /* b", Fault::Comment { at: 2 });
+        check("a {", Fault::Unclosed { open: 2 });
+        check("a = [1, 2)", Fault::Mismatch { open: 4, at: 9 });
+        check("}", Fault::Stray { at: 0 });
+        check("((((", Fault::TooDeep { at: 3 });
+        check("\"\\q\"", Fault::Escape { at: 1..3 });
+        check("#[ 1 2", Fault::Unclosed { open: 1 });
+    }
+}

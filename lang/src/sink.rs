@@ -1,0 +1,55 @@
+//! Where diagnostics are gathered: each once, up to a limit.
+
+use std::collections::HashSet;
+
+use luxel_core::diag::{Diagnostic, Span};
+
+/// Diagnostics of one load, in the order in which they were found.
+#[derive(Debug)]
+pub(crate) struct Sink {
+    list: Vec<Diagnostic>,
+    seen: HashSet<(&'static str, Option<Span>)>,
+    limit: usize,
+    errors: usize,
+    dropped: usize,
+}
+
+impl Sink {
+    /// Keeps at most `limit` diagnostics.
+    pub(crate) fn new(limit: usize) -> Self {
+        Self { list: vec![], seen: HashSet::new(), limit, errors: 0, dropped: 0 }
+    }
+
+    /// Keeps a diagnostic, unless the same code was told of the same place: a loop makes each
+    /// mistake once.
+    pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
+        if !self.seen.insert((diagnostic.code, diagnostic.span())) {
+            return;
+        }
+        self.errors += usize::from(diagnostic.is_error());
+        if self.list.len() < self.limit {
+            self.list.push(diagnostic);
+        } else {
+            self.dropped += 1;
+        }
+    }
+
+    /// How many errors there were, dropped ones included.
+    pub(crate) fn errors(&self) -> usize {
+        self.errors
+    }
+
+    /// Whether no more diagnostics are kept: going on is of no use.
+    pub(crate) fn is_full(&self) -> bool {
+        self.list.len() >= self.limit
+    }
+
+    /// The diagnostics; the last one says how many were dropped.
+    pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
+        if self.dropped > 0 {
+            let message = format!("{} more mistakes are not shown", self.dropped);
+            self.list.push(Diagnostic::unplaced("E0508", message));
+        }
+        self.list
+    }
+}

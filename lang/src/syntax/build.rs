@@ -1,0 +1,408 @@
+//! From pest's pairs to the syntax tree: statements.
+
+use std::sync::Arc;
+
+use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
+use luxel_sdk::params::{UNITS, Unit};
+use pest::iterators::Pair;
+
+use super::Rule;
+use super::tree::{
+    Block, Doc, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef, Quoted,
+    Stmt, StmtNode, Ty,
+};
+use crate::budgets::Budgets;
+use crate::sink::Sink;
+
+/// Builds trees from pairs whose text begins at byte `base` of the source.
+pub(super) struct Builder<'a> {
+    pub(super) source: SourceId,
+    pub(super) base: usize,
+    pub(super) sink: &'a mut Sink,
+    pub(super) budgets: &'a Budgets,
+}
+
+/// Names that no definition may take.
+pub(super) const RESERVED: [&str; 17] = [
+    "let", "param", "fn", "for", "if", "else", "include", "import", "place", "set", "assert",
+    "units", "with", "as", "in", "true", "false",
+];
+
+fn is_keyword(rule: Rule) -> bool {
+    matches!(
+        rule,
+        Rule::kw_let
+            | Rule::kw_param
+            | Rule::kw_fn
+            | Rule::kw_for
+            | Rule::kw_if
+            | Rule::kw_else
+            | Rule::kw_include
+            | Rule::kw_import
+            | Rule::kw_place
+            | Rule::kw_set
+            | Rule::kw_assert
+            | Rule::kw_units
+            | Rule::kw_with
+            | Rule::kw_as
+            | Rule::kw_in
+            | Rule::eq
+            | Rule::colon
+    )
+}
+
+/// The parts of a rule, its keywords and punctuation left out.
+pub(super) fn parts(pair: Pair<'_, Rule>) -> impl Iterator<Item = Pair<'_, Rule>> {
+    pair.into_inner().filter(|part| !is_keyword(part.as_rule()))
+}
+
+/// Takes the next part; the grammar promises it.
+pub(super) fn take<'i>(parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> Pair<'i, Rule> {
+    parts.next().expect("the grammar promises this part")
+}
+
+impl Builder<'_> {
+    pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
+        let span = pair.as_span();
+        Span::new(self.source, self.base + span.start(), self.base + span.end())
+    }
+
+    pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Name {
+        Name { text: pair.as_str().into(), span: self.span(pair) }
+    }
+
+    /// A name that is being defined.
+    pub(super) fn definition(&mut self, pair: &Pair<'_, Rule>) -> Name {
+        let name = self.name(pair);
+        if RESERVED.contains(&&*name.text) {
+            let message = format!("`{}` is a word of the language and cannot be a name", name.text);
+            self.sink.push(
+                Diagnostic::error("E0019", name.span, message)
+                    .help(format!("choose another name, as `{}_`", name.text)),
+            );
+        }
+        name
+    }
+
+    /// The statements of a file or block.
+    pub(super) fn stmt(&mut self, pair: Pair<'_, Rule>) -> Stmt {
+        let mut span = self.span(&pair);
+        let (mut docs, mut attrs) = (vec![], vec![]);
+        for part in pair.into_inner() {
+            let place = self.span(&part);
+            match part.as_rule() {
+                Rule::doc => docs.push(doc(&part, place)),
+                Rule::attr => {
+                    let text = part.as_str()[1..].into();
+                    attrs.push(self.attribute(Name { text, span: place }));
+                }
+                _ => {
+                    if docs.is_empty() && attrs.is_empty() {
+                        span = place;
+                    }
+                    span.end = place.end;
+                    let node = self.node(part, &docs);
+                    return Stmt { span, docs, attrs, node };
+                }
+            }
+        }
+        Stmt { span, docs, attrs, node: StmtNode::Broken { defines: None } }
+    }
+
+    fn attribute(&mut self, name: Name) -> Name {
+        if &*name.text != "off" {
+            let message = format!("unknown attribute `@{}`", name.text);
+            self.sink
+                .push(Diagnostic::error("E0028", name.span, message).help(
+                    "the only attribute is `@off`, which takes a statement out of the scene",
+                ));
+        }
+        name
+    }
+
+    fn node(&mut self, pair: Pair<'_, Rule>, docs: &[Doc]) -> StmtNode {
+        let rule = pair.as_rule();
+        let mut parts = parts(pair);
+        match rule {
+            Rule::field => StmtNode::Field(self.field(&mut parts)),
+            Rule::object => StmtNode::Object(Arc::new(self.object(&mut parts))),
+            Rule::let_stmt => {
+                let name = self.definition(&take(&mut parts));
+                let mut next = take(&mut parts);
+                let mut ty = None;
+                if next.as_rule() == Rule::ty {
+                    ty = Some(self.ty(&next));
+                    next = take(&mut parts);
+                }
+                StmtNode::Let { name, ty, value: self.expr(next) }
+            }
+            Rule::param_stmt => StmtNode::Param(Arc::new(self.param(&mut parts, docs))),
+            Rule::fn_def => StmtNode::Fn(Arc::new(self.function(&mut parts))),
+            Rule::for_stmt => {
+                let (index, item) = self.loop_names(&mut parts);
+                let over = self.expr(take(&mut parts));
+                StmtNode::For { index, item, over, body: self.block(take(&mut parts)) }
+            }
+            Rule::if_stmt => self.if_stmt(&mut parts),
+            Rule::include_stmt => {
+                let path = self.string(take(&mut parts));
+                let with = parts.next().map_or_else(Vec::new, |record| self.record(record));
+                StmtNode::Include { path, with }
+            }
+            Rule::import_stmt => {
+                let path = self.string(take(&mut parts));
+                StmtNode::Import { path, name: self.definition(&take(&mut parts)) }
+            }
+            Rule::place_stmt => self.place(&mut parts),
+            Rule::set_stmt => {
+                let path = self.path(take(&mut parts));
+                StmtNode::Set { path, value: self.expr(take(&mut parts)) }
+            }
+            Rule::assert_stmt => {
+                let cond = self.expr(take(&mut parts));
+                StmtNode::Assert { cond, message: self.string(take(&mut parts)) }
+            }
+            Rule::unit_stmt => StmtNode::Units(self.record(take(&mut parts))),
+            _ => {
+                let callee = take(&mut parts);
+                let span = self.span(&callee);
+                let callee = Expr { span, node: ExprNode::Path(self.path(callee)) };
+                let call = take(&mut parts);
+                StmtNode::Call(self.call(callee, call))
+            }
+        }
+    }
+
+    fn place<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> StmtNode {
+        let path = take(parts);
+        let what = Expr { span: self.span(&path), node: ExprNode::Path(self.path(path)) };
+        let (mut label, mut body) = (None, None);
+        for part in parts {
+            match part.as_rule() {
+                Rule::string => label = Some(self.string(part)),
+                _ => body = Some(self.block(part)),
+            }
+        }
+        StmtNode::Place { what, label, body }
+    }
+
+    fn if_stmt<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> StmtNode {
+        let cond = self.expr(take(parts));
+        let mut arms = vec![(cond, self.block(take(parts)))];
+        let mut otherwise = None;
+        for part in parts {
+            if part.as_rule() == Rule::elif {
+                let mut inner = self::parts(part);
+                let cond = self.expr(take(&mut inner));
+                arms.push((cond, self.block(take(&mut inner))));
+            } else {
+                otherwise = Some(self.block(part));
+            }
+        }
+        StmtNode::If { arms, otherwise }
+    }
+
+    /// `i` or `i, x`: an index, if two names are given, and the item.
+    pub(super) fn loop_names<'i>(
+        &mut self,
+        parts: &mut impl Iterator<Item = Pair<'i, Rule>>,
+    ) -> (Option<Name>, Name) {
+        let mut names = take(parts).into_inner();
+        let first = self.definition(&take(&mut names));
+        match names.next() {
+            Some(second) => (Some(first), self.definition(&second)),
+            None => (None, first),
+        }
+    }
+
+    fn param<'i>(
+        &mut self,
+        parts: &mut impl Iterator<Item = Pair<'i, Rule>>,
+        docs: &[Doc],
+    ) -> ParamDef {
+        let name = self.definition(&take(parts));
+        let ty = self.ty(&take(parts));
+        let value = self.expr(take(parts));
+        let range = parts.next().map(|range| self.expr(range));
+        let lines: Vec<&str> = docs.iter().map(|doc| doc.text.trim()).collect();
+        ParamDef { name, ty, value, range, doc: lines.join("\n") }
+    }
+
+    fn function<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> FnDef {
+        let name = self.definition(&take(parts));
+        let mut params = vec![];
+        loop {
+            let part = take(parts);
+            match part.as_rule() {
+                Rule::fn_param => params.push(self.fn_param(part)),
+                Rule::block => {
+                    let body = FnBody::Template(self.block(part));
+                    return FnDef { name, params, body };
+                }
+                _ => return FnDef { name, params, body: FnBody::Value(self.expr(part)) },
+            }
+        }
+    }
+
+    fn fn_param(&mut self, pair: Pair<'_, Rule>) -> FnParam {
+        let mut parts = parts(pair);
+        let name = self.definition(&take(&mut parts));
+        let ty = self.ty(&take(&mut parts));
+        FnParam { name, ty, default: parts.next().map(|value| self.expr(value)) }
+    }
+
+    fn ty(&mut self, pair: &Pair<'_, Rule>) -> Ty {
+        let span = self.span(pair);
+        let text = pair.as_str();
+        let Some((name, list)) = text.split_once('[') else {
+            return Ty { name: Name { text: text.into(), span }, list: None };
+        };
+        let length = list.trim_end_matches(']').parse().ok();
+        let span = Span { end: span.start + name.len() as u32, ..span };
+        Ty { name: Name { text: name.into(), span }, list: Some(length) }
+    }
+
+    pub(super) fn block(&mut self, pair: Pair<'_, Rule>) -> Block {
+        let span = self.span(&pair);
+        let mut stmts = vec![];
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::stmt => stmts.push(self.stmt(part)),
+                _ => self.dangling(&part),
+            }
+        }
+        Block { span, stmts }
+    }
+
+    /// Warns of a doc comment that documents nothing.
+    pub(super) fn dangling(&mut self, pair: &Pair<'_, Rule>) {
+        if pair.as_rule() != Rule::dangling_doc {
+            return;
+        }
+        let message = "this doc comment is attached to nothing";
+        self.sink.push(
+            Diagnostic::warning("E0022", self.span(pair), message)
+                .help("`///` documents the statement after it; `//` is a plain comment"),
+        );
+    }
+
+    fn field<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> Field {
+        let name = self.definition(&take(parts));
+        Field { name, value: self.expr(take(parts)) }
+    }
+
+    pub(super) fn record(&mut self, pair: Pair<'_, Rule>) -> Vec<Field> {
+        pair.into_inner().map(|field| self.field(&mut parts(field))).collect()
+    }
+
+    pub(super) fn object<'i>(
+        &mut self,
+        parts: &mut impl Iterator<Item = Pair<'i, Rule>>,
+    ) -> Object {
+        let (mut category, mut kind, mut label) = (None, None, None);
+        for part in take(parts).into_inner() {
+            match part.as_rule() {
+                Rule::ident => category = Some(self.name(&part)),
+                Rule::kind => kind = Some(self.name(&part)),
+                _ => label = Some(self.string(part)),
+            }
+        }
+        let category = category.expect("a head begins with a word");
+        Object { category, kind, label, body: self.block(take(parts)) }
+    }
+
+    pub(super) fn path(&mut self, pair: Pair<'_, Rule>) -> Vec<Name> {
+        pair.into_inner().map(|name| self.name(&name)).collect()
+    }
+
+    pub(super) fn string(&mut self, pair: Pair<'_, Rule>) -> Quoted {
+        let span = self.span(&pair);
+        let body = take(&mut pair.into_inner());
+        if body.as_str().len() > self.budgets.string {
+            let message = format!("a string of more than {} bytes", self.budgets.string);
+            self.sink.push(Diagnostic::error("E0509", span, message));
+            return Name { text: "".into(), span };
+        }
+        Name { text: unescape(body.as_str()).into(), span }
+    }
+
+    /// The unit that a token names; `None` if it is none, which is told.
+    pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Unit> {
+        let text = pair.as_str();
+        let bad = match Unit::parse(text) {
+            Ok(unit) => return Some(unit),
+            Err(bad) => bad,
+        };
+        let span = self.span(pair);
+        let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
+        match suggest_unit(&bad) {
+            Some(unit) => {
+                diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));
+                if bad == text {
+                    diagnostic = diagnostic.fix(span, unit);
+                }
+            }
+            None => diagnostic = diagnostic.help("a variable is multiplied by `*`"),
+        }
+        self.sink.push(diagnostic);
+        None
+    }
+}
+
+fn doc(pair: &Pair<'_, Rule>, span: Span) -> Doc {
+    let text = pair.as_str().trim_start_matches('/').trim_end();
+    Doc { text: text.strip_prefix(' ').unwrap_or(text).to_owned(), span }
+}
+
+/// The unit that a misspelt one stands for: full names, or a slip of the pen.
+pub(crate) fn suggest_unit(text: &str) -> Option<&'static str> {
+    const FULL: [(&str, &str); 17] = [
+        ("meter", "m"),
+        ("metre", "m"),
+        ("kilometer", "km"),
+        ("centimeter", "cm"),
+        ("centimetre", "cm"),
+        ("millimeter", "mm"),
+        ("millimetre", "mm"),
+        ("nanometer", "nm"),
+        ("nanometre", "nm"),
+        ("degree", "deg"),
+        ("radian", "rad"),
+        ("second", "s"),
+        ("kelvin", "K"),
+        ("watt", "W"),
+        ("lumen", "lm"),
+        ("candela", "cd"),
+        ("in", "inch"),
+    ];
+    let lower = text.to_lowercase();
+    let singular = lower.strip_suffix('s').unwrap_or(&lower);
+    let full = FULL.iter().find(|(name, _)| *name == singular).map(|(_, unit)| *unit);
+    let case = UNITS.iter().find(|(name, _)| name.to_lowercase() == lower).map(|(name, _)| *name);
+    full.or(case).or_else(|| nearest(text, UNITS.iter().map(|(name, _)| *name)))
+}
+
+/// Resolves escapes; the grammar and the pre-scan let only known ones through.
+fn unescape(body: &str) -> String {
+    let mut out = String::with_capacity(body.len());
+    let mut chars = body.chars();
+    while let Some(c) = chars.next() {
+        if c != '\\' {
+            out.push(c);
+            continue;
+        }
+        match chars.next() {
+            Some('n') => out.push('\n'),
+            Some('t') => out.push('\t'),
+            Some('u') => {
+                let digits: String =
+                    chars.by_ref().skip(1).take_while(|digit| *digit != '}').collect();
+                let code = u32::from_str_radix(&digits, 16).ok().and_then(char::from_u32);
+                out.push(code.unwrap_or(char::REPLACEMENT_CHARACTER));
+            }
+            Some(other) => out.push(other),
+            None => {}
+        }
+    }
+    out
+}

@@ -1,0 +1,298 @@
+//! What a person did wrong where the grammar fits nothing: by the tokens around the place.
+
+use std::ops::Range;
+
+use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
+
+use super::build::RESERVED;
+use super::lex::{Token, TokenKind, tokens};
+use super::number;
+
+/// A mistake with what is needed to go on after it.
+pub(super) struct Explained {
+    pub(super) diagnostic: Diagnostic,
+    /// The byte at which reading stopped.
+    pub(super) at: usize,
+    /// The braces that are open there, outermost first.
+    pub(super) blocks: Vec<usize>,
+    /// Where a statement begins that the mistake swallowed.
+    pub(super) resume: Option<usize>,
+}
+
+/// Whether a word is a directive of pbrt's language.
+pub(super) fn is_pbrt(word: &str) -> bool {
+    const WORDS: [&str; 32] = [
+        "Accelerator",
+        "ActiveTransform",
+        "AreaLightSource",
+        "Attribute",
+        "AttributeBegin",
+        "AttributeEnd",
+        "Camera",
+        "ColorSpace",
+        "ConcatTransform",
+        "CoordinateSystem",
+        "CoordSysTransform",
+        "Film",
+        "Identity",
+        "Include",
+        "Integrator",
+        "LightSource",
+        "LookAt",
+        "MakeNamedMaterial",
+        "MakeNamedMedium",
+        "Material",
+        "MediumInterface",
+        "NamedMaterial",
+        "ObjectBegin",
+        "ObjectInstance",
+        "PixelFilter",
+        "Rotate",
+        "Sampler",
+        "Scale",
+        "Shape",
+        "Texture",
+        "Translate",
+        "WorldBegin",
+    ];
+    WORDS.contains(&word)
+}
+
+/// What stands around the place of a mistake.
+struct Around<'a> {
+    tokens: Vec<Token<'a>>,
+    /// The token at which reading stopped; the number of tokens at the end.
+    at: usize,
+    /// Brackets that are open there, by token, outermost first.
+    open: Vec<usize>,
+    source: SourceId,
+    end: usize,
+}
+
+/// Explains why `text[chunk]` cannot be read as a statement; pest stopped at byte `at`.
+pub(super) fn explain(text: &str, chunk: Range<usize>, at: usize, source: SourceId) -> Explained {
+    let tokens: Vec<Token<'_>> = tokens(text, chunk.clone()).collect();
+    let index = tokens.iter().position(|t| t.end() > at).unwrap_or(tokens.len());
+    let mut open = vec![];
+    for (i, token) in tokens[..index].iter().enumerate() {
+        match (token.kind, token.text) {
+            (TokenKind::Mark, "(" | "[" | "{") => open.push(i),
+            (TokenKind::Mark, ")" | "]" | "}") => {
+                open.pop();
+            }
+            _ => {}
+        }
+    }
+    let around = Around { tokens, at: index, open, source, end: chunk.end };
+    let diagnostic = around.diagnose();
+    let blocks = around
+        .open
+        .iter()
+        .filter(|i| around.tokens[**i].text == "{")
+        .map(|i| around.tokens[*i].start);
+    let resume = around.swallowed().and_then(|back| around.before(back));
+    Explained {
+        diagnostic,
+        at: around.current().map_or(chunk.end, |t| t.start),
+        blocks: blocks.collect(),
+        resume: resume.filter(|_| around.open.is_empty()).map(|t| t.start),
+    }
+}
+
+impl<'a> Around<'a> {
+    fn current(&self) -> Option<&Token<'a>> {
+        self.tokens.get(self.at)
+    }
+
+    /// The token `back` places before the current one.
+    fn before(&self, back: usize) -> Option<&Token<'a>> {
+        self.at.checked_sub(back).and_then(|i| self.tokens.get(i))
+    }
+
+    fn span(&self, token: &Token<'_>) -> Span {
+        Span::new(self.source, token.start, token.end())
+    }
+
+    fn error(&self, code: &'static str, token: &Token<'_>, message: String) -> Diagnostic {
+        Diagnostic::error(code, self.span(token), message)
+    }
+
+    fn diagnose(&self) -> Diagnostic {
+        self.number()
+            .or_else(|| self.statement_head())
+            .or_else(|| self.reserved())
+            .or_else(|| self.equals())
+            .or_else(|| self.missing_operand())
+            .or_else(|| self.missing_comma())
+            .or_else(|| self.missing_equals())
+            .or_else(|| self.untyped())
+            .unwrap_or_else(|| self.unexpected())
+    }
+
+    /// `1.2.3`, `1e`, `5.`
+    fn number(&self) -> Option<Diagnostic> {
+        let near = [self.current(), self.before(1)];
+        let bad = near
+            .into_iter()
+            .flatten()
+            .find(|t| t.kind == TokenKind::Number && number::parse(t.text.as_bytes()).is_none())?;
+        let found = self.error("E0016", bad, format!("`{}` is not a number", bad.text));
+        Some(match bad.text.strip_suffix('.') {
+            Some(whole) => found.fix(self.span(bad), whole),
+            None => found.help("a number is written as 12, 0.5, .5, 1_000 or 2.5e-3"),
+        })
+    }
+
+    fn statement_head(&self) -> Option<Diagnostic> {
+        let first = self.tokens.iter().find(|t| t.kind != TokenKind::Doc)?;
+        let second = self.tokens.get(1);
+        if is_pbrt(first.text) && second.is_none_or(|t| t.text != "=") {
+            let message = format!("`{}` looks like pbrt's language", first.text);
+            let found = self.error("E0021", first, message);
+            return Some(found.help("`luxel convert` turns a pbrt file into a scene"));
+        }
+        let current = self.current()?;
+        if current.text == "else" {
+            let message = "`else` without an `if` before it".to_owned();
+            return Some(self.error("E0020", current, message));
+        }
+        let before = self.before(1)?;
+        if current.text == ":" && before.kind == TokenKind::Word {
+            let message = "a value is given with `=`, not with `:`".to_owned();
+            let span = self.span(current);
+            return Some(self.error("E0017", current, message).fix(span, " ="));
+        }
+        None
+    }
+
+    /// A word of the language where a value is wanted, on the same line.
+    fn reserved(&self) -> Option<Diagnostic> {
+        let (current, before) = (self.current()?, self.before(1)?);
+        let wanted = before.is_operator() || matches!(before.text, "(" | "[" | ",");
+        if !wanted || current.first_on_line || !RESERVED.contains(&current.text) {
+            return None;
+        }
+        let message = format!("`{}` is a word of the language, not a value", current.text);
+        Some(self.error("E0019", current, message))
+    }
+
+    /// `= =` and `==` where a value is given.
+    fn equals(&self) -> Option<Diagnostic> {
+        let current = self.current()?;
+        let before = self.before(1)?;
+        if current.text == "=" && before.text == "=" {
+            let message = "`=` is written twice".to_owned();
+            let span = self.span(current);
+            return Some(self.error("E0013", current, message).fix(span, ""));
+        }
+        let doubled = [Some(current), Some(before), self.tokens.get(self.at + 1)];
+        let doubled = doubled.into_iter().flatten().find(|t| t.text == "==")?;
+        let message = "`==` compares; a value is given with `=`".to_owned();
+        Some(self.error("E0013", doubled, message).fix(self.span(doubled), "="))
+    }
+
+    /// A word that begins a line after an operator, near the place where reading stopped: how many
+    /// tokens back.
+    fn swallowed(&self) -> Option<usize> {
+        (0..=3).find(|back| {
+            let word = self.before(*back).filter(|t| t.first_on_line && t.kind == TokenKind::Word);
+            word.is_some() && self.before(back + 1).is_some_and(Token::is_operator)
+        })
+    }
+
+    /// An operator with nothing after it.
+    fn missing_operand(&self) -> Option<Diagnostic> {
+        let operator = match self.swallowed() {
+            Some(back) => self.before(back + 1)?,
+            None => self.before(1)?,
+        };
+        let on_line = |t: &Token<'_>| t.begins_operand() && t.kind != TokenKind::Word;
+        let follows = self.swallowed().is_none() && self.current().is_some_and(on_line);
+        if follows || !operator.is_operator() {
+            return None;
+        }
+        let message = format!("a value is missing after `{}`", operator.text);
+        Some(self.error("E0015", operator, message))
+    }
+
+    fn missing_comma(&self) -> Option<Diagnostic> {
+        let open = self.open.last().map(|i| self.tokens[*i].text)?;
+        let (current, before) = (self.current()?, self.before(1)?);
+        if open == "{" || !before.ends_operand() || !current.begins_operand() {
+            return None;
+        }
+        let gap = Span::new(self.source, before.end(), before.end());
+        let message = format!("a comma is missing before `{}`", short(current.text));
+        Some(self.error("E0014", current, message).fix(gap, ","))
+    }
+
+    /// `radius 5 cm`
+    fn missing_equals(&self) -> Option<Diagnostic> {
+        // The word may stand one or two tokens before the place: `material gold }`.
+        for (word_at, value_at) in [(1, 0), (2, 1)] {
+            let Some(word) = self.before(word_at).filter(|t| t.kind == TokenKind::Word) else {
+                continue;
+            };
+            let Some(value) = self.before(value_at) else { continue };
+            let begins = match self.before(word_at + 1) {
+                None => true,
+                Some(t) => {
+                    matches!(t.text, "{" | "," | ";" | "let" | "set" | "param")
+                        || word.first_on_line
+                }
+            };
+            if !begins || !value.begins_operand() || value.first_on_line || value.text == "{" {
+                continue;
+            }
+            if RESERVED.contains(&word.text) {
+                continue;
+            }
+            let gap = Span::new(self.source, word.end(), word.end());
+            let message = format!("`=` is missing between `{}` and its value", word.text);
+            return Some(self.error("E0012", value, message).fix(gap, " ="));
+        }
+        None
+    }
+
+    /// `fn f(a) = a`
+    fn untyped(&self) -> Option<Diagnostic> {
+        let (current, before) = (self.current()?, self.before(1)?);
+        let in_head = self.open.len() == 1 && self.tokens.first().is_some_and(|t| t.text == "fn");
+        let ends = matches!(current.text, ")" | "," | "=");
+        if !in_head || !ends || before.kind != TokenKind::Word {
+            return None;
+        }
+        let message = format!("the parameter `{}` needs a type", before.text);
+        Some(
+            self.error("E0024", before, message)
+                .help(format!("write `{}: length`, `float`, `int`, `angle`, …", before.text)),
+        )
+    }
+
+    fn unexpected(&self) -> Diagnostic {
+        let Some(current) = self.current() else {
+            let end = self.tokens.last().map_or(self.end, Token::end);
+            let span = match self.tokens.last() {
+                Some(last) => self.span(last),
+                None => Span::new(self.source, end, end),
+            };
+            return Diagnostic::error("E0023", span, "the statement ends too soon");
+        };
+        let message = format!("`{}` is not expected here", short(current.text));
+        let mut found = self.error("E0023", current, message);
+        let first = self.tokens[0].text;
+        if let Some(known) = nearest(first, RESERVED).filter(|known| *known != first) {
+            found = found.help(format!("did you mean `{known}` instead of `{first}`?"));
+        }
+        found
+    }
+}
+
+/// The first characters of a token.
+fn short(text: &str) -> String {
+    let mut out: String = text.chars().take(32).collect();
+    if out.len() < text.len() {
+        out.push('…');
+    }
+    out
+}

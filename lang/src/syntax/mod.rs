@@ -1,0 +1,30 @@
+//! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
+
+mod build;
+mod explain;
+mod expr;
+mod lex;
+mod number;
+mod parse;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+pub(crate) use build::suggest_unit;
+#[cfg(test)]
+pub(crate) use parse::parse_whole;
+pub(crate) use parse::{Tree, parse, parse_expr};
+pub(crate) use tree::{
+    Arg, Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Form, Name, Object, Op, ParamDef,
+    Quoted, Stmt, StmtNode, Ty,
+};
+
+pub(crate) use grammar::{Rule, SceneParser};
+
+/// What pest makes of the grammar.
+mod grammar {
+    /// The parser that pest derives.
+    #[derive(pest_derive::Parser)]
+    #[grammar = "scene.pest"]
+    pub(crate) struct SceneParser;
+}

@@ -1,0 +1,346 @@
+//! From text to statements: cut by the pre-scan, each piece read by pest, mistakes explained.
+
+use std::ops::Range;
+
+use luxel_core::diag::{Diagnostic, SourceId, Span};
+use pest::Parser;
+use pest::error::InputLocation;
+
+use super::build::Builder;
+use super::explain::explain;
+use super::lex::{TokenKind, tokens};
+use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
+use super::{Rule, SceneParser};
+use crate::budgets::Budgets;
+use crate::prescan::{Fault, scan};
+use crate::sink::Sink;
+
+/// How often reading goes on after a brace that never closes.
+const RESUME_LIMIT: usize = 8;
+/// In how many enclosing blocks statements after a mistake are still looked at.
+const BLOCKS_LOOKED_AT: usize = 8;
+
+/// A file, read.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Tree {
+    pub(crate) stmts: Vec<Stmt>,
+}
+
+/// Reads one text; what cannot be read is told and leaves `StmtNode::Broken`.
+pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut Sink) -> Tree {
+    let mut reader = Reader { text, source, budgets, sink, out: Tree::default() };
+    reader.file();
+    reader.out
+}
+
+/// Reads one text in one piece, without recovery: the oracle of `parse`.
+#[cfg(test)]
+pub(crate) fn parse_whole(
+    text: &str,
+    source: SourceId,
+    budgets: &Budgets,
+    sink: &mut Sink,
+) -> Option<Tree> {
+    let file = SceneParser::parse(Rule::file, text).ok()?.next()?;
+    let mut builder = Builder { source, base: 0, sink, budgets };
+    let stmts = file
+        .into_inner()
+        .filter(|part| part.as_rule() == Rule::stmt)
+        .map(|part| builder.stmt(part))
+        .collect();
+    Some(Tree { stmts })
+}
+
+/// Reads an expression that begins at byte `start` and ends with the text.
+pub(crate) fn parse_expr(
+    text: &str,
+    start: usize,
+    source: SourceId,
+    budgets: &Budgets,
+    sink: &mut Sink,
+) -> Option<Expr> {
+    let faults = scan(text, start..text.len(), 0, budgets.brackets).faults;
+    let pairs = SceneParser::parse(Rule::one_expr, &text[start..]).ok();
+    let pair = pairs.filter(|_| faults.is_empty())?.next()?.into_inner().next()?;
+    let mut builder = Builder { source, base: start, sink, budgets };
+    let expr = builder.expr(pair);
+    (expr.node != ExprNode::Broken).then_some(expr)
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    source: SourceId,
+    budgets: &'a Budgets,
+    sink: &'a mut Sink,
+    out: Tree,
+}
+
+impl Reader<'_> {
+    fn span(&self, range: Range<usize>) -> Span {
+        Span::new(self.source, range.start, range.end)
+    }
+
+    fn file(&mut self) {
+        if let Some(at) = memchr::memchr(0, self.text.as_bytes()) {
+            let message = format!("a NUL byte at offset {at}: this is not a text");
+            self.sink.push(Diagnostic::error("E0004", self.span(at..at + 1), message));
+            return;
+        }
+        if self.text.starts_with('\u{FEFF}') {
+            let message = "the file begins with a byte order mark, which is not needed";
+            let span = self.span(0..3);
+            self.sink.push(Diagnostic::warning("E0004", span, message).fix(span, ""));
+        }
+        let Some(mut from) = self.header() else { return };
+        for _ in 0..RESUME_LIMIT {
+            match self.region(from) {
+                Some(next) if next > from => from = next,
+                _ => break,
+            }
+        }
+    }
+
+    /// Reads `scene 1`; gives where it ends, or `None` if reading on is of no use.
+    fn header(&mut self) -> Option<usize> {
+        let mut tokens = tokens(self.text, 0..self.text.len());
+        let Some(first) = tokens.next() else {
+            let message = "the file is empty: a scene begins with `scene 1`";
+            let span = self.span(0..0);
+            self.sink.push(Diagnostic::error("E0001", span, message).fix(span, "scene 1\n"));
+            return None;
+        };
+        let span = self.span(first.start..first.end());
+        if first.text != "scene" {
+            if !super::explain::is_pbrt(first.text) {
+                let start = self.span(first.start..first.start);
+                let message = "a scene begins with `scene 1`";
+                let found = Diagnostic::error("E0001", span, message).fix(start, "scene 1\n");
+                self.sink.push(found);
+            }
+            return Some(first.start);
+        }
+        let version = tokens.next().filter(|t| !t.first_on_line && t.kind == TokenKind::Number);
+        let Some(version) = version else {
+            let message = "`scene` wants the version of the language";
+            let end = self.span(first.end()..first.end());
+            self.sink.push(Diagnostic::error("E0001", span, message).fix(end, " 1"));
+            return Some(first.end());
+        };
+        if version.text != "1" {
+            let span = self.span(version.start..version.end());
+            let message = format!("version {} is not known; the newest is 1", version.text);
+            self.sink.push(Diagnostic::error("E0002", span, message).fix(span, "1"));
+            return None;
+        }
+        Some(version.end())
+    }
+
+    /// Reads statements from `from` on. Gives where to go on after a brace that never closes.
+    fn region(&mut self, from: usize) -> Option<usize> {
+        let found = scan(self.text, from..self.text.len(), 0, self.budgets.brackets);
+        let resume = found.faults.iter().find_map(|fault| match fault {
+            Fault::Unclosed { open } => self.likely_end(*open),
+            _ => None,
+        });
+        let too_deep = found.faults.iter().find(|f| matches!(f, Fault::TooDeep { .. }));
+        let mut told_unclosed = false;
+        for fault in &found.faults {
+            let unclosed = matches!(fault, Fault::Unclosed { .. });
+            if unclosed && !told_unclosed || !unclosed && resume.is_none_or(|r| fault.at() < r) {
+                self.tell(fault, resume);
+            }
+            told_unclosed |= unclosed;
+        }
+        let end = resume.unwrap_or(self.text.len());
+        self.before_first(from, found.starts.first().copied().unwrap_or(end), &found.faults);
+        let ends = found.starts.iter().skip(1).copied().chain([self.text.len()]);
+        for (start, stop) in found.starts.iter().copied().zip(ends) {
+            if start >= end || self.sink.is_full() {
+                break;
+            }
+            let chunk = start..stop.min(end);
+            if found.faults.iter().any(|fault| chunk.contains(&fault.at())) {
+                self.broken(chunk);
+            } else {
+                self.chunk(chunk, true);
+            }
+            if too_deep.is_some_and(|fault| fault.at() < stop) {
+                return None;
+            }
+        }
+        resume
+    }
+
+    /// What stands before the first statement must be nothing.
+    fn before_first(&mut self, from: usize, first: usize, faults: &[Fault]) {
+        let Some(token) = tokens(self.text, from..first).next() else { return };
+        if faults.iter().any(|fault| fault.at() < first) {
+            return;
+        }
+        let span = self.span(token.start..token.end());
+        if token.kind == TokenKind::Doc {
+            let message = "this doc comment is attached to nothing";
+            self.sink.push(Diagnostic::warning("E0022", span, message));
+        } else if !matches!(token.text, "," | ";") {
+            let found: String = token.text.chars().take(40).collect();
+            let message = format!("`{found}` cannot begin a statement");
+            self.sink.push(Diagnostic::error("E0023", span, message));
+        }
+    }
+
+    /// Where a block that never closes most likely ends: before the first line that is indented no
+    /// more than the line of its brace.
+    fn likely_end(&self, open: usize) -> Option<usize> {
+        let line_start = self.text[..open].rfind('\n').map_or(0, |at| at + 1);
+        let indent = |line: &str| line.len() - line.trim_start_matches([' ', '\t']).len();
+        let limit = indent(&self.text[line_start..open]);
+        let mut at = open + self.text[open..].find('\n')? + 1;
+        for line in self.text[at..].split_inclusive('\n') {
+            let first = line.trim_start().chars().next();
+            let begins = first.is_some_and(|c| c.is_ascii_alphabetic() || matches!(c, '@' | '/'));
+            if begins && indent(line) <= limit {
+                return Some(at);
+            }
+            at += line.len();
+        }
+        None
+    }
+
+    fn tell(&mut self, fault: &Fault, resume: Option<usize>) {
+        let byte = |at: usize| char::from(self.text.as_bytes()[at]);
+        let diagnostic = match fault {
+            Fault::TooDeep { at } => {
+                let message = format!("more than {} nested brackets", self.budgets.brackets);
+                Diagnostic::error("E0011", self.span(*at..at + 1), message)
+                    .help("give an inner part a name with `let`")
+            }
+            Fault::Unclosed { open } => {
+                let message = format!("this `{}` is never closed", byte(*open));
+                let found = Diagnostic::error("E0008", self.span(*open..open + 1), message);
+                match resume {
+                    Some(at) => found.label(self.span(at..at), "it most likely closes before this"),
+                    None => found,
+                }
+            }
+            Fault::Mismatch { open, at } => {
+                let message = format!("`{}` is closed by `{}`", byte(*open), byte(*at));
+                Diagnostic::error("E0009", self.span(*at..at + 1), message)
+                    .label(self.span(*open..open + 1), "opened here")
+            }
+            Fault::Stray { at } => {
+                let message = format!("this `{}` closes nothing", byte(*at));
+                let span = self.span(*at..at + 1);
+                Diagnostic::error("E0010", span, message).fix(span, "")
+            }
+            Fault::String { at } => {
+                let message = "a string ends on its line with `\"`";
+                let end = self.span(at.end..at.end);
+                Diagnostic::error("E0005", self.span(at.clone()), message).fix(end, "\"")
+            }
+            Fault::Comment { at } => {
+                let message = "this comment is never closed by `*/`";
+                Diagnostic::error("E0006", self.span(*at..at + 2), message)
+            }
+            Fault::Escape { at } => {
+                let message = "an unknown escape";
+                Diagnostic::error("E0007", self.span(at.clone()), message)
+                    .help("known are \\\" \\\\ \\n \\t and \\u{…}; write a backslash as \\\\")
+            }
+        };
+        self.sink.push(diagnostic);
+    }
+
+    /// Reads one statement. `keep` says whether it becomes part of the tree.
+    fn chunk(&mut self, chunk: Range<usize>, keep: bool) {
+        let text = &self.text[chunk.clone()];
+        match SceneParser::parse(Rule::one_stmt, text) {
+            Ok(pairs) => {
+                let mut builder = Builder {
+                    source: self.source,
+                    base: chunk.start,
+                    sink: self.sink,
+                    budgets: self.budgets,
+                };
+                for part in pairs.flat_map(pest::iterators::Pair::into_inner) {
+                    match part.as_rule() {
+                        Rule::stmt if keep => self.out.stmts.push(builder.stmt(part)),
+                        Rule::stmt => {}
+                        _ => builder.dangling(&part),
+                    }
+                }
+            }
+            Err(error) => {
+                let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
+                if keep {
+                    self.broken(chunk.clone());
+                }
+                self.recover(chunk.start + at, chunk, keep);
+            }
+        }
+    }
+
+    /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those
+    /// around it.
+    fn recover(&mut self, at: usize, chunk: Range<usize>, keep: bool) {
+        let found = explain(self.text, chunk.clone(), at, self.source);
+        let here = found.at;
+        self.sink.push(found.diagnostic);
+        if self.sink.is_full() {
+            return;
+        }
+        let mut blocks = found.blocks;
+        blocks.reverse();
+        blocks.truncate(BLOCKS_LOOKED_AT);
+        let mut after = here;
+        for open in blocks {
+            let scan = scan(self.text, open..chunk.end, 1, self.budgets.brackets);
+            let close = self.matching(open, chunk.end);
+            let inner: Vec<usize> =
+                scan.starts.into_iter().filter(|s| *s > after && *s < close).collect();
+            let ends = inner.iter().skip(1).copied().chain([close]);
+            for (start, stop) in inner.iter().copied().zip(ends) {
+                self.chunk(start..stop, false);
+            }
+            after = after.max(close);
+        }
+        // A statement that was swallowed by an operator at the end of the line before.
+        if let Some(start) = found.resume.filter(|start| *start > chunk.start) {
+            let starts = scan(self.text, start..chunk.end, 0, self.budgets.brackets).starts;
+            let ends = starts.iter().skip(1).copied().chain([chunk.end]);
+            for (start, stop) in starts.iter().copied().zip(ends) {
+                self.chunk(start..stop, keep);
+            }
+        }
+    }
+
+    /// The bracket that closes the one at `open`, or `end`.
+    fn matching(&self, open: usize, end: usize) -> usize {
+        let mut depth = 0_usize;
+        for token in tokens(self.text, open..end).filter(|t| t.kind == TokenKind::Mark) {
+            match token.text {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            if depth == 0 {
+                return token.start;
+            }
+        }
+        end
+    }
+
+    /// Keeps a statement that cannot be read, with the name that it would have defined.
+    fn broken(&mut self, chunk: Range<usize>) {
+        let span = self.span(chunk.clone());
+        let mut words = tokens(self.text, chunk).filter(|t| t.kind != TokenKind::Doc);
+        let mut defines = None;
+        if let Some("let" | "param" | "fn") = words.next().map(|t| t.text) {
+            defines = words
+                .next()
+                .filter(|t| t.kind == TokenKind::Word)
+                .map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
+        }
+        let node = StmtNode::Broken { defines };
+        self.out.stmts.push(Stmt { span, docs: vec![], attrs: vec![], node });
+    }
+}

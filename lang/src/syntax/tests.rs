@@ -1,0 +1,69 @@
+//! The grammar against the pre-scan, and mistakes in bulk.
+
+use super::*;
+use crate::Budgets;
+use crate::sink::Sink;
+use luxel_core::diag::SourceId;
+
+const EXAMPLES: [&str; 3] = [
+    include_str!("../../tests/scenes/cornell.scene"),
+    include_str!("../../tests/scenes/glass_fog.scene"),
+    include_str!("../../tests/scenes/parametric.scene"),
+];
+
+fn read(text: &str) -> (Tree, Vec<(&'static str, String)>) {
+    let mut sink = Sink::new(100);
+    let tree = parse(text, SourceId(0), &Budgets::default(), &mut sink);
+    let place = |d: luxel_core::diag::Diagnostic| {
+        let range = d.span().unwrap().range();
+        (d.code, text[range].to_owned())
+    };
+    (tree, sink.finish().into_iter().map(place).collect())
+}
+
+#[test]
+fn reading_by_statement_is_reading_the_file_whole() {
+    for text in EXAMPLES {
+        let mut sink = Sink::new(100);
+        let whole = parse_whole(text, SourceId(0), &Budgets::default(), &mut sink).unwrap();
+        let (cut, mistakes) = read(text);
+        assert_eq!(mistakes, []);
+        assert!(cut.stmts.len() > 10 && sink.finish().is_empty());
+        assert_eq!(cut, whole);
+    }
+}
+
+#[test]
+fn several_mistakes_are_told_in_one_run() {
+    let (_, mistakes) = read(include_str!("../../tests/scenes/bad_multi.scene"));
+    let expected =
+        [("E0015", "+"), ("E0013", "="), ("E0014", "0"), ("E0012", "0.3"), ("E0024", "a")];
+    assert_eq!(mistakes, expected.map(|(code, text)| (code, text.to_owned())));
+}
+
+#[test]
+fn a_nested_mistake_costs_no_more_than_its_text() {
+    // Backtracking once cost 2^n here: n = 16 took seconds, n = 100 would outlive the machine.
+    let n = 100;
+    let text = format!("scene 1\nlet a = {}1 +{}", "material x { b = ".repeat(n), " }".repeat(n));
+    let (send, receive) = std::sync::mpsc::channel();
+    let reading = std::thread::spawn(move || {
+        let mistakes = read(&text).1;
+        send.send(mistakes).unwrap();
+    });
+    let mistakes = receive.recv_timeout(std::time::Duration::from_secs(5)).unwrap();
+    reading.join().unwrap();
+    assert_eq!(mistakes, [("E0015", "+".to_owned())]);
+}
+
+#[test]
+fn operators_bind_as_in_mathematics_and_chains_are_flat() {
+    let (tree, mistakes) = read("scene 1\nlet a = -b ^ 2 * 3 + c - d\n");
+    assert_eq!(mistakes, []);
+    let StmtNode::Let { value, .. } = &tree.stmts[0].node else { panic!("a let") };
+    let ExprNode::Chain { first, rest } = &value.node else { panic!("a sum") };
+    assert_eq!(rest.iter().map(|(op, ..)| *op).collect::<Vec<_>>(), [Op::Add, Op::Sub]);
+    let ExprNode::Chain { first, .. } = &first.node else { panic!("a product") };
+    let ExprNode::Unary { inner, .. } = &first.node else { panic!("a sign") };
+    assert!(matches!(&inner.node, ExprNode::Chain { rest, .. } if rest[0].0 == Op::Pow));
+}

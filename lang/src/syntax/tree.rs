@@ -1,0 +1,341 @@
+//! The syntax tree: what the text says, each node with the bytes it comes from.
+
+use std::sync::Arc;
+
+use luxel_core::diag::Span;
+use luxel_sdk::params::Unit;
+
+/// A word with its place.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Name {
+    pub(crate) text: Arc<str>,
+    pub(crate) span: Span,
+}
+
+/// A string with its escapes resolved; the span includes the quotes.
+pub(crate) type Quoted = Name;
+
+/// A doc comment's line, without slashes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Doc {
+    pub(crate) text: String,
+    pub(crate) span: Span,
+}
+
+/// Statements between braces.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Block {
+    pub(crate) span: Span,
+    pub(crate) stmts: Vec<Stmt>,
+}
+
+/// A statement.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stmt {
+    pub(crate) span: Span,
+    pub(crate) docs: Vec<Doc>,
+    /// Attributes, without the `@`; the span includes it.
+    pub(crate) attrs: Vec<Name>,
+    pub(crate) node: StmtNode,
+}
+
+impl Stmt {
+    /// Whether `@off` takes the statement out of the scene.
+    pub(crate) fn is_off(&self) -> bool {
+        self.attrs.iter().any(|attr| &*attr.text == "off")
+    }
+}
+
+/// What a statement is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum StmtNode {
+    Let {
+        name: Name,
+        ty: Option<Ty>,
+        value: Expr,
+    },
+    Param(Arc<ParamDef>),
+    Fn(Arc<FnDef>),
+    For {
+        index: Option<Name>,
+        item: Name,
+        over: Expr,
+        body: Block,
+    },
+    If {
+        arms: Vec<(Expr, Block)>,
+        otherwise: Option<Block>,
+    },
+    Include {
+        path: Quoted,
+        with: Vec<Field>,
+    },
+    Import {
+        path: Quoted,
+        name: Name,
+    },
+    Place {
+        what: Expr,
+        label: Option<Quoted>,
+        body: Option<Block>,
+    },
+    Set {
+        path: Vec<Name>,
+        value: Expr,
+    },
+    Assert {
+        cond: Expr,
+        message: Quoted,
+    },
+    Units(Vec<Field>),
+    Field(Field),
+    Object(Arc<Object>),
+    Call(Expr),
+    /// It could not be read; the name that it would have defined, if any.
+    Broken {
+        defines: Option<Name>,
+    },
+}
+
+/// `param x: length = 3 m in 1 m..=9 m`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ParamDef {
+    pub(crate) name: Name,
+    pub(crate) ty: Ty,
+    pub(crate) value: Expr,
+    pub(crate) range: Option<Expr>,
+    pub(crate) doc: String,
+}
+
+/// `fn f(a: length) = …` or `fn f() { … }`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FnDef {
+    pub(crate) name: Name,
+    pub(crate) params: Vec<FnParam>,
+    pub(crate) body: FnBody,
+}
+
+/// A parameter of a function.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FnParam {
+    pub(crate) name: Name,
+    pub(crate) ty: Ty,
+    pub(crate) default: Option<Expr>,
+}
+
+/// What a function does.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum FnBody {
+    /// It gives a value.
+    Value(Expr),
+    /// It emits nodes.
+    Template(Block),
+}
+
+/// A type's name, and whether it is a list of them.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ty {
+    pub(crate) name: Name,
+    /// `[]` is a list of any length, `[3]` of that length.
+    pub(crate) list: Option<Option<usize>>,
+}
+
+/// `name = value`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Field {
+    pub(crate) name: Name,
+    pub(crate) value: Expr,
+}
+
+/// `category kind "label" { … }`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Object {
+    pub(crate) category: Name,
+    pub(crate) kind: Option<Name>,
+    pub(crate) label: Option<Quoted>,
+    pub(crate) body: Block,
+}
+
+impl Object {
+    /// Category, kind and label.
+    pub(crate) fn head(&self) -> Span {
+        let last = self.label.as_ref().or(self.kind.as_ref()).unwrap_or(&self.category);
+        self.category.span.to(last.span)
+    }
+}
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Expr {
+    pub(crate) span: Span,
+    pub(crate) node: ExprNode,
+}
+
+/// Whether brackets are round or square: a vector or a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    Tuple,
+    List,
+}
+
+/// What an expression is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ExprNode {
+    /// A number as it was written, times its unit.
+    Number(f64, Option<Unit>),
+    /// Literal numbers between brackets, or a table.
+    Numbers {
+        data: Arc<[f64]>,
+        unit: Option<Unit>,
+        form: Form,
+    },
+    Text(Arc<str>),
+    Bool(bool),
+    /// Expressions between brackets; a single one between round brackets stands for itself.
+    Items {
+        items: Vec<Expr>,
+        unit: Option<Unit>,
+        form: Form,
+    },
+    /// `(x)`, perhaps with a unit.
+    Paren {
+        inner: Box<Expr>,
+        unit: Option<Unit>,
+    },
+    Comp(Box<Comp>),
+    If {
+        arms: Vec<(Expr, Expr)>,
+        otherwise: Box<Expr>,
+    },
+    Object(Arc<Object>),
+    Record(Vec<Field>),
+    /// Words joined by dots.
+    Path(Vec<Name>),
+    /// Operands of equal precedence, joined by operators: flat, so that long chains need no stack.
+    Chain {
+        first: Box<Expr>,
+        rest: Vec<(Op, Span, Expr)>,
+    },
+    Unary {
+        op: Op,
+        inner: Box<Expr>,
+    },
+    Call {
+        callee: Box<Expr>,
+        args: Vec<Arg>,
+    },
+    Index {
+        of: Box<Expr>,
+        at: Box<Expr>,
+    },
+    Member {
+        of: Box<Expr>,
+        name: Name,
+    },
+    With {
+        of: Box<Expr>,
+        fields: Vec<Field>,
+    },
+    /// It could not be read; it was told.
+    Broken,
+}
+
+/// `[for i in 0..9 if c => value]`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Comp {
+    pub(crate) index: Option<Name>,
+    pub(crate) item: Name,
+    pub(crate) over: Expr,
+    pub(crate) filter: Option<Expr>,
+    pub(crate) value: Expr,
+}
+
+/// An argument of a call.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Arg {
+    pub(crate) name: Option<Name>,
+    pub(crate) value: Expr,
+}
+
+/// An operator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Op {
+    Or,
+    And,
+    Eq,
+    Ne,
+    Le,
+    Ge,
+    Lt,
+    Gt,
+    Range,
+    RangeTo,
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Rem,
+    Pow,
+    Not,
+}
+
+impl Op {
+    /// The operator of a token.
+    pub(crate) fn of(token: &str) -> Self {
+        match token {
+            "||" => Self::Or,
+            "&&" => Self::And,
+            "==" => Self::Eq,
+            "!=" => Self::Ne,
+            "<=" => Self::Le,
+            ">=" => Self::Ge,
+            "<" => Self::Lt,
+            ">" => Self::Gt,
+            ".." => Self::Range,
+            "..=" => Self::RangeTo,
+            "+" => Self::Add,
+            "-" => Self::Sub,
+            "*" => Self::Mul,
+            "/" => Self::Div,
+            "%" => Self::Rem,
+            "^" => Self::Pow,
+            _ => Self::Not,
+        }
+    }
+
+    /// The token.
+    pub(crate) fn token(self) -> &'static str {
+        match self {
+            Self::Or => "||",
+            Self::And => "&&",
+            Self::Eq => "==",
+            Self::Ne => "!=",
+            Self::Le => "<=",
+            Self::Ge => ">=",
+            Self::Lt => "<",
+            Self::Gt => ">",
+            Self::Range => "..",
+            Self::RangeTo => "..=",
+            Self::Add => "+",
+            Self::Sub => "-",
+            Self::Mul => "*",
+            Self::Div => "/",
+            Self::Rem => "%",
+            Self::Pow => "^",
+            Self::Not => "!",
+        }
+    }
+
+    /// How strongly a binary operator binds, from 0.
+    pub(crate) fn strength(self) -> usize {
+        match self {
+            Self::Or => 0,
+            Self::And => 1,
+            Self::Eq | Self::Ne | Self::Le | Self::Ge | Self::Lt | Self::Gt => 2,
+            Self::Range | Self::RangeTo => 3,
+            Self::Add | Self::Sub => 4,
+            Self::Mul | Self::Div | Self::Rem => 5,
+            Self::Pow | Self::Not => 6,
+        }
+    }
+}

@@ -45,3 +45,16 @@ impl Material for Diffuse {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::check::{Side, check_all, scatters_as_it_claims};
+    use super::*;
+
+    #[test]
+    fn a_matt_surface_scatters_as_it_claims_on_both_sides() {
+        let white = Diffuse { reflectance: Spectrum::ONE };
+        check_all(&white);
+        scatters_as_it_claims(&white, Side::Inside);
+    }
+}

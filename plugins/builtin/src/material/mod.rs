@@ -1,8 +1,21 @@
 //! The built-in plugins of kind material.
 
 mod diffuse;
+mod conductor;
+mod dielectric;
+mod mix;
+mod metallic_roughness;
+
+#[cfg(test)]
+mod check;
 
 use luxel_sdk::abi::Class;
 
 /// All of them.
-pub(crate) const CLASSES: &[Class] = &[Class::material::<diffuse::Diffuse>("diffuse")];
+pub(crate) const CLASSES: &[Class] = &[
+    Class::material::<diffuse::Diffuse>("diffuse"),
+    Class::material::<conductor::Conductor>("conductor"),
+    Class::material::<dielectric::Dielectric>("dielectric"),
+    Class::material::<mix::Mix<'static>>("mix"),
+    Class::material::<metallic_roughness::MetallicRoughness>("metallic_roughness"),
+];

@@ -8,7 +8,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{Kind, MaterialRef, PhaseRef};
 use luxel_sdk::params::{
-    Default as Preset, Emission, Fault, File, Maybe, Param, Quantity, Role, Table, Text, Type,
+    Emission, Fault, File, Maybe, Param, Preset, Quantity, Role, Table, Text, Type,
 };
 
 use super::Object;

@@ -1,7 +1,7 @@
 //! Parameters that the host adds to every object of a kind.
 
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::{Default, Param, Role, Type};
+use luxel_sdk::params::{Param, Preset, Role, Type};
 
 const fn handle(name: &'static str, kind: Kind, doc: &'static str) -> Param {
     Param {
@@ -10,7 +10,7 @@ const fn handle(name: &'static str, kind: Kind, doc: &'static str) -> Param {
         ty: Type::Object(kind),
         unit: "",
         role: Role::Plain,
-        default: Default::Absent,
+        default: Preset::Absent,
         min: f64::NEG_INFINITY,
         max: f64::INFINITY,
         choices: &[],

@@ -191,13 +191,13 @@ fn role(a: &Attributes, emission: bool) -> Ident {
 }
 
 fn default(ty: &Type, type_name: &str, a: &Attributes) -> TokenStream {
-    let numbers = |list: TokenStream| quote!(::luxel_sdk::params::Default::Numbers(#list));
+    let numbers = |list: TokenStream| quote!(::luxel_sdk::params::Preset::Numbers(#list));
     match (&a.default, type_name) {
-        (None, _) => quote!(::luxel_sdk::params::Default::Absent),
+        (None, _) => quote!(::luxel_sdk::params::Preset::Absent),
         (Some(e), _) if a.choice => {
-            quote!(::luxel_sdk::params::Default::Index({ let choice: #ty = #e; choice as u32 }))
+            quote!(::luxel_sdk::params::Preset::Index({ let choice: #ty = #e; choice as u32 }))
         }
-        (Some(e), "Text") => quote!(::luxel_sdk::params::Default::Text(#e)),
+        (Some(e), "Text") => quote!(::luxel_sdk::params::Preset::Text(#e)),
         (Some(e), "Vec2") => numbers(quote!({ let a: [f64; 2] = #e; [a[0], a[1], 0.0, 0.0] })),
         (Some(e), "Vec3" | "DVec3") => {
             numbers(quote!({ let a: [f64; 3] = #e; [a[0], a[1], a[2], 0.0] }))
@@ -215,7 +215,7 @@ fn extinction(id: &Ident, a: &Attributes) -> TokenStream {
             name: "k", doc: "Extinction coefficient; not needed where `eta` names a measured metal.",
             ty: ::luxel_sdk::params::Type::Spectrum, unit: "",
             role: ::luxel_sdk::params::Role::ComplexIor,
-            default: ::luxel_sdk::params::Default::Absent, min: 0.0, max: f64::INFINITY,
+            default: ::luxel_sdk::params::Preset::Absent, min: 0.0, max: f64::INFINITY,
             choices: &[], group: "", required: false, textured: #textured, deprecated: "",
             offset: ::core::mem::offset_of!(Self, #id)
                 + ::core::mem::offset_of!(::luxel_sdk::params::ComplexIor, k),
@@ -243,7 +243,7 @@ fn amount_descriptor(id: &Ident, amount: &Ident) -> Result<TokenStream> {
         ::luxel_sdk::params::Param {
             name: #name, doc: #doc, ty: ::luxel_sdk::params::Type::Emission, unit: #unit,
             role: ::luxel_sdk::params::Role::Illuminant,
-            default: ::luxel_sdk::params::Default::Absent, min: 0.0, max: f64::INFINITY,
+            default: ::luxel_sdk::params::Preset::Absent, min: 0.0, max: f64::INFINITY,
             choices: &[], group: "amount", required: false, textured: false, deprecated: "",
             offset: ::core::mem::offset_of!(Self, #id),
         }

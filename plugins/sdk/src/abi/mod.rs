@@ -14,7 +14,7 @@ use crate::kind::{
     Camera, Filter, Importer, Integrator, Kind, Light, Material, Medium, PathIntegrator, Phase,
     Sampler, Shape, Texture,
 };
-use crate::params::{Build, BuildContext, Default, Fault, Object, Param, Params, SharedFns};
+use crate::params::{Build, BuildContext, Fault, Object, Param, Params, Preset, SharedFns};
 
 /// A lifetime as a value: how long the bytes behind a view are lent.
 pub type Life<'a> = PhantomData<&'a ()>;
@@ -212,7 +212,7 @@ pub const fn check_schema(schema: &[Param]) {
     let mut i = 0;
     while i < schema.len() {
         let param = &schema[i];
-        if let Default::Numbers(numbers) = param.default {
+        if let Preset::Numbers(numbers) = param.default {
             assert!(
                 numbers[0] >= param.min && numbers[0] <= param.max,
                 "a default lies outside its own range"

@@ -8,7 +8,7 @@ use super::{Class, View};
 use crate::Params;
 use crate::color::Spectrum;
 use crate::kind::{Eval, Material, MaterialRef, Sample, reflect};
-use crate::params::{Default, Type};
+use crate::params::{Preset, Type};
 
 /// A perfect mirror.
 #[derive(Params, Clone, Copy)]
@@ -62,7 +62,7 @@ fn the_derive_writes_the_schema_down() {
     assert_eq!(class.doc, "A perfect mirror.");
     let param = &class.params[0];
     assert_eq!((param.name, param.ty), ("reflectance", Type::Spectrum));
-    assert_eq!(param.default, Default::Numbers([1.0; 4]));
+    assert_eq!(param.default, Preset::Numbers([1.0; 4]));
     assert_eq!([param.min, param.max], [0.0, 1.0]);
     assert!(param.textured && class.prepare.is_none());
 }

@@ -14,5 +14,5 @@ pub use fields::{
     Build, BuildContext, Choice, ComplexIor, Emission, Field, File, Look, Maybe, Plain, Quantity,
     ShapeSlot, Shared, Table, Text,
 };
-pub use schema::{Default, Fault, Object, Param, Params, Role, SharedFns, Type};
+pub use schema::{Fault, Object, Param, Params, Preset, Role, SharedFns, Type};
 pub use unit::{UNITS, Unit};

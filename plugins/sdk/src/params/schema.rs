@@ -61,7 +61,7 @@ pub enum Role {
 
 /// A parameter's value when the scene gives none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Default {
+pub enum Preset {
     /// There is none: the scene must give it, or it may stay absent (see `Param::required`).
     Absent,
     /// Numbers, as many as the type holds; a spectrum takes the first for all lanes.
@@ -86,7 +86,7 @@ pub struct Param {
     /// What it stands for.
     pub role: Role,
     /// The value when none is given.
-    pub default: Default,
+    pub default: Preset,
     /// Least legal value, in SI units.
     pub min: f64,
     /// Greatest legal value, in SI units.

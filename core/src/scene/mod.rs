@@ -5,6 +5,8 @@
 //! reads files or knows a plugin by name.
 
 mod color;
+mod conform;
+mod print;
 mod value;
 
 use std::sync::Arc;
@@ -15,6 +17,8 @@ use luxel_sdk::kind::Kind;
 use crate::diag::Span;
 
 pub use color::Color;
+pub use conform::{DefaultUnits, Given, Misfit, conform, describe, wanted};
+pub use print::print;
 pub use value::{Hash, Value};
 
 /// Names a node among `Scene::nodes`.

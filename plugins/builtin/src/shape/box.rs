@@ -76,14 +76,11 @@ impl Shape for Box {
             enter = if near.0 > enter.0 { near } else { enter };
             leave = if far.0 < leave.0 { far } else { leave };
         }
-        if !(enter.0 <= leave.0) {
-            return None;
-        }
         let (t, face) = if enter.0 > 0.0 { enter } else { leave };
         let (u, u_sign, v, v_sign) = FACES[face];
         let at = |axis: usize| (o[axis] + ray.d[axis] * t).clamp(-half[axis], half[axis]);
         let at = DVec2::new(u_sign * at(u), v_sign * at(v));
-        let found = t > 0.0 && t <= ray.t_max && t < f64::INFINITY;
+        let found = enter.0 <= leave.0 && t > 0.0 && t <= ray.t_max && t < f64::INFINITY;
         found.then_some(Hit { t, at, face: u32::from(face_code(face)) })
     }
 
@@ -102,14 +99,12 @@ impl Shape for Box {
         // Spends the first number on the face, and what is left of it on the place.
         let mut rest = f64::from(u[0]) * total;
         let mut face = 0;
-        for i in 0..6 {
-            if areas[i] > 0.0 {
-                face = i;
-                if rest < areas[i] {
-                    break;
-                }
-                rest -= areas[i];
+        for (i, area) in areas.iter().enumerate().filter(|(_, area)| **area > 0.0) {
+            face = i;
+            if rest < *area {
+                break;
             }
+            rest -= area;
         }
         let (u_axis, _, v_axis, _) = FACES[face];
         let across = (rest / areas[face]).clamp(0.0, 1.0);

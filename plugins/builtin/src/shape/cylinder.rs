@@ -53,15 +53,9 @@ impl Shape for Cylinder {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        if !(self.axis.abs().max_element() > 0.0) {
-            return Err(Fault::range("axis", "an axis of length 0 points nowhere"));
-        }
-        for (field, length) in [("radius", self.radius), ("height", self.height)] {
-            if !(length > 0.0) {
-                return Err(Fault::range(field, format!("{length} m: it must exceed 0")));
-            }
-        }
-        Ok(())
+        super::check_direction("axis", self.axis)?;
+        super::check_length("radius", self.radius)?;
+        super::check_length("height", self.height)
     }
 
     fn bounds(&self) -> Bounds3 {
@@ -71,7 +65,7 @@ impl Shape for Cylinder {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let (o, d) = (self.to_local(ray.o - self.base), self.to_local(ray.d));
+        let (o, d) = (self.local(ray.o - self.base), self.local(ray.d));
         let (flat_o, flat_d) = (o.with_z(0.0), d.with_z(0.0));
         let side = if flat_d.length_squared() > 0.0 {
             sphere_roots(flat_o, flat_d, self.radius)?
@@ -135,7 +129,7 @@ impl Cylinder {
         PI * self.radius * self.radius
     }
 
-    fn to_local(&self, v: DVec3) -> DVec3 {
+    fn local(&self, v: DVec3) -> DVec3 {
         DVec3::new(v.dot(self.x), v.dot(self.y), v.dot(self.z))
     }
 
@@ -152,10 +146,8 @@ impl Cylinder {
             enter = if near.0 > enter.0 { near } else { enter };
             leave = if far.0 < leave.0 { far } else { leave };
         }
-        if !(enter.0 <= leave.0) {
-            return None;
-        }
-        Some(if enter.0 > 0.0 { enter } else { leave })
+        let first = if enter.0 > 0.0 { enter } else { leave };
+        (enter.0 <= leave.0).then_some(first)
     }
 
     /// The point of a face: on the side at (angle in radians, height in metres), on a cap at
@@ -164,13 +156,13 @@ impl Cylinder {
     /// Error: sines, products and sums round eight times, the frame is orthonormal to eight
     /// roundings, and a ray that starts there is turned into the frame with eight more.
     fn surface_at(&self, face: u32, at: DVec2) -> Surface {
-        let local = |x: f64, y: f64, z: f64| self.x * x + self.y * y + self.z * z;
+        let place = |x: f64, y: f64, z: f64| self.x * x + self.y * y + self.z * z;
         let size = self.radius + self.height;
         let p_err = self.base.abs() * gamma64(3) + DVec3::splat(size * gamma64(24));
         if face == SIDE {
             let (sin, cos) = at.x.sin_cos();
             let z = at.y.clamp(0.0, self.height);
-            let ng = local(cos, sin, 0.0).normalize();
+            let ng = place(cos, sin, 0.0).normalize();
             let turn = at.x / TAU;
             let u = if turn < 0.0 { turn + 1.0 } else { turn };
             return Surface {
@@ -179,13 +171,13 @@ impl Cylinder {
                 ng,
                 ns: ng,
                 uv: DVec2::new(u, z / self.height),
-                dp_du: local(-sin, cos, 0.0) * (TAU * self.radius),
+                dp_du: place(-sin, cos, 0.0) * (TAU * self.radius),
                 dp_dv: self.z * self.height,
             };
         }
         let (z, side) = if face == TOP { (self.height, 1.0) } else { (0.0, -1.0) };
         Surface {
-            p: self.base + local(at.x, at.y, z),
+            p: self.base + place(at.x, at.y, z),
             p_err,
             ng: self.z * side,
             ns: self.z * side,

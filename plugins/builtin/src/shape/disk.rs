@@ -54,15 +54,8 @@ impl Shape for Disk {
 
     fn check(&self) -> Result<(), Fault> {
         let Self { radius, inner_radius, normal, .. } = *self;
-        if !(normal.abs().max_element() > 0.0) {
-            return Err(Fault::range("normal", "a normal of length 0 points nowhere"));
-        }
-        if !(radius > 0.0) {
-            return Err(Fault::range(
-                "radius",
-                format!("a radius of {radius} m: it must exceed 0"),
-            ));
-        }
+        super::check_direction("normal", normal)?;
+        super::check_length("radius", radius)?;
         if inner_radius < radius {
             return Ok(());
         }
@@ -161,7 +154,7 @@ mod tests {
         for u in [[0.5, 0.5], [0.0, 0.0], [0.3, 0.6]] {
             let p = d.sample(None, u).unwrap().surface.p;
             let r = p.length();
-            assert!(r >= 1.0 - 1e-15 && r <= 2.0 + 1e-15, "{r}");
+            assert!((1.0 - 1e-15..=2.0 + 1e-15).contains(&r), "{r}");
         }
     }
 

@@ -3,14 +3,17 @@
 mod r#box;
 mod cylinder;
 mod disk;
+mod mesh;
 mod rectangle;
 mod sphere;
 #[cfg(test)]
 mod testing;
+pub(crate) mod up;
 
 use glam::DVec3;
 use luxel_sdk::abi::Class;
 use luxel_sdk::num::{Bounds3, gamma64};
+use luxel_sdk::params::Fault;
 
 /// All of them.
 pub(crate) const CLASSES: &[Class] = &[
@@ -19,10 +22,28 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::shape::<disk::Disk>("disk"),
     Class::shape::<r#box::Box>("box"),
     Class::shape::<cylinder::Cylinder>("cylinder"),
+    Class::shape::<mesh::Mesh<'_>>("mesh"),
 ];
 
 /// The box of half size `half` (≥ 0) about `centre`, with room for eight roundings of either.
 fn bounds_about(centre: DVec3, half: DVec3) -> Bounds3 {
     let room = (centre.abs() + half) * gamma64(8);
     Bounds3 { min: centre - half - room, max: centre + half + room }
+}
+
+/// Refuses a length that is not above 0.
+fn check_length(field: &'static str, length: f64) -> Result<(), Fault> {
+    if length > 0.0 {
+        return Ok(());
+    }
+    Err(Fault::range(field, format!("{length} m: it must exceed 0")))
+}
+
+/// Refuses a vector without a direction.
+fn check_direction(field: &'static str, v: DVec3) -> Result<(), Fault> {
+    let largest = v.abs().max_element();
+    if largest > 0.0 && largest.is_finite() {
+        return Ok(());
+    }
+    Err(Fault::range(field, format!("{v} has no direction")))
 }

@@ -34,10 +34,7 @@ pub(crate) struct Sphere {
 
 impl Shape for Sphere {
     fn check(&self) -> Result<(), Fault> {
-        if self.radius > 0.0 {
-            return Ok(());
-        }
-        Err(Fault::range("radius", format!("a radius of {} m: it must exceed 0", self.radius)))
+        super::check_length("radius", self.radius)
     }
 
     fn bounds(&self) -> Bounds3 {
@@ -94,11 +91,9 @@ impl Shape for Sphere {
         let to = from - at.p;
         let d2 = to.length_squared();
         let cos = at.ng.dot(to) / d2.sqrt();
-        if !(cos > 0.0) {
-            return 0.0;
-        }
         let sin_max = self.radius / distance;
-        cos / (TAU * one_minus_cos_from_sin2(sin_max * sin_max) * d2)
+        let solid_angle = TAU * one_minus_cos_from_sin2(sin_max * sin_max);
+        if cos > 0.0 { cos / (solid_angle * d2) } else { 0.0 }
     }
 
     fn is_closed(&self) -> bool {

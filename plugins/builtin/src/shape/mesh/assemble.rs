@@ -1,0 +1,118 @@
+//! From points as read to a mesh in metres about its own centre.
+
+use std::collections::HashMap;
+
+use glam::{DMat3, DVec3, Vec3};
+use luxel_sdk::kind::TriangleMesh;
+use luxel_sdk::num::Bounds3;
+
+use super::Shading;
+
+/// How points of a file become points of the shape: turned, and scaled to metres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axes {
+    /// A rotation by quarter turns.
+    pub(super) turn: DMat3,
+    /// Metres per unit.
+    pub(super) unit: f64,
+}
+
+impl Axes {
+    /// Of points that are in metres with +Y up already.
+    pub(super) const METRES: Self = Self { turn: DMat3::IDENTITY, unit: 1.0 };
+
+    /// Rebases points about the centre of their bounds, subtracted before anything rounds to
+    /// single precision. Walks over them twice and keeps only the result.
+    ///
+    /// # Errors
+    /// The first point that is not finite, or too far from the centre for single precision.
+    pub(super) fn rebase<I>(self, points: I) -> Result<TriangleMesh, String>
+    where
+        I: Iterator<Item = DVec3> + Clone,
+    {
+        let mut bounds = Bounds3::EMPTY;
+        for (i, p) in points.clone().enumerate() {
+            if !p.is_finite() {
+                return Err(format!("point {i} is not finite: {p}"));
+            }
+            bounds = Bounds3 { min: bounds.min.min(p), max: bounds.max.max(p) };
+        }
+        let middle = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
+        let centre = self.turn * (middle * self.unit);
+        let mut out = Vec::with_capacity(points.size_hint().0);
+        for (i, p) in points.enumerate() {
+            let local = (self.turn * ((p - middle) * self.unit)).as_vec3();
+            if !(local.is_finite() && centre.is_finite()) {
+                return Err(format!("point {i} is beyond every measure: {p}"));
+            }
+            out.push(local);
+        }
+        Ok(TriangleMesh { centre, points: out, ..TriangleMesh::default() })
+    }
+
+    /// Turns a normal and makes it unit; zero where it has no direction.
+    pub(super) fn normal(self, n: Vec3) -> Vec3 {
+        if !n.is_finite() {
+            return Vec3::ZERO;
+        }
+        let n = n.as_dvec3();
+        (self.turn * n / n.abs().max_element()).try_normalize().unwrap_or(DVec3::ZERO).as_vec3()
+    }
+}
+
+/// Adds a polygon as a fan about its first corner.
+pub(super) fn fan(corners: &[u32], out: &mut Vec<[u32; 3]>) {
+    if let [first, rest @ ..] = corners {
+        out.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+    }
+}
+
+/// Settles the normals; the number of given ones that had no direction and were made anew.
+pub(super) fn finish(mesh: &mut TriangleMesh, smooth: Shading) -> usize {
+    let made = match smooth {
+        Shading::Flat => {
+            mesh.normals = Vec::new();
+            return 0;
+        }
+        Shading::Keep => mesh.normals.is_empty(),
+        Shading::Smooth => false,
+    };
+    if made {
+        return 0;
+    }
+    if mesh.normals.is_empty() {
+        mesh.normals = vertex_normals(mesh);
+        return 0;
+    }
+    let lost = mesh.normals.iter().filter(|n| **n == Vec3::ZERO).count();
+    if lost > 0 {
+        let made = vertex_normals(mesh);
+        for (n, made) in mesh.normals.iter_mut().zip(made) {
+            *n = if *n == Vec3::ZERO { made } else { *n };
+        }
+    }
+    lost
+}
+
+/// A normal for each point: the mean of its faces' normals, weighted by their angles there. Points
+/// at the same place share it, so that seams of textures do not show.
+///
+/// # Source
+/// Thürmer & Wüthrich 1998, "Computing Vertex Normals from Polygonal Facets".
+fn vertex_normals(mesh: &TriangleMesh) -> Vec<Vec3> {
+    // Adding zero makes −0 the same place as 0.
+    let key = |i: u32| (mesh.points[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+    let mut sums: HashMap<[u32; 3], DVec3> = HashMap::with_capacity(mesh.points.len());
+    for triangle in &mesh.indices {
+        let p = triangle.map(|i| mesh.points[i as usize].as_dvec3());
+        let Some(n) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else { continue };
+        for k in 0..3 {
+            let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+            let angle = a.cross(b).length().atan2(a.dot(b));
+            *sums.entry(key(triangle[k])).or_default() += n * angle;
+        }
+    }
+    let n_points = u32::try_from(mesh.points.len()).expect("indices are u32");
+    let of = |i| sums.get(&key(i)).and_then(|n| n.try_normalize()).unwrap_or(DVec3::Y).as_vec3();
+    (0..n_points).map(of).collect()
+}

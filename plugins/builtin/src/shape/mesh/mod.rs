@@ -1,0 +1,160 @@
+//! Triangle meshes: written into the scene, or read from a file.
+
+mod assemble;
+mod inline;
+mod obj;
+mod ply;
+
+use glam::{DVec2, DVec3};
+use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::num::{Bounds3, Ray, gamma64};
+use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
+use luxel_sdk::{Choice, Params};
+
+use super::up::Up;
+
+/// What is done about shading normals.
+#[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(crate) enum Shading {
+    /// As given: smooth with normals, flat without.
+    Keep,
+    /// Flat: given normals are dropped.
+    Flat,
+    /// Smooth: normals are made from the faces where none are given.
+    Smooth,
+}
+
+/// Triangles, from a file or written out.
+///
+/// Files are Wavefront `.obj` and `.ply` (text or binary); polygons become fans of triangles, so
+/// they should be convex. `unit` says how long one unit of the file is.
+///
+/// ```scene
+/// shape mesh "cow"   { file = "assets/spot.obj", unit = 1 m, material = white }
+/// shape mesh "floor" {
+///   points  = #[ -1 0 -1   1 0 -1   1 0 1   -1 0 1 ] m
+///   indices = #[ 0 2 1   0 3 2 ]
+///   material = white
+/// }
+/// ```
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+pub(crate) struct Mesh<'a> {
+    /// Corners: x y z each.
+    #[param(optional, unit = "m", group = "geometry")]
+    pub(crate) points: Table<'a>,
+    /// Three places in `points` for each triangle, counter-clockwise from outside, counted from 0.
+    #[param(optional)]
+    pub(crate) indices: Table<'a>,
+    /// Shading normals: x y z for each corner, or none.
+    #[param(optional)]
+    pub(crate) normals: Table<'a>,
+    /// Texture coordinates: u v for each corner, or none.
+    #[param(optional)]
+    pub(crate) uvs: Table<'a>,
+    /// An OBJ or PLY file.
+    #[param(optional, group = "geometry")]
+    pub(crate) file: File<'a>,
+    /// Length of one unit of the file; a file has to state it.
+    #[param(optional, unit = "m", min = 0)]
+    pub(crate) unit: f64,
+    /// Which axis of the points is up.
+    #[param(choice, default = Up::Y)]
+    pub(crate) up: Up,
+    /// What is done about shading normals.
+    #[param(choice, default = Shading::Keep)]
+    pub(crate) smooth: Shading,
+    #[param(shared)]
+    table: Shared<'a, TriangleMesh>,
+}
+
+impl Build<TriangleMesh> for Mesh<'_> {
+    fn build(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+        let path = self.file.path.get();
+        let mut mesh = if path.is_empty() {
+            inline::build(self)?
+        } else {
+            let fault = |message: String| vec![Fault::file("file", format!("{path}: {message}"))];
+            let bytes = context.read(path).map_err(|message| vec![Fault::file("file", message)])?;
+            let frame = assemble::Axes { turn: self.up.turn(), unit: self.unit };
+            // By what it holds rather than by what it is called.
+            if bytes.starts_with(b"ply") {
+                ply::read(&bytes, frame).map_err(fault)?
+            } else if has_extension(path, "ply") {
+                return Err(fault("not a PLY file: it does not begin with `ply`".to_owned()));
+            } else {
+                obj::read(&bytes, frame).map_err(fault)?
+            }
+        };
+        let repaired = assemble::finish(&mut mesh, self.smooth);
+        if repaired > 0 {
+            let name = if path.is_empty() { "the mesh" } else { path };
+            let message = format!("{name}: {repaired} unusable normals were made from the faces");
+            context.warn(&message);
+        }
+        Ok(mesh)
+    }
+}
+
+fn has_extension(path: &str, wanted: &str) -> bool {
+    path.rsplit_once('.').is_some_and(|(_, extension)| extension.eq_ignore_ascii_case(wanted))
+}
+
+impl Shape for Mesh<'_> {
+    fn check(&self) -> Result<(), Fault> {
+        if self.file.path.get().is_empty() || self.unit > 0.0 {
+            return Ok(());
+        }
+        let message = "a mesh file needs `unit`, the length of one of its units, as `unit = 1 m`";
+        Err(Fault { field: "unit", code: "E0415", message: message.to_owned() })
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        let mesh = &*self.table;
+        Bounds3::of_points(mesh.points.iter().map(|p| mesh.centre + p.as_dvec3()))
+    }
+
+    /// Nothing: the host takes the triangles over.
+    fn intersect(&self, _ray: &Ray) -> Option<Hit> {
+        None
+    }
+
+    /// The point of triangle `hit.face` at barycentric coordinates `hit.at` of its second and
+    /// third corners.
+    fn surface(&self, _ray: &Ray, hit: &Hit) -> Surface {
+        let [a, b, c] = self.table.corners(hit.face);
+        let (e1, e2) = (b - a, c - a);
+        let ng = e1.cross(e2).normalize_or(DVec3::Y);
+        let p = a + e1 * hit.at.x + e2 * hit.at.y;
+        let p_err = (a.abs() + e1.abs() + e2.abs()) * gamma64(7);
+        let uv = DVec2::new(hit.at.x, hit.at.y);
+        Surface { p, p_err, ng, ns: ng, uv, dp_du: e1, dp_dv: e2 }
+    }
+
+    fn area(&self) -> f64 {
+        let n = u32::try_from(self.table.indices.len()).unwrap_or(u32::MAX);
+        (0..n)
+            .map(|i| {
+                let [a, b, c] = self.table.corners(i);
+                0.5 * (b - a).cross(c - a).length()
+            })
+            .sum()
+    }
+
+    /// Nothing: the host takes the triangles over.
+    fn sample(&self, _from: Option<DVec3>, _u: [f32; 2]) -> Option<ShapeSample> {
+        None
+    }
+
+    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
+        0.0
+    }
+
+    fn mesh(&self) -> Option<&TriangleMesh> {
+        Some(&self.table)
+    }
+}
+
+#[cfg(test)]
+mod tests;

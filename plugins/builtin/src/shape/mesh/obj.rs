@@ -1,0 +1,107 @@
+//! Wavefront OBJ, parsed by `tobj` once its indices are known to be in range.
+
+use std::borrow::Cow;
+
+use glam::{DVec3, Vec2, Vec3};
+use luxel_sdk::kind::TriangleMesh;
+use tobj::LoadOptions;
+
+use super::assemble::Axes;
+
+const OPTIONS: LoadOptions =
+    LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
+
+/// All groups of the file as one mesh; materials are the scene's business.
+///
+/// # Errors
+/// What is wrong, with its line where `tobj` would not tell it.
+pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
+    // Names and comments may be in any old encoding; numbers are not.
+    let text = String::from_utf8_lossy(bytes);
+    check_indices(&text)?;
+    let text: Cow<'_, [u8]> = match text {
+        Cow::Borrowed(text) => Cow::Borrowed(text.as_bytes()),
+        Cow::Owned(text) => Cow::Owned(text.into_bytes()),
+    };
+    let loaded = tobj::load_obj_buf(&mut &text[..], &OPTIONS, |_| Ok(Default::default()));
+    let (models, _) = loaded.map_err(|error| error.to_string().to_lowercase())?;
+    let meshes: Vec<_> = models.into_iter().map(|model| model.mesh).collect();
+    let mut out = axes.rebase(
+        meshes.iter().flat_map(|m| m.positions.as_chunks().0).map(|p| DVec3::from_array(*p)),
+    )?;
+    let any_normals = meshes.iter().any(|m| !m.normals.is_empty());
+    let any_uvs = meshes.iter().any(|m| !m.texcoords.is_empty());
+    for mesh in &meshes {
+        let n = mesh.positions.len() / 3;
+        // A corner without a normal of its own leaves the list short: then none can be told apart.
+        let complete = mesh.normals.len() == mesh.positions.len();
+        let normals = if complete { mesh.normals.as_chunks().0 } else { &[] };
+        if any_normals {
+            let turned = normals.iter().map(|n| axes.normal(DVec3::from_array(*n).as_vec3()));
+            out.normals.extend(turned.chain(std::iter::repeat(Vec3::ZERO)).take(n));
+        }
+        let complete = mesh.texcoords.len() == 2 * n;
+        let uvs = if complete { mesh.texcoords.as_chunks().0 } else { &[] };
+        if any_uvs {
+            let narrow = uvs.iter().map(|uv: &[f64; 2]| glam::DVec2::from_array(*uv).as_vec2());
+            out.uvs.extend(narrow.chain(std::iter::repeat(Vec2::ZERO)).take(n));
+        }
+    }
+    out.indices = triangles(&meshes)?;
+    Ok(out)
+}
+
+fn triangles(meshes: &[tobj::Mesh]) -> Result<Vec<[u32; 3]>, String> {
+    let mut out = Vec::with_capacity(meshes.iter().map(|m| m.indices.len() / 3).sum());
+    let mut start = 0u32;
+    for mesh in meshes {
+        let corners = mesh.indices.as_chunks::<3>().0;
+        out.extend(corners.iter().map(|t| t.map(|i| i + start)));
+        let n = u32::try_from(mesh.positions.len() / 3).ok();
+        let next = n.and_then(|n| start.checked_add(n));
+        start = next.ok_or("more than 4,294,967,295 corners")?;
+    }
+    if out.is_empty() {
+        return Err("a mesh without a triangle".to_owned());
+    }
+    Ok(out)
+}
+
+/// Finds the first face that names a corner which does not exist.
+fn check_indices(text: &str) -> Result<(), String> {
+    const NAMES: [&str; 3] = ["v", "vt", "vn"];
+    let mut counts = [0i64; 3];
+    // For each list the greatest index, and the line that has it.
+    let mut greatest = [(0i64, 0usize); 3];
+    for (i, line) in text.lines().enumerate() {
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => counts[0] += 1,
+            Some("vt") => counts[1] += 1,
+            Some("vn") => counts[2] += 1,
+            Some("f" | "l") => {
+                for (part, k) in words.flat_map(|word| word.split('/').zip(0..3)) {
+                    if part.is_empty() {
+                        continue;
+                    }
+                    let index = part.parse::<i64>().ok();
+                    let legal = index.filter(|x| *x > 0 || (*x < 0 && *x >= -counts[k]));
+                    let Some(index) = legal else {
+                        let name = NAMES[k];
+                        return Err(format!("line {}: `{part}` is no index of a {name}", i + 1));
+                    };
+                    if index > greatest[k].0 {
+                        greatest[k] = (index, i + 1);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    for ((count, (index, line)), name) in counts.into_iter().zip(greatest).zip(NAMES) {
+        if index > count {
+            return Err(format!("line {line}: {name} {index} of {count}"));
+        }
+    }
+    Ok(())
+}

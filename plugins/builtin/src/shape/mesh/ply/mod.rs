@@ -1,0 +1,178 @@
+//! The Stanford polygon format: text, or binary of either byte order.
+//!
+//! A binary file is walked where it lies; nothing is held beside the mesh that is made.
+
+mod header;
+mod value;
+
+use glam::{DVec3, Vec2};
+use luxel_sdk::kind::TriangleMesh;
+
+use self::header::{Element, Header};
+use self::value::{Encoding, Reader, Scalar};
+use super::assemble::{Axes, fan};
+
+/// Reads the elements `vertex` and `face`; others are passed over.
+///
+/// # Errors
+/// What does not fit together, with its vertex or face.
+pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
+    let header = Header::parse(bytes)?;
+    let mut reader = Reader::new(&bytes[header.length..], header.encoding);
+    let n_points = header.elements.iter().find(|e| e.name == "vertex").map_or(0, |e| e.count);
+    let n_points = u32::try_from(n_points).unwrap_or(u32::MAX);
+    let mut mesh = None;
+    let mut indices = vec![];
+    for element in &header.elements {
+        element.check_count(&reader)?;
+        match element.name.as_str() {
+            "vertex" if mesh.is_none() => mesh = Some(vertices(element, &mut reader, axes)?),
+            "face" => faces(element, &mut reader, n_points, &mut indices)?,
+            _ => skip(element, &mut reader)?,
+        }
+    }
+    let mut mesh = mesh.ok_or("no element `vertex`")?;
+    if indices.is_empty() {
+        return Err("a mesh without a triangle".to_owned());
+    }
+    mesh.indices = indices;
+    Ok(mesh)
+}
+
+/// Where in a vertex its numbers are.
+struct Layout {
+    point: [usize; 3],
+    normal: Option<[usize; 3]>,
+    uv: Option<[usize; 2]>,
+}
+
+impl Layout {
+    fn of(element: &Element) -> Result<Self, String> {
+        let find = |name: &str| element.properties.iter().position(|p| p.name == name);
+        let all = |names: [&str; 3]| Some([find(names[0])?, find(names[1])?, find(names[2])?]);
+        let pairs = [("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("u0", "v0")];
+        let uv = pairs.iter().find_map(|(u, v)| Some([find(u)?, find(v)?]));
+        let point = all(["x", "y", "z"]).ok_or("vertices without x, y and z")?;
+        Ok(Self { point, normal: all(["nx", "ny", "nz"]), uv })
+    }
+}
+
+fn vertices(e: &Element, reader: &mut Reader<'_>, axes: Axes) -> Result<TriangleMesh, String> {
+    let layout = Layout::of(e)?;
+    match (e.stride(), reader.encoding) {
+        (Some(stride), Encoding::Little | Encoding::Big) => {
+            let rows = reader.take(stride * e.count)?;
+            strided(e, &layout, rows.chunks_exact(stride.max(1)), reader.encoding, axes)
+        }
+        _ => listed(e, &layout, reader, axes),
+    }
+}
+
+/// Vertices of a fixed size: read in place, as often as needed.
+fn strided<'a>(
+    element: &Element,
+    layout: &Layout,
+    rows: impl Iterator<Item = &'a [u8]> + Clone,
+    encoding: Encoding,
+    axes: Axes,
+) -> Result<TriangleMesh, String> {
+    let column = |property: usize| {
+        let offset = element.properties[..property].iter().map(|p| p.value.size()).sum::<usize>();
+        (offset, element.properties[property].value)
+    };
+    let at = move |row: &[u8], (offset, scalar): (usize, Scalar)| encoding.at(row, offset, scalar);
+    let [x, y, z] = layout.point.map(column);
+    let points = rows.clone().map(|row| DVec3::new(at(row, x), at(row, y), at(row, z)));
+    let mut mesh = axes.rebase(points)?;
+    if let Some([x, y, z]) = layout.normal.map(|n| n.map(column)) {
+        let normal = |row| DVec3::new(at(row, x), at(row, y), at(row, z)).as_vec3();
+        mesh.normals = rows.clone().map(|row| axes.normal(normal(row))).collect();
+    }
+    if let Some([u, v]) = layout.uv.map(|uv| uv.map(column)) {
+        mesh.uvs = rows.map(|row| finite_uv(at(row, u), at(row, v))).collect();
+    }
+    Ok(mesh)
+}
+
+/// Vertices of text, or with lists among their properties: read once, into double precision.
+fn listed(
+    element: &Element,
+    layout: &Layout,
+    reader: &mut Reader<'_>,
+    axes: Axes,
+) -> Result<TriangleMesh, String> {
+    let mut points = Vec::with_capacity(element.count);
+    let (mut normals, mut uvs) = (vec![], vec![]);
+    let mut row = vec![0.0; element.properties.len()];
+    for i in 0..element.count {
+        for (value, property) in row.iter_mut().zip(&element.properties) {
+            let read = match property.list {
+                Some(count) => reader.skip_list(count, property.value).map(|()| 0.0),
+                None => reader.next(property.value),
+            };
+            *value = read.map_err(|error| format!("vertex {i} of {}: {error}", element.count))?;
+        }
+        points.push(DVec3::from_array(layout.point.map(|k| row[k])));
+        if let Some(n) = layout.normal {
+            normals.push(axes.normal(DVec3::from_array(n.map(|k| row[k])).as_vec3()));
+        }
+        if let Some([u, v]) = layout.uv {
+            uvs.push(finite_uv(row[u], row[v]));
+        }
+    }
+    let mesh = axes.rebase(points.into_iter())?;
+    Ok(TriangleMesh { normals, uvs, ..mesh })
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
+fn finite_uv(u: f64, v: f64) -> Vec2 {
+    let uv = Vec2::new(u as f32, v as f32);
+    if uv.is_finite() { uv } else { Vec2::ZERO }
+}
+
+fn faces(
+    element: &Element,
+    reader: &mut Reader<'_>,
+    n_points: u32,
+    out: &mut Vec<[u32; 3]>,
+) -> Result<(), String> {
+    let names = ["vertex_indices", "vertex_index"];
+    let wanted = |p: &header::Property| p.list.is_some() && names.contains(&p.name.as_str());
+    let list = element.properties.iter().position(wanted);
+    let list = list.ok_or("faces without a list `vertex_indices`")?;
+    // A triangle takes at least a byte for its length and one for each corner.
+    out.reserve(element.count.min(reader.rest().len() / 4));
+    let mut corners = vec![];
+    for i in 0..element.count {
+        let located = |error| format!("face {i} of {}: {error}", element.count);
+        for (k, property) in element.properties.iter().enumerate() {
+            let read = match property.list {
+                Some(count) if k == list => {
+                    corners.clear();
+                    reader.list(count, property.value, n_points, &mut corners)
+                }
+                Some(count) => reader.skip_list(count, property.value),
+                None => reader.next(property.value).map(|_| ()),
+            };
+            read.map_err(located)?;
+        }
+        fan(&corners, out);
+    }
+    Ok(())
+}
+
+fn skip(element: &Element, reader: &mut Reader<'_>) -> Result<(), String> {
+    if element.properties.is_empty() {
+        return Ok(());
+    }
+    for i in 0..element.count {
+        for property in &element.properties {
+            match property.list {
+                Some(count) => reader.skip_list(count, property.value),
+                None => reader.next(property.value).map(|_| ()),
+            }
+            .map_err(|error| format!("{} {i} of {}: {error}", element.name, element.count))?;
+        }
+    }
+    Ok(())
+}

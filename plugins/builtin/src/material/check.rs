@@ -88,7 +88,7 @@ pub(super) fn scatters_as_it_claims(material: &dyn Material, side: Side) {
 /// ∫ pdf and ∫ f·cos of the first lane, times the features, by the midpoint rule in polar angles,
 /// which sees the narrow lobes around the poles.
 fn integrals(material: &dyn Material, wo: Vec3) -> ([f64; 4], [f64; 4]) {
-    let (rows, columns) = (360_u16, 300_u16);
+    let (rows, columns) = (720_u16, 500_u16);
     let (mut pdf, mut f) = ([0.0; 4], [0.0; 4]);
     for i in 0..rows {
         let (r, z) = ((f32::from(i) + 0.5) / f32::from(rows) * PI).sin_cos();

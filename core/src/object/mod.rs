@@ -22,7 +22,7 @@ use patch::Patches;
 pub use build::{Builder, ColorMode, Objects};
 pub use colour::white;
 pub use context::{Embedded, Reader};
-pub use resolve::{Resolved, Scratch};
+pub use resolve::{Resolved, Scratch, Site};
 
 /// A built object. Immutable; shared by everything that uses it.
 pub struct Object {

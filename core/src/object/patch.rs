@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use luxel_sdk::color::{Curve, Spectrum, Wavelengths, uplift_illuminant, uplift_reflectance};
+use luxel_sdk::color::{Curve, Palette, Spectrum};
 use luxel_sdk::kind::Output;
 
 use super::Object;
@@ -23,12 +23,12 @@ pub(super) enum Uplift {
 }
 
 impl Uplift {
-    /// The lanes of a colour at some wavelengths.
-    pub(super) fn lanes(self, rgb: Vec3, lambda: &Wavelengths) -> Spectrum {
+    /// The lanes of a colour on a path.
+    pub(super) fn lanes(self, rgb: Vec3, palette: &Palette) -> Spectrum {
         match self {
             Self::None => Spectrum::from_rgb(rgb),
-            Self::Reflectance => uplift_reflectance(rgb, lambda),
-            Self::Illuminant => uplift_illuminant(rgb, lambda),
+            Self::Reflectance => palette.reflectance(rgb),
+            Self::Illuminant => palette.illuminant(rgb),
         }
     }
 }

@@ -7,7 +7,8 @@ use std::mem::MaybeUninit;
 use std::sync::Arc;
 
 use luxel_sdk::abi::View;
-use luxel_sdk::color::{Spectrum, Wavelengths};
+use glam::{DVec3, Vec2};
+use luxel_sdk::color::{Palette, Spectrum};
 use luxel_sdk::kind::{
     Camera, Filter, Importer, Integrator, Light, Material, MaterialRef, Medium, Output, Phase,
     PhaseRef, Sampler, Shape, Texture, TexturePoint,
@@ -56,6 +57,17 @@ impl Scratch {
         }
         self.room[at..].as_ptr().cast_mut().cast()
     }
+}
+
+/// Where, and on which path, parameters are asked for.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    /// World space, metres.
+    pub p: DVec3,
+    /// Surface coordinates.
+    pub uv: Vec2,
+    /// The path's wavelengths.
+    pub palette: &'a Palette,
 }
 
 /// An object's parameters at one point: a valid struct of its class, lent for `'a`.
@@ -115,7 +127,7 @@ impl Object {
     }
 
     /// Its parameters at a point.
-    pub fn resolve<'a>(&'a self, at: &TexturePoint, scratch: &'a Scratch) -> Resolved<'a> {
+    pub fn resolve<'a>(&'a self, at: &Site<'_>, scratch: &'a Scratch) -> Resolved<'a> {
         if self.patches.is_empty() {
             return self.fixed();
         }
@@ -123,11 +135,11 @@ impl Object {
     }
 
     #[inline(never)]
-    fn resolve_varying<'a>(&'a self, at: &TexturePoint, scratch: &'a Scratch) -> Resolved<'a> {
+    fn resolve_varying<'a>(&'a self, at: &Site<'_>, scratch: &'a Scratch) -> Resolved<'a> {
         let base = scratch.copy(self.template.chunks());
         let write = Writer { base, size: self.class.size };
-        self.fill_curves(write, &at.lambda);
-        self.fill_colours(write, &at.lambda);
+        self.fill_curves(write, at.palette);
+        self.fill_colours(write, at.palette);
         for patch in &self.patches.textures {
             fill_texture(write, patch, at, scratch);
         }
@@ -147,16 +159,16 @@ impl Object {
     }
 
     #[inline(never)]
-    fn fill_curves(&self, write: Writer, lambda: &Wavelengths) {
+    fn fill_curves(&self, write: Writer, palette: &Palette) {
         for patch in &self.patches.curves {
-            write.put(patch.offset, patch.curve.eval(lambda));
+            write.put(patch.offset, palette.curve(&patch.curve));
         }
     }
 
     #[inline(never)]
-    fn fill_colours(&self, write: Writer, lambda: &Wavelengths) {
+    fn fill_colours(&self, write: Writer, palette: &Palette) {
         for patch in &self.patches.colours {
-            write.put(patch.offset, patch.uplift.lanes(patch.rgb, lambda));
+            write.put(patch.offset, patch.uplift.lanes(patch.rgb, palette));
         }
     }
 }
@@ -179,10 +191,11 @@ impl Writer {
 }
 
 #[inline(never)]
-fn fill_texture(write: Writer, patch: &TexturePatch, at: &TexturePoint, scratch: &Scratch) {
-    let value = patch.texture.resolve(at, scratch).texture().eval(at);
+fn fill_texture(write: Writer, patch: &TexturePatch, at: &Site<'_>, scratch: &Scratch) {
+    let point = TexturePoint { p: at.p, uv: at.uv, lambda: at.palette.wavelengths };
+    let value = patch.texture.resolve(at, scratch).texture().eval(&point);
     let lanes = match patch.output {
-        Output::Rgb => patch.uplift.lanes(value.rgb(), &at.lambda),
+        Output::Rgb => patch.uplift.lanes(value.rgb(), at.palette),
         Output::Value => value,
     };
     let lanes: Spectrum = (lanes * patch.factor).clamp(patch.range[0], patch.range[1]);

@@ -3,13 +3,13 @@
 use glam::{DVec3, Vec3};
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Arrival, ArrivalKind, Direct, Lobe, Phase, Sample, Samples, Scatter, Surface, TexturePoint,
+    Arrival, ArrivalKind, Direct, Lobe, Phase, Sample, Samples, Scatter, Surface,
     Wants,
 };
 use luxel_sdk::num::{Frame, Ray};
 
 use super::path::{Path, Standing};
-use crate::object::{ColorMode, Scratch};
+use crate::object::{ColorMode, Scratch, Site};
 use crate::stage::{Origin, SceneHit, Skin, Stage};
 
 /// What is needed to shade: borrowed for one arrival.
@@ -25,23 +25,20 @@ pub(super) struct Shader<'a, 's> {
 
 impl Shader<'_, '_> {
     /// The ray left the scene.
-    pub(super) fn escaped(self, ray: &Ray, steps: u32) -> Arrival {
-        let mut at = Arrival { wo: -ray.d, t: f64::INFINITY, steps, ..Arrival::default() };
-        at.material = u32::MAX;
+    pub(super) fn escaped(self, ray: &Ray, steps: u32, at: &mut Arrival) {
+        begin(at, ArrivalKind::Escaped, ray, f64::INFINITY, steps);
         if self.wants.has(Wants::EMISSION) {
             self.scratch.reset();
-            let (le, pdf) = self.stage.escaped(ray.d, &self.path.lambda, self.scratch);
+            let (le, pdf) = self.stage.escaped(ray.d, &self.path.palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
-        at
     }
 
     /// The ray was scattered by a medium at `p`.
-    pub(super) fn medium(self, ray: &Ray, t: f64, phase: &dyn Phase) -> Arrival {
-        let p = ray.at(t);
-        let wo = -ray.d;
-        let kind = ArrivalKind::Medium;
-        let mut at = Arrival { kind, p, wo, t, material: u32::MAX, ..Arrival::default() };
+    pub(super) fn medium(self, ray: &Ray, t: f64, phase: &dyn Phase, at: &mut Arrival) {
+        begin(at, ArrivalKind::Medium, ray, t, 0);
+        let (p, wo) = (ray.at(t), -ray.d);
+        at.p = p;
         self.path.on = None;
         self.path.from = p;
         self.scratch.reset();
@@ -49,7 +46,7 @@ impl Shader<'_, '_> {
         if self.wants.has(Wants::DIRECT) {
             let origin = Origin { p, p_err: DVec3::ZERO, ng: DVec3::ZERO };
             let u = light_numbers(self.samples);
-            let found = self.stage.sample_light(&origin, &self.path.lambda, u, scratch);
+            let found = self.stage.sample_light(&origin, &self.path.palette, u, scratch);
             at.direct = found.map(|found| {
                 let eval = phase.eval(wo.as_vec3(), found.ray.d.as_vec3());
                 let f_le = eval.f * found.le_over_pdf * self.flight;
@@ -65,34 +62,24 @@ impl Shader<'_, '_> {
                 eta: 1.0,
             });
         }
-        at
     }
 
     /// The ray met a surface.
-    pub(super) fn surface(mut self, ray: &Ray, hit: &SceneHit, steps: u32) -> Arrival {
+    pub(super) fn surface(mut self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
         let stage = self.stage;
         let surface = stage.surface(ray, hit);
         let placement = &stage.placements[hit.placement as usize];
         let wo = -ray.d;
-        let mut at = Arrival {
-            kind: ArrivalKind::Surface,
-            p: surface.p,
-            p_err: surface.p_err,
-            ng: surface.ng,
-            ns: surface.ns,
-            uv: surface.uv.as_vec2(),
-            t: hit.hit.t,
-            wo,
-            material: u32::MAX,
-            steps,
-            ..Arrival::default()
-        };
+        begin(at, ArrivalKind::Surface, ray, hit.hit.t, steps);
+        (at.p, at.p_err) = (surface.p, surface.p_err);
+        (at.ng, at.ns) = (surface.ng, surface.ns);
+        at.uv = surface.uv.as_vec2();
         if self.wants.has(Wants::EMISSION) && placement.light.is_some() {
             self.scratch.reset();
             let from = self.path.from;
-            let lambda = &self.path.lambda;
+            let palette = &self.path.palette;
             let (le, pdf) =
-                stage.surface_emission(placement, &surface, wo, from, lambda, self.scratch);
+                stage.surface_emission(placement, &surface, wo, from, palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
         self.path.from = surface.p;
@@ -100,9 +87,8 @@ impl Shader<'_, '_> {
         self.path.on = Some(Standing { placement: hit.placement, ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
-            self.scatter(&mut at, &surface, material);
+            self.scatter(at, &surface, material);
         }
-        at
     }
 
     /// The light sample and the scattering sample at a surface.
@@ -111,15 +97,15 @@ impl Shader<'_, '_> {
             return;
         }
         self.scratch.reset();
-        let texture = TexturePoint { p: at.p, uv: at.uv, lambda: self.path.lambda };
+        let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette };
         let scratch: &Scratch = self.scratch;
         let object = &self.stage.materials[material as usize];
-        let material = object.resolve(&texture, scratch).material();
+        let material = object.resolve(&site, scratch).material();
         let local = Local::new(at, surface);
         if self.wants.has(Wants::DIRECT) && !material.is_delta() {
             let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };
             let u = light_numbers(self.samples);
-            let found = self.stage.sample_light(&origin, &self.path.lambda, u, scratch);
+            let found = self.stage.sample_light(&origin, &self.path.palette, u, scratch);
             at.direct = found.and_then(|found| {
                 let wi = local.of_world(found.ray.d)?;
                 let eval = material.eval(local.wo, wi);
@@ -149,6 +135,15 @@ impl Shader<'_, '_> {
         let usable = !weight.is_black();
         usable.then_some(Scatter { weight, wi, pdf: density(sample), eta: sample.eta })
     }
+}
+
+/// Everything that an arrival holds, as it is before it is shaded.
+fn begin(at: &mut Arrival, kind: ArrivalKind, ray: &Ray, t: f64, steps: u32) {
+    (at.kind, at.t, at.wo, at.steps) = (kind, t, -ray.d, steps);
+    (at.p, at.p_err) = (DVec3::ZERO, DVec3::ZERO);
+    (at.ng, at.ns, at.uv) = (DVec3::ZERO, DVec3::ZERO, glam::Vec2::ZERO);
+    (at.le, at.le_pdf, at.material) = (Spectrum::ZERO, 0.0, u32::MAX);
+    (at.direct, at.scatter) = (None, None);
 }
 
 /// A number to choose a light by, and two to choose light from it.

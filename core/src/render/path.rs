@@ -1,7 +1,7 @@
 //! What the host remembers of a path in flight.
 
 use glam::DVec3;
-use luxel_sdk::color::{Spectrum, Wavelengths};
+use luxel_sdk::color::{Palette, Spectrum};
 use luxel_sdk::num::Ray;
 
 use crate::stage::{MediumStack, Stage};
@@ -13,7 +13,7 @@ pub(super) struct Path {
     pub(super) job: u32,
     /// What its radiance counts for.
     pub(super) weight: f32,
-    pub(super) lambda: Wavelengths,
+    pub(super) palette: Palette,
     /// Whether its other wavelengths have ended at a dispersive surface.
     pub(super) ended: bool,
     /// Where it last arrived: light sampling from there competes with the ray that goes on.
@@ -34,9 +34,9 @@ pub(super) struct Standing {
 }
 
 impl Path {
-    pub(super) fn new(job: u32, weight: f32, lambda: Wavelengths, stage: &Stage) -> Self {
+    pub(super) fn new(job: u32, weight: f32, palette: Palette, stage: &Stage) -> Self {
         let media = stage.camera_media;
-        Self { job, weight, lambda, ended: false, from: DVec3::ZERO, on: None, media }
+        Self { job, weight, palette, ended: false, from: DVec3::ZERO, on: None, media }
     }
 
     /// The media around a ray that leaves from here.

@@ -1,10 +1,10 @@
 //! How much light passes along a shadow ray.
 
-use luxel_sdk::color::{Spectrum, Wavelengths};
-use luxel_sdk::kind::{Samples, TexturePoint};
+use luxel_sdk::color::{Palette, Spectrum};
+use luxel_sdk::kind::Samples;
 use luxel_sdk::num::{Ray, offset_origin};
 
-use crate::object::Scratch;
+use crate::object::{Scratch, Site};
 use crate::stage::{MediumStack, Skin, Stage};
 
 /// The fraction of light that passes along a ray: nothing behind a surface, less through media.
@@ -13,7 +13,7 @@ pub(super) fn passes(
     stage: &Stage,
     ray: &Ray,
     mut media: MediumStack,
-    lambda: &Wavelengths,
+    palette: &Palette,
     samples: &mut Samples<'_>,
     scratch: &mut Scratch,
 ) -> Spectrum {
@@ -31,7 +31,7 @@ pub(super) fn passes(
         if let Some(medium) = media.current(stage.outside) {
             scratch.reset();
             let uv = glam::Vec2::ZERO;
-            let at = TexturePoint { p: ray.o, uv, lambda: *lambda };
+            let at = Site { p: ray.o, uv, palette };
             let medium = stage.media[medium as usize].resolve(&at, scratch).medium();
             left *= medium.transmittance(&Ray { t_max, ..ray }, samples);
         }

@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use glam::{DVec3, UVec2};
-use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
+use luxel_sdk::color::{Observer, Palette, RgbSpace, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
-    Arrival, Erased, Host, Job, Lane, Output, Raster, Requests, SampleAt, Samples, TexturePoint,
-    Wants,
+    Arrival, Erased, Host, Job, Lane, Output, Raster, Requests, SampleAt, Samples, Wants,
 };
 use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::hash_combine;
@@ -15,7 +14,7 @@ use super::arrival::Shader;
 use super::path::Path;
 use super::{Control, shadow};
 use crate::film::Tile;
-use crate::object::{ColorMode, Scratch};
+use crate::object::{ColorMode, Scratch, Site};
 use crate::stage::{Skin, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
@@ -127,7 +126,7 @@ impl<'s> Worker<'s> {
                 self.paths[lane] = path;
             }
             let asked = self.next.rays.len() + self.next.shadows.len();
-            let job = Job { ray, weight: path.weight };
+            let job = Job { ray };
             self.states.start(lane as u32, &job, &mut self.lanes[lane].l, &mut self.next);
             if asked == self.next.rays.len() + self.next.shadows.len() {
                 self.finish(lane);
@@ -143,13 +142,16 @@ impl<'s> Worker<'s> {
         let mut samples = Samples::new(source, SampleAt { stream, index, dimension: 0 });
         let [dx, dy] = self.stage.filter.fixed().filter().sample(samples.next_2d());
         let lens = samples.next_2d();
-        let lambda = Wavelengths::sample(samples.next_1d());
+        let palette = match (self.stage.mode, samples.next_1d()) {
+            (ColorMode::Spectral, u) => Palette::new(Wavelengths::sample(u)),
+            (ColorMode::Rgb, _) => Palette::rgb(),
+        };
         let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
         let p = pixel.as_dvec2() + 0.5 + offset;
         let raster = Raster { size: self.stage.film.resolution };
         let camera = self.stage.camera.fixed().camera();
         let found = camera.ray(raster, p, lens)?;
-        let mut path = Path::new(job as u32, found.weight, lambda, self.stage);
+        let mut path = Path::new(job as u32, found.weight, palette, self.stage);
         path.from = found.ray.o;
         Some((path, samples, found.ray))
     }
@@ -164,7 +166,7 @@ impl<'s> Worker<'s> {
                 self.stage,
                 &request.ray,
                 media,
-                &path.lambda,
+                &path.palette,
                 &mut lane.samples,
                 &mut self.scratch,
             );
@@ -176,14 +178,14 @@ impl<'s> Worker<'s> {
     fn arrivals(&mut self) {
         for i in 0..self.now.rays.len() {
             let (ray, lane) = self.now.rays[i];
-            self.lanes[lane as usize].at = self.fly(ray, lane as usize);
+            self.fly(ray, lane as usize);
             let host = StageHost(self.stage);
             self.states.arrive_n(&mut self.lanes, &[lane], &host, &mut self.next);
         }
     }
 
     /// Follows a ray through media and open surfaces to where the path arrives.
-    fn fly(&mut self, mut ray: Ray, lane: usize) -> Arrival {
+    fn fly(&mut self, mut ray: Ray, lane: usize) {
         let stage = self.stage;
         let mut media = self.paths[lane].media_along(&ray, stage);
         let (mut steps, mut flight) = (0, Spectrum::ONE);
@@ -191,13 +193,13 @@ impl<'s> Worker<'s> {
             let hit = stage.intersect(&ray, &mut steps);
             let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
             let path = &mut self.paths[lane];
-            let samples = &mut self.lanes[lane].samples;
+            let Lane { at: arrival, samples, .. } = &mut self.lanes[lane];
             let scratch = &mut self.scratch;
             let wants = self.wants;
             if let Some(medium) = media.current(stage.outside) {
                 self.medium_scratch.reset();
                 let uv = glam::Vec2::ZERO;
-                let at = TexturePoint { p: ray.o, uv, lambda: path.lambda };
+                let at = Site { p: ray.o, uv, palette: &path.palette };
                 let object = &stage.media[medium as usize];
                 let medium = object.resolve(&at, &self.medium_scratch).medium();
                 let free = medium.sample(&Ray { t_max, ..ray }, samples);
@@ -205,14 +207,14 @@ impl<'s> Worker<'s> {
                 if let Some(t) = free.t {
                     path.media = media;
                     let shader = Shader { stage, wants, path, samples, scratch, flight };
-                    return shader.medium(&ray, t, medium.phase());
+                    return shader.medium(&ray, t, medium.phase(), arrival);
                 }
             }
             path.media = media;
             let shader = Shader { stage, wants, path, samples, scratch, flight };
-            let Some(hit) = hit else { return shader.escaped(&ray, steps) };
+            let Some(hit) = hit else { return shader.escaped(&ray, steps, arrival) };
             if stage.placements[hit.placement as usize].skin != Skin::Open {
-                return shader.surface(&ray, &hit, steps);
+                return shader.surface(&ray, &hit, steps, arrival);
             }
             let surface = stage.surface(&ray, &hit);
             stage.cross(&mut media, hit.placement, ray.d, surface.ng);
@@ -247,7 +249,7 @@ impl<'s> Worker<'s> {
     fn finish(&mut self, lane: usize) {
         let path = &self.paths[lane];
         let l = self.lanes[lane].l * path.weight;
-        self.results[path.job as usize] = self.to_rgb.sample(l, &path.lambda);
+        self.results[path.job as usize] = self.to_rgb.sample(l, &path.palette.wavelengths);
         self.free.push(lane as u32);
     }
 }

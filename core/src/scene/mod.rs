@@ -11,10 +11,10 @@ mod value;
 
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, UVec2};
 use luxel_sdk::kind::Kind;
 
-use crate::diag::Span;
+use crate::diag::{SourceId, Span};
 
 pub use color::Color;
 pub use conform::{DefaultUnits, Given, Misfit, conform, describe, wanted};
@@ -132,10 +132,84 @@ impl Scene {
         &self.groups[id.0 as usize]
     }
 
+    /// Gives the film another size, in pixels; a scene without a film gets one.
+    pub fn set_resolution(&mut self, size: UVec2) {
+        let span = Span::new(SourceId(0), 0, 0);
+        let old = self.film.map(|id| self.node(id).clone());
+        let mut film = old.unwrap_or_else(|| Node {
+            kind: Kind::Film,
+            class: "auto".into(),
+            label: None,
+            params: vec![],
+            overrides: vec![],
+            span,
+            hash: [0; 32],
+        });
+        film.params.retain(|argument| argument.name != "resolution");
+        let value = Value::Vector(size.as_dvec2().to_array().to_vec());
+        film.params.push(Argument { name: "resolution", value, span });
+        self.film = Some(self.add(film));
+    }
+
+    /// Hash of everything that the scene shows: what stands where, and its settings. Labels, places
+    /// in files and nodes that nothing uses do not count; nor do the contents of files by path.
+    pub fn hash(&self) -> Hash {
+        value::hash_scene(self)
+    }
+
     /// Adds a node whose children are already here; its hash is computed.
     pub fn add(&mut self, mut node: Node) -> NodeId {
         node.hash = value::hash_node(&node, |id| self.node(id).hash);
         self.nodes.push(node);
         NodeId(u32::try_from(self.nodes.len() - 1).expect("the node budget is far below 2^32"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(label: &str, focal: f64) -> Scene {
+        let mut scene = Scene::default();
+        let span = Span::new(SourceId(0), 0, 0);
+        let value = Value::Number(focal, luxel_sdk::params::Dimension::LENGTH);
+        let id = scene.add(Node {
+            kind: Kind::Camera,
+            class: "perspective".into(),
+            label: Some(label.into()),
+            params: vec![Argument { name: "focal_length", value, span }],
+            overrides: vec![],
+            span,
+            hash: [0; 32],
+        });
+        scene.camera = Some(id);
+        scene
+    }
+
+    #[test]
+    fn the_scenes_hash_ignores_labels_and_sees_values_and_places() {
+        let scene = camera("a", 0.05);
+        assert_eq!(scene.hash(), camera("b", 0.05).hash());
+        assert_ne!(scene.hash(), camera("a", 0.06).hash());
+        let placed = |x: f64| {
+            let mut scene = camera("a", 0.05);
+            let target = Target::Node(NodeId(0));
+            let transform = DAffine3::from_translation(glam::DVec3::X * x);
+            let span = Span::new(SourceId(0), 0, 0);
+            scene.root.items.push(Placed { target, transform, material: None, span });
+            scene.hash()
+        };
+        assert_ne!(placed(0.0), scene.hash());
+        assert_ne!(placed(0.0), placed(1.0));
+    }
+
+    #[test]
+    fn a_resolution_that_is_set_replaces_the_films() {
+        let mut scene = camera("a", 0.05);
+        for size in [UVec2::new(3, 4), UVec2::new(5, 6)] {
+            scene.set_resolution(size);
+            let film = scene.film.map(|id| scene.node(id));
+            assert_eq!(crate::stage::Film::of_node(film).resolution, size);
+        }
     }
 }

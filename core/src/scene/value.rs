@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use luxel_sdk::params::{Dimension, Look};
 
-use super::{Color, Node, NodeId};
+use super::{Color, Group, Node, NodeId, Scene, Target};
 
 /// A content hash (BLAKE3).
 pub type Hash = [u8; 32];
@@ -49,6 +49,37 @@ pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
     for (name, material) in &node.overrides {
         text(&mut hasher, name);
         hasher.update(&child(*material));
+    }
+    *hasher.finalize().as_bytes()
+}
+
+/// The hash of a scene: of what stands in its places, and of its settings.
+pub(super) fn hash_scene(scene: &Scene) -> Hash {
+    let mut groups: Vec<Hash> = Vec::with_capacity(scene.groups.len());
+    for group in &scene.groups {
+        groups.push(hash_group(scene, group, &groups));
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&hash_group(scene, &scene.root, &groups));
+    let Scene { camera, film, integrator, sampler, filter, medium, .. } = scene;
+    for setting in [camera, film, integrator, sampler, filter, medium] {
+        hasher.update(&setting.map_or([0; 32], |id| scene.node(id).hash));
+    }
+    *hasher.finalize().as_bytes()
+}
+
+/// `before` holds the hashes of the groups that may stand in this one.
+fn hash_group(scene: &Scene, group: &Group, before: &[Hash]) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    for item in &group.items {
+        match item.target {
+            Target::Node(id) => hasher.update(&[0]).update(&scene.node(id).hash),
+            Target::Group(id) => {
+                hasher.update(&[1]).update(before.get(id.0 as usize).unwrap_or(&[0; 32]))
+            }
+        };
+        numbers(&mut hasher, &item.transform.to_cols_array());
+        hasher.update(&item.material.map_or([0; 32], |id| scene.node(id).hash));
     }
     *hasher.finalize().as_bytes()
 }

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec2};
-use luxel_sdk::color::{Spectrum, Wavelengths, uplift_illuminant};
-use luxel_sdk::kind::{Light, LightQuery, Output, Surface, TexturePoint};
+use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
+use luxel_sdk::kind::{Light, LightQuery, Output, Surface};
 use luxel_sdk::num::{Ray, Transform, offset_origin};
 use luxel_sdk::sampling::Alias;
 
 use super::{Geometry, Placement, Stage};
-use crate::object::{ColorMode, Object, Scratch};
+use crate::object::{ColorMode, Object, Scratch, Site};
 
 /// A source of light of the stage.
 #[derive(Debug)]
@@ -101,14 +101,14 @@ impl Lights {
 }
 
 fn power(light: &LightSource, radius: f64, mode: ColorMode) -> f32 {
-    let lambda = Wavelengths::sample(0.5);
+    let palette = Palette::new(Wavelengths::sample(0.5));
     let mut scratch = Scratch::default();
     let mut sum = 0.0;
     const GRID: u32 = 4;
     for i in 0..GRID * GRID {
         let uv = (Vec2::new((i % GRID) as f32, (i / GRID) as f32) + 0.5) / GRID as f32;
         scratch.reset();
-        let at = TexturePoint { p: DVec3::ZERO, uv, lambda };
+        let at = Site { p: DVec3::ZERO, uv, palette: &palette };
         let area = match light {
             LightSource::Surface { area, .. } => *area,
             LightSource::Free { .. } => 0.0,
@@ -123,9 +123,9 @@ fn power(light: &LightSource, radius: f64, mode: ColorMode) -> f32 {
 }
 
 /// Lanes of what a light emits: RGB is uplifted where the path is spectral.
-fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, lambda: &Wavelengths) -> Spectrum {
+fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palette) -> Spectrum {
     match (light.output(), mode) {
-        (Output::Rgb, ColorMode::Spectral) => uplift_illuminant(value.rgb(), lambda),
+        (Output::Rgb, ColorMode::Spectral) => palette.illuminant(value.rgb()),
         _ => value,
     }
 }
@@ -135,7 +135,7 @@ impl Stage {
     pub fn sample_light(
         &self,
         from: &Origin,
-        lambda: &Wavelengths,
+        palette: &Palette,
         u: [f32; 3],
         scratch: &Scratch,
     ) -> Option<FoundLight> {
@@ -145,12 +145,12 @@ impl Stage {
         match source {
             LightSource::Surface { object, placement, area, triangles } => {
                 let spot = SurfaceLight { object, placement: *placement, area: *area };
-                self.sample_surface(&spot, triangles.as_ref(), from, lambda, (u, chosen.u), scratch)
+                self.sample_surface(&spot, triangles.as_ref(), from, palette, (u, chosen.u), scratch)
             }
             LightSource::Free { object, transform } => {
-                let at = TexturePoint { p: from.p, uv: Vec2::ZERO, lambda: *lambda };
+                let at = Site { p: from.p, uv: Vec2::ZERO, palette };
                 let light = object.resolve(&at, scratch).light();
-                self.sample_free(light, transform.as_deref(), from, lambda, u)
+                self.sample_free(light, transform.as_deref(), from, palette, u)
             }
         }
         .map(|found| found.with_chance(chosen.pmf as f32))
@@ -161,12 +161,12 @@ impl Stage {
         light: &dyn Light,
         transform: Option<&Transform>,
         from: &Origin,
-        lambda: &Wavelengths,
+        palette: &Palette,
         u: [f32; 2],
     ) -> Option<FoundLight> {
         let p = transform.map_or(from.p, |transform| transform.inverse_point(from.p));
         let found = light.sample(&LightQuery { p, u })?;
-        let mut le = emitted(light, found.le, self.mode, lambda);
+        let mut le = emitted(light, found.le, self.mode, palette);
         let (mut wi, mut distance) = (found.wi, found.distance);
         if let Some(transform) = transform {
             let to = transform.vector(found.wi);
@@ -192,7 +192,7 @@ impl Stage {
         light: &SurfaceLight<'_>,
         triangles: Option<&Alias>,
         from: &Origin,
-        lambda: &Wavelengths,
+        palette: &Palette,
         (u, remapped): ([f32; 2], f64),
         scratch: &Scratch,
     ) -> Option<FoundLight> {
@@ -223,9 +223,9 @@ impl Stage {
             return None;
         }
         let uv = surface.uv.as_vec2();
-        let at = TexturePoint { p: surface.p, uv, lambda: *lambda };
+        let at = Site { p: surface.p, uv, palette };
         let resolved = light.object.resolve(&at, scratch).light();
-        let le = emitted(resolved, resolved.le(cos_o as f32, uv, light.area), self.mode, lambda);
+        let le = emitted(resolved, resolved.le(cos_o as f32, uv, light.area), self.mode, palette);
         (!le.is_black()).then(|| FoundLight { ray, le_over_pdf: le / pdf as f32, pdf: pdf as f32 })
     }
 
@@ -237,7 +237,7 @@ impl Stage {
         surface: &Surface,
         wo: DVec3,
         from: DVec3,
-        lambda: &Wavelengths,
+        palette: &Palette,
         scratch: &Scratch,
     ) -> (Spectrum, f32) {
         let Some(light) = placement.light else { return (Spectrum::ZERO, 0.0) };
@@ -245,10 +245,10 @@ impl Stage {
             return (Spectrum::ZERO, 0.0);
         };
         let uv = surface.uv.as_vec2();
-        let at = TexturePoint { p: surface.p, uv, lambda: *lambda };
+        let at = Site { p: surface.p, uv, palette };
         let resolved = object.resolve(&at, scratch).light();
         let cos_o = surface.ng.dot(wo);
-        let le = emitted(resolved, resolved.le(cos_o as f32, uv, *area), self.mode, lambda);
+        let le = emitted(resolved, resolved.le(cos_o as f32, uv, *area), self.mode, palette);
         if le.is_black() {
             return (le, 0.0);
         }
@@ -275,7 +275,7 @@ impl Stage {
 
     /// What a ray that leaves the scene along `d` finds, and the density with which `sample_light`
     /// would have found it.
-    pub fn escaped(&self, d: DVec3, lambda: &Wavelengths, scratch: &Scratch) -> (Spectrum, f32) {
+    pub fn escaped(&self, d: DVec3, palette: &Palette, scratch: &Scratch) -> (Spectrum, f32) {
         let (mut le, mut pdf) = (Spectrum::ZERO, 0.0);
         for &light in &self.lights.infinite {
             let LightSource::Free { object, transform } = &self.lights.sources[light as usize]
@@ -286,10 +286,10 @@ impl Stage {
                 Some(transform) => transform.inverse_vector(d).normalize(),
                 None => d,
             };
-            let at = TexturePoint { p: DVec3::ZERO, uv: Vec2::ZERO, lambda: *lambda };
+            let at = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette };
             let resolved = object.resolve(&at, scratch).light();
             let found = resolved.escaped(local);
-            le += emitted(resolved, found.le, self.mode, lambda);
+            le += emitted(resolved, found.le, self.mode, palette);
             pdf += found.pdf * self.lights.chance(light) as f32;
         }
         (le, pdf)

@@ -49,8 +49,7 @@ impl PathIntegrator for PathTracer {
 
     fn start(&self, job: &Job, ask: &mut Ask<'_>) -> Path {
         ask.trace(job.ray);
-        let beta = Spectrum::splat(job.weight);
-        Path { beta, pdf: f32::INFINITY, eta_scale: 1.0, depth: 0 }
+        Path { beta: Spectrum::ONE, pdf: f32::INFINITY, eta_scale: 1.0, depth: 0 }
     }
 
     fn arrive(

@@ -75,11 +75,14 @@ impl Shape for Rectangle {
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let to_centre = self.center - ray.o;
         let t = self.normal.dot(to_centre) / self.normal.dot(ray.d);
-        // An infinite or NaN t makes coordinates that are NaN and fail.
+        // A NaN t fails here; an infinite one makes coordinates that are NaN and fail below.
+        if !(t > 0.0 && t <= ray.t_max) {
+            return None;
+        }
         let q = ray.d * t - to_centre;
         let at = DVec2::new(self.dual_u.dot(q), self.dual_v.dot(q));
         let inside = at.x.abs() <= 0.5 && at.y.abs() <= 0.5;
-        (inside && t > 0.0 && t <= ray.t_max).then_some(Hit { t, at, face: 0 })
+        inside.then_some(Hit { t, at, face: 0 })
     }
 
     fn surface(&self, _ray: &Ray, hit: &Hit) -> Surface {

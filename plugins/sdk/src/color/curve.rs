@@ -106,6 +106,12 @@ impl Curve {
         lo + (hi - lo) * t
     }
 
+    /// The samples and one guard, so that a row and the next always exist.
+    #[inline]
+    pub(super) fn table(&self) -> &[f32; 472] {
+        &self.samples
+    }
+
     /// The 471 samples at 360, 361, … 830 nm.
     pub fn samples(&self) -> &[f32] {
         &self.samples[..471]

@@ -11,6 +11,7 @@ mod illuminant;
 mod metal;
 mod name;
 mod observer;
+mod palette;
 mod rgb;
 mod spectrum;
 mod uplift;
@@ -24,6 +25,7 @@ pub use illuminant::{
 };
 pub use metal::{Metal, metal, metal_names};
 pub use observer::{K_CD, Observer, luminance_cd_m2, to_xyz};
+pub use palette::Palette;
 pub use rgb::{RgbSpace, bradford, srgb_decode, srgb_encode, xy_to_xyz, xyz_to_xy};
 pub use spectrum::Spectrum;
 pub use uplift::{uplift_illuminant, uplift_reflectance};

@@ -55,6 +55,15 @@ fn combine(rows: &Rows, rgb: Vec3, w: &Wavelengths) -> Spectrum {
     }))
 }
 
+/// The reflectance and the illuminant basis (red, green, blue) at four places of the tables.
+pub(super) fn basis_at(places: [(usize, f32); 4]) -> ([Spectrum; 3], [Spectrum; 3]) {
+    let columns = |rows: &Rows| {
+        let at = places.map(|(i, t)| rows[i] + (rows[i + 1] - rows[i]) * t);
+        std::array::from_fn(|c| Spectrum::from_array(at.map(|row| row[c])))
+    };
+    (columns(&REFLECTANCE), columns(&ILLUMINANT))
+}
+
 /// Channel `c` of the published basis, each row scaled to sum to 1, so that white is flat.
 fn published(c: usize) -> Curve {
     let row = |(i, row): (usize, &[f32; 3])| {

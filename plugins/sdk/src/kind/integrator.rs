@@ -42,8 +42,6 @@ impl Wants {
 pub struct Job {
     /// The camera's ray, world space, unit direction.
     pub ray: Ray,
-    /// What its radiance counts for.
-    pub weight: f32,
 }
 
 /// Where a path arrived.

@@ -30,6 +30,7 @@ pub const fn gamma64(n: u16) -> f64 {
 ///
 /// # Source
 /// PBR4 §6.8.6: the plane is moved by |`ng`|·`p_err`, then every component rounds away from `p`.
+#[inline]
 pub fn offset_origin(p: DVec3, p_err: DVec3, ng: DVec3, d: DVec3) -> DVec3 {
     let distance = ng.abs().dot(p_err);
     let offset = if d.dot(ng) < 0.0 { ng * -distance } else { ng * distance };
@@ -41,6 +42,7 @@ pub fn offset_origin(p: DVec3, p_err: DVec3, ng: DVec3, d: DVec3) -> DVec3 {
     )
 }
 
+#[inline]
 fn round_away(x: f64, towards: f64) -> f64 {
     if towards > 0.0 {
         x.next_up()

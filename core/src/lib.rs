@@ -2,6 +2,8 @@
 //!
 //! It reads nothing itself (bytes come through `files::Files`) and prints nothing.
 
+mod cast;
+
 pub mod accel;
 pub mod diag;
 pub mod files;

@@ -25,6 +25,9 @@ pub struct Sources {
 
 impl Sources {
     /// Keeps a text and names it.
+    ///
+    /// # Panics
+    /// From 2³² texts on, which no budget allows.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<str>>) -> SourceId {
         self.files.push((name.into(), text.into()));
         SourceId(u32::try_from(self.files.len() - 1).expect("fewer than 2^32 files are read"))

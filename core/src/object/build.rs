@@ -17,6 +17,7 @@ use super::colour::{self, Amount, Lanes};
 use super::context::{self, Embedded, Reader};
 use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
 use super::resolve::SCRATCH;
+use crate::cast::{self, narrow, whole};
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::registry::Registry;
@@ -314,7 +315,7 @@ impl Draft {
             texture,
             uplift,
             factor,
-            range: [param.min as f32, param.max as f32],
+            range: [narrow(param.min), narrow(param.max)],
             target,
         });
         Ok(())
@@ -323,21 +324,21 @@ impl Draft {
     fn value(&mut self, param: &Param, value: &Value) -> Result<(), String> {
         let at = param.offset;
         match (param.ty, value) {
-            (Type::Float, Value::Number(x, _)) => self.block.write(at, *x as f32),
+            (Type::Float, Value::Number(x, _)) => self.block.write(at, narrow(*x)),
             (Type::Double, Value::Number(x, _)) => self.block.write(at, *x),
-            (Type::Int, Value::Number(x, _)) => self.block.write(at, *x as u32),
+            (Type::Int, Value::Number(x, _)) => self.block.write(at, whole(*x)),
             (Type::Bool, Value::Bool(b)) => self.block.write(at, *b),
             (Type::MaybeFloat, Value::Number(x, _)) => {
-                self.block.write(at, Maybe { given: true, value: *x as f32 });
+                self.block.write(at, Maybe { given: true, value: narrow(*x) });
             }
             (Type::Spectrum | Type::ComplexIor, Value::Number(x, _)) => {
-                self.block.write(at, Spectrum::splat(*x as f32));
+                self.block.write(at, Spectrum::splat(narrow(*x)));
             }
             (Type::Vec2 | Type::Vec3 | Type::DVec3, Value::Vector(v)) => self.vector(param, v),
             (Type::Choice, Value::Text(word)) => {
                 let index = param.choices.iter().position(|choice| **choice == **word);
                 let index = index.ok_or_else(|| format!("`{word}` is not among the choices"))?;
-                self.block.write_raw(at, index as u32);
+                self.block.write_raw(at, cast::index(index));
             }
             (Type::Text, Value::Text(text)) => {
                 self.block.write_raw(at, Text::new(text));
@@ -373,16 +374,16 @@ impl Draft {
     fn preset(&mut self, param: &Param) {
         let at = param.offset;
         match (param.default, param.ty) {
-            (Preset::Numbers(n), Type::Float) => self.block.write(at, n[0] as f32),
+            (Preset::Numbers(n), Type::Float) => self.block.write(at, narrow(n[0])),
             (Preset::Numbers(n), Type::Double) => self.block.write(at, n[0]),
-            (Preset::Numbers(n), Type::Int) => self.block.write(at, n[0] as u32),
+            (Preset::Numbers(n), Type::Int) => self.block.write(at, whole(n[0])),
             (Preset::Numbers(n), Type::Bool) => self.block.write(at, n[0] > 0.5),
             (Preset::Numbers(n), Type::Vec2 | Type::Vec3 | Type::DVec3) => self.vector(param, &n),
             (Preset::Numbers(n), Type::Spectrum | Type::ComplexIor) => {
-                self.block.write(at, Spectrum::splat(n[0] as f32));
+                self.block.write(at, Spectrum::splat(narrow(n[0])));
             }
             (Preset::Numbers(n), Type::MaybeFloat) => {
-                self.block.write(at, Maybe { given: true, value: n[0] as f32 });
+                self.block.write(at, Maybe { given: true, value: narrow(n[0]) });
             }
             (Preset::Index(index), Type::Choice) => self.block.write_raw(at, index),
             (Preset::Text(text), Type::Text) => self.block.write_raw(at, Text::new(text)),

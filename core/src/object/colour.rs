@@ -11,6 +11,7 @@ use luxel_sdk::params::{Dimension, Quantity, Role, Unit};
 
 use super::build::ColorMode;
 use super::patch::Uplift;
+use crate::cast::narrow;
 use crate::scene::Color;
 
 /// What a field of four lanes takes.
@@ -37,7 +38,7 @@ fn curve_of(color: &Color, outside: Outside) -> Result<Option<Curve>, String> {
     let unknown = |what: &str, name: &Arc<str>| format!("there is no {what} `{name}`");
     Ok(Some(match color {
         Color::Rgb(_) => return Ok(None),
-        Color::Constant(x) => Curve::constant(*x as f32),
+        Color::Constant(x) => Curve::constant(narrow(*x)),
         Color::Curve(points) => Curve::from_points(points, outside).map_err(|e| e.to_string())?,
         Color::Blackbody(t) => blackbody(*t).ok_or("a temperature is finite and at least 1 K")?,
         Color::Illuminant(name) => illuminant(name).ok_or_else(|| unknown("illuminant", name))?,
@@ -62,7 +63,7 @@ fn rgb_of(color: &Color) -> Option<[f64; 3]> {
 /// Lanes of a reflectance, a coefficient or an index of refraction.
 pub(super) fn lanes(color: &Color, role: Role, mode: ColorMode) -> Result<Lanes, String> {
     if let Color::Constant(x) = color {
-        return Ok(Lanes::Constant(Spectrum::splat(*x as f32)));
+        return Ok(Lanes::Constant(Spectrum::splat(narrow(*x))));
     }
     if let Some(rgb) = rgb_of(color) {
         let rgb = rgb32(rgb);
@@ -143,7 +144,7 @@ pub(super) fn emission(color: &Color, amount: Amount, mode: ColorMode) -> Result
         }
         (ColorMode::Spectral, None) => Lanes::Curve(curve.map(|_, x| x * factor)),
         (ColorMode::Rgb, None) => {
-            Lanes::Constant(Spectrum::from_rgb(emission_rgb(&curve) * factor as f32))
+            Lanes::Constant(Spectrum::from_rgb(emission_rgb(&curve) * narrow(factor)))
         }
     })
 }
@@ -151,14 +152,14 @@ pub(super) fn emission(color: &Color, amount: Amount, mode: ColorMode) -> Result
 /// The factor on a texture's colours that gives the amount for white.
 pub(super) fn texture_factor(amount: Amount) -> f32 {
     let curve = rgb_curve(Vec3::ONE);
-    amount.factor(curve.mean(), curve.y()) as f32
+    narrow(amount.factor(curve.mean(), curve.y()))
 }
 
 /// RGB light as a curve.
 fn rgb_curve(rgb: Vec3) -> Curve {
     Curve::from_fn(|nm| {
         let mut w = luxel_sdk::color::Wavelengths::sample(0.5);
-        w.lambda = Spectrum::splat(nm as f32);
+        w.lambda = Spectrum::splat(narrow(nm));
         f64::from(uplift_illuminant(rgb, &w).lane(0))
     })
 }

@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::sync::Arc;
 
-use luxel_sdk::abi::View;
 use glam::{DVec3, Vec2};
+use luxel_sdk::abi::View;
 use luxel_sdk::color::{Palette, Spectrum};
 use luxel_sdk::kind::{
     Camera, Filter, Importer, Integrator, Light, Material, MaterialRef, Medium, Output, Phase,

@@ -3,8 +3,7 @@
 use glam::{DVec3, Vec3};
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Arrival, ArrivalKind, Direct, Lobe, Phase, Sample, Samples, Scatter, Surface,
-    Wants,
+    Arrival, ArrivalKind, Direct, Lobe, Phase, Sample, Samples, Scatter, Surface, Wants,
 };
 use luxel_sdk::num::{Frame, Ray};
 
@@ -79,7 +78,7 @@ impl Shader<'_, '_> {
             let from = self.path.from;
             let palette = &self.path.palette;
             let (le, pdf) =
-                stage.surface_emission(placement, &surface, wo, from, palette, self.scratch);
+                stage.surface_emission(placement, &surface, (from, wo), palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
         self.path.from = surface.p;

@@ -13,6 +13,7 @@ use luxel_sdk::sampling::hash_combine;
 use super::arrival::Shader;
 use super::path::Path;
 use super::{Control, shadow};
+use crate::cast;
 use crate::film::Tile;
 use crate::object::{ColorMode, Scratch, Site};
 use crate::stage::{Skin, Stage};
@@ -113,7 +114,7 @@ impl<'s> Worker<'s> {
             *started += 1;
             let Some((path, samples, ray)) = self.begin(jobs, job) else {
                 if !fresh {
-                    self.free.push(lane as u32);
+                    self.free.push(cast::index(lane));
                 }
                 continue;
             };
@@ -127,7 +128,7 @@ impl<'s> Worker<'s> {
             }
             let asked = self.next.rays.len() + self.next.shadows.len();
             let job = Job { ray };
-            self.states.start(lane as u32, &job, &mut self.lanes[lane].l, &mut self.next);
+            self.states.start(cast::index(lane), &job, &mut self.lanes[lane].l, &mut self.next);
             if asked == self.next.rays.len() + self.next.shadows.len() {
                 self.finish(lane);
             }
@@ -151,7 +152,7 @@ impl<'s> Worker<'s> {
         let raster = Raster { size: self.stage.film.resolution };
         let camera = self.stage.camera.fixed().camera();
         let found = camera.ray(raster, p, lens)?;
-        let mut path = Path::new(job as u32, found.weight, palette, self.stage);
+        let mut path = Path::new(cast::index(job), found.weight, palette, self.stage);
         path.from = found.ray.o;
         Some((path, samples, found.ray))
     }
@@ -250,7 +251,7 @@ impl<'s> Worker<'s> {
         let path = &self.paths[lane];
         let l = self.lanes[lane].l * path.weight;
         self.results[path.job as usize] = self.to_rgb.sample(l, &path.palette.wavelengths);
-        self.free.push(lane as u32);
+        self.free.push(cast::index(lane));
     }
 }
 
@@ -269,9 +270,9 @@ impl Jobs {
 
     /// The pixel and the index of its sample.
     fn at(&self, job: usize) -> (UVec2, u32) {
-        let (sample, pixel) = (job / self.n_pixels, (job % self.n_pixels) as u32);
+        let (sample, pixel) = (job / self.n_pixels, cast::index(job % self.n_pixels));
         let offset = UVec2::new(pixel % self.width, pixel / self.width);
-        (self.origin + offset, self.range.start + sample as u32)
+        (self.origin + offset, self.range.start + cast::index(sample))
     }
 }
 
@@ -292,9 +293,10 @@ impl Develop {
     }
 
     fn sample(&self, l: Spectrum, lambda: &Wavelengths) -> DVec3 {
-        match self.spectral {
-            true => self.from_xyz * to_xyz(self.observer, l, lambda),
-            false => l.rgb().as_dvec3(),
+        if self.spectral {
+            self.from_xyz * to_xyz(self.observer, l, lambda)
+        } else {
+            l.rgb().as_dvec3()
         }
     }
 }

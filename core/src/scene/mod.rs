@@ -158,6 +158,9 @@ impl Scene {
     }
 
     /// Adds a node whose children are already here; its hash is computed.
+    ///
+    /// # Panics
+    /// From 2³² nodes on: the budget is far below.
     pub fn add(&mut self, mut node: Node) -> NodeId {
         node.hash = value::hash_node(&node, |id| self.node(id).hash);
         self.nodes.push(node);

@@ -13,6 +13,7 @@ use super::lights::LightSource;
 use super::{Cache, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage};
 use super::{closed, features, import};
 use crate::accel::{BuildError, MeshBvh, TopBvh};
+use crate::cast::index;
 use crate::diag::Diagnostic;
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Object, Objects};
@@ -142,7 +143,7 @@ impl Maker<'_> {
             geometry,
             transform,
             skin,
-            light: light.is_some().then_some(self.made.lights.len() as u32),
+            light: light.is_some().then_some(index(self.made.lights.len())),
             interior,
             closed,
             node: shape,
@@ -155,7 +156,7 @@ impl Maker<'_> {
 
     /// The source of light that a shining placement is.
     fn shining(&mut self, object: Arc<Object>, placement: &Placement) {
-        let index = self.made.placements.len() as u32;
+        let place = index(self.made.placements.len());
         let geometry = &self.made.geometries[placement.geometry as usize];
         let (area, triangles) = match &**geometry {
             Geometry::Mesh(mesh) => {
@@ -170,12 +171,12 @@ impl Maker<'_> {
                         0.0
                     }
                 };
-                let areas: Vec<f64> = (0..mesh.indices.len() as u32).map(area).collect();
+                let areas: Vec<f64> = (0..index(mesh.indices.len())).map(area).collect();
                 (areas.iter().sum(), Alias::new(&areas).ok())
             }
             Geometry::Analytic(shape) => (world_area(shape, placement), None),
         };
-        self.made.lights.push(LightSource::Surface { object, placement: index, area, triangles });
+        self.made.lights.push(LightSource::Surface { object, placement: place, area, triangles });
     }
 
     fn geometry(&mut self, id: NodeId) -> Option<u32> {
@@ -191,9 +192,9 @@ impl Maker<'_> {
         };
         self.made.meshes.insert(hash, (object, geometry.clone()));
         self.made.geometries.push(geometry);
-        let index = self.made.geometries.len() as u32 - 1;
-        self.made.geometry_of.insert(id, index);
-        Some(index)
+        let last = index(self.made.geometries.len() - 1);
+        self.made.geometry_of.insert(id, last);
+        Some(last)
     }
 
     fn new_geometry(&mut self, id: NodeId, object: &Arc<Object>) -> Option<Geometry> {
@@ -237,9 +238,9 @@ impl Maker<'_> {
         }
         let object = self.builder.build(id)?;
         self.made.media.push(object);
-        let index = self.made.media.len() as u32 - 1;
-        self.made.medium_of.insert(id, index);
-        Some(index)
+        let last = index(self.made.media.len() - 1);
+        self.made.medium_of.insert(id, last);
+        Some(last)
     }
 
     fn skin(
@@ -268,7 +269,7 @@ impl Maker<'_> {
     fn push_material(&mut self, object: Arc<Object>, node: NodeId) -> u32 {
         self.made.materials.push(object);
         self.made.material_nodes.push(node);
-        self.made.materials.len() as u32 - 1
+        index(self.made.materials.len() - 1)
     }
 
     /// What a shape without a material looks like: matt, its default grey.
@@ -284,15 +285,12 @@ impl Maker<'_> {
 
     fn settings(&mut self) -> Option<Settings> {
         let scene = self.scene;
-        let camera = match scene.camera {
-            Some(id) => self.builder.build(id),
-            None => {
-                let error = Diagnostic::unplaced("E0409", "the scene has no camera")
-                    .help("add `camera perspective { look = look_at(from = …, to = …, up = …) }`");
-                self.builder.diagnostics.push(error);
-                None
-            }
-        };
+        if scene.camera.is_none() {
+            let error = Diagnostic::unplaced("E0409", "the scene has no camera")
+                .help("add `camera perspective { look = look_at(from = …, to = …, up = …) }`");
+            self.builder.diagnostics.push(error);
+        }
+        let camera = scene.camera.and_then(|id| self.builder.build(id));
         let outside = scene.medium.and_then(|id| self.medium(id));
         let mut pick = |id: Option<NodeId>, kind, name| match id {
             Some(id) => self.builder.build(id),
@@ -311,6 +309,9 @@ impl Maker<'_> {
     }
 }
 
+/// Points at which the area scale of a transform that is no similarity is averaged.
+const AREA_POINTS: u32 = 1024;
+
 /// Area of an analytic shape in the world. Exact for similarities; else the mean scale over points
 /// that the shape samples uniformly.
 fn world_area(shape: &Object, placement: &Placement) -> f64 {
@@ -319,12 +320,11 @@ fn world_area(shape: &Object, placement: &Placement) -> f64 {
     if transform.is_rigid_or_uniform() {
         return shape.area() * transform.area_scale(DVec3::Z);
     }
-    const N: u32 = 1024;
-    let scales = (0..N).filter_map(|i| {
+    let scales = (0..AREA_POINTS).filter_map(|i| {
         let u = luxel_sdk::sampling::sobol_owen_2d(i, 0x5eed);
         Some(transform.area_scale(shape.sample(None, u)?.surface.ng))
     });
-    shape.area() * scales.sum::<f64>() / f64::from(N)
+    shape.area() * scales.sum::<f64>() / f64::from(AREA_POINTS)
 }
 
 fn mesh_error(error: BuildError, span: crate::diag::Span) -> Diagnostic {

@@ -2,11 +2,13 @@
 
 use luxel_sdk::kind::TriangleMesh;
 
+use crate::cast::index;
+
 /// Whether every edge is run along once in each direction.
 ///
 /// Corners at the same place count as one, so that seams of texture coordinates do not open a mesh.
 pub(super) fn is_closed(mesh: &TriangleMesh) -> bool {
-    let mut order: Vec<u32> = (0..mesh.points.len()).map(|i| i as u32).collect();
+    let mut order: Vec<u32> = (0..index(mesh.points.len())).collect();
     let key = |i: &u32| mesh.points[*i as usize].to_array().map(|x| (x + 0.0).to_bits());
     order.sort_unstable_by_key(key);
     let mut same = vec![0u32; order.len()];

@@ -18,10 +18,9 @@ pub struct Features {
 /// nothing depends on wavelength.
 pub(super) fn color_mode(scene: &Scene, choice: ColorChoice) -> ColorMode {
     match choice {
-        ColorChoice::Rgb => ColorMode::Rgb,
         ColorChoice::Spectral => ColorMode::Spectral,
         ColorChoice::Auto if scene.nodes.iter().any(has_spectrum) => ColorMode::Spectral,
-        ColorChoice::Auto => ColorMode::Rgb,
+        ColorChoice::Rgb | ColorChoice::Auto => ColorMode::Rgb,
     }
 }
 

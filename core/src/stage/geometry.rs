@@ -7,6 +7,7 @@ use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32};
 
 use crate::accel::MeshBvh;
+use crate::cast::narrow;
 use crate::object::Object;
 
 /// What a placement places. Shared by every placement of the same shape.
@@ -56,7 +57,7 @@ impl Mesh {
     /// enters the mesh's box so that nothing is lost by rounding.
     fn narrow(&self, ray: &Ray, t_enter: f64) -> (glam::Vec3, glam::Vec3, f32) {
         let o = ray.at(t_enter) - self.triangles().centre;
-        let t_max = ((ray.t_max - t_enter) as f32).next_up();
+        let t_max = narrow(ray.t_max - t_enter).next_up();
         (o.as_vec3(), ray.d.as_vec3(), t_max)
     }
 

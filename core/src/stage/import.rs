@@ -7,6 +7,7 @@ use glam::DAffine3;
 use luxel_sdk::kind::{ImportNode, ImportValue, Imported, Kind};
 use luxel_sdk::params::{Dimension, Param, Type, Unit};
 
+use crate::cast::index;
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Embedded, Objects, Reader};
@@ -46,14 +47,9 @@ impl Import<'_> {
             if scene.node(id).kind != Kind::Importer {
                 continue;
             }
-            let group = match self.done.get(&id) {
-                Some(group) => *group,
-                None => {
-                    let group = self.asset(scene, id, diagnostics);
-                    self.done.insert(id, group);
-                    group
-                }
-            };
+            let known = self.done.get(&id).copied();
+            let group = known.unwrap_or_else(|| self.asset(scene, id, diagnostics));
+            self.done.insert(id, group);
             // An asset that could not be read leaves an empty place; the error has been said.
             item.target = Target::Group(group.unwrap_or_else(|| self.group(Group::default())));
         }
@@ -61,7 +57,7 @@ impl Import<'_> {
 
     fn group(&mut self, group: Group) -> GroupId {
         self.out.groups.push(group);
-        GroupId(self.out.groups.len() as u32 - 1)
+        GroupId(index(self.out.groups.len() - 1))
     }
 
     fn asset(
@@ -113,12 +109,11 @@ impl Import<'_> {
         for (index, transform) in &imported.placed {
             let Some(id) = ids.get(*index).copied().flatten() else { continue };
             let (transform, span) = (*transform, asset.span);
-            match self.out.node(id).kind {
-                Kind::Camera => self.camera(id, transform),
-                _ => {
-                    let target = Target::Node(id);
-                    group.items.push(Placed { target, transform, material: None, span });
-                }
+            if self.out.node(id).kind == Kind::Camera {
+                self.camera(id, transform);
+            } else {
+                let target = Target::Node(id);
+                group.items.push(Placed { target, transform, material: None, span });
             }
         }
         self.group(group)

@@ -9,6 +9,7 @@ use luxel_sdk::num::{Ray, Transform, offset_origin};
 use luxel_sdk::sampling::Alias;
 
 use super::{Geometry, Placement, Stage};
+use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 
 /// A source of light of the stage.
@@ -83,7 +84,7 @@ impl Lights {
         // A floor of 1 % of the mean: a texture that was looked up where it is dark, or an estimate
         // that is wrong, must not leave a light without a chance.
         let weights: Vec<f64> = power.iter().map(|p| p + 0.01 * mean).collect();
-        let infinite = (0..sources.len() as u32).filter(|i| {
+        let infinite = (0..index(sources.len())).filter(|i| {
             let object = sources[*i as usize].object();
             object.fixed().light().form() == luxel_sdk::kind::LightForm::Infinite
         });
@@ -100,11 +101,13 @@ impl Lights {
     }
 }
 
+/// Places along each texture coordinate at which a light's power is asked for.
+const GRID: u32 = 4;
+
 fn power(light: &LightSource, radius: f64, mode: ColorMode) -> f32 {
     let palette = Palette::new(Wavelengths::sample(0.5));
     let mut scratch = Scratch::default();
     let mut sum = 0.0;
-    const GRID: u32 = 4;
     for i in 0..GRID * GRID {
         let uv = (Vec2::new((i % GRID) as f32, (i / GRID) as f32) + 0.5) / GRID as f32;
         scratch.reset();
@@ -144,8 +147,10 @@ impl Stage {
         let u = [u[1], u[2]];
         match source {
             LightSource::Surface { object, placement, area, triangles } => {
-                let spot = SurfaceLight { object, placement: *placement, area: *area };
-                self.sample_surface(&spot, triangles.as_ref(), from, palette, (u, chosen.u), scratch)
+                let triangle =
+                    triangles.as_ref().map(|choice| index(choice.sample(chosen.u).index));
+                let light = SurfaceLight { object, placement: *placement, area: *area, triangle };
+                self.sample_surface(&light, from, palette, u, scratch)
             }
             LightSource::Free { object, transform } => {
                 let at = Site { p: from.p, uv: Vec2::ZERO, palette };
@@ -153,7 +158,7 @@ impl Stage {
                 self.sample_free(light, transform.as_deref(), from, palette, u)
             }
         }
-        .map(|found| found.with_chance(chosen.pmf as f32))
+        .map(|found| found.with_chance(narrow(chosen.pmf)))
     }
 
     fn sample_free(
@@ -174,7 +179,7 @@ impl Stage {
             wi = to / scale;
             if distance.is_finite() {
                 // A delta light gave irradiance at its own distance.
-                le = le / (scale * scale) as f32;
+                le /= narrow(scale * scale);
                 distance *= scale;
             }
         }
@@ -190,17 +195,15 @@ impl Stage {
     fn sample_surface(
         &self,
         light: &SurfaceLight<'_>,
-        triangles: Option<&Alias>,
         from: &Origin,
         palette: &Palette,
-        (u, remapped): ([f32; 2], f64),
+        u: [f32; 2],
         scratch: &Scratch,
     ) -> Option<FoundLight> {
         let placement = &self.placements[light.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
-        let (surface, pdf_area) = match (&**geometry, triangles) {
-            (Geometry::Mesh(mesh), Some(choice)) => {
-                let triangle = choice.sample(remapped).index as u32;
+        let (surface, pdf_area) = match (&**geometry, light.triangle) {
+            (Geometry::Mesh(mesh), Some(triangle)) => {
                 let at = luxel_sdk::sampling::uniform_triangle(u);
                 let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
                 (placement.to_world(mesh.surface(triangle, at)), 1.0 / light.area)
@@ -225,18 +228,21 @@ impl Stage {
         let uv = surface.uv.as_vec2();
         let at = Site { p: surface.p, uv, palette };
         let resolved = light.object.resolve(&at, scratch).light();
-        let le = emitted(resolved, resolved.le(cos_o as f32, uv, light.area), self.mode, palette);
-        (!le.is_black()).then(|| FoundLight { ray, le_over_pdf: le / pdf as f32, pdf: pdf as f32 })
+        let le = emitted(resolved, resolved.le(narrow(cos_o), uv, light.area), self.mode, palette);
+        (!le.is_black()).then(|| FoundLight {
+            ray,
+            le_over_pdf: le / narrow(pdf),
+            pdf: narrow(pdf),
+        })
     }
 
-    /// Radiance of a shining surface towards `wo`, and the density with which `sample_light` would
-    /// have found the point from `from`.
+    /// Radiance of a shining surface towards the point `from`, and the density with which
+    /// `sample_light` would have found it from there; `wo` is the unit direction of the ray that came.
     pub fn surface_emission(
         &self,
         placement: &Placement,
         surface: &Surface,
-        wo: DVec3,
-        from: DVec3,
+        (from, wo): (DVec3, DVec3),
         palette: &Palette,
         scratch: &Scratch,
     ) -> (Spectrum, f32) {
@@ -248,13 +254,13 @@ impl Stage {
         let at = Site { p: surface.p, uv, palette };
         let resolved = object.resolve(&at, scratch).light();
         let cos_o = surface.ng.dot(wo);
-        let le = emitted(resolved, resolved.le(cos_o as f32, uv, *area), self.mode, palette);
+        let le = emitted(resolved, resolved.le(narrow(cos_o), uv, *area), self.mode, palette);
         if le.is_black() {
             return (le, 0.0);
         }
         let pdf_area = self.surface_pdf(placement, *area, surface, from);
         let pdf = pdf_area * surface.p.distance_squared(from) / cos_o.abs();
-        (le, (pdf * self.lights.chance(light)) as f32)
+        (le, narrow(pdf * self.lights.chance(light)))
     }
 
     /// Area density, in the world, with which a point of a shining surface is sampled.
@@ -290,16 +296,19 @@ impl Stage {
             let resolved = object.resolve(&at, scratch).light();
             let found = resolved.escaped(local);
             le += emitted(resolved, found.le, self.mode, palette);
-            pdf += found.pdf * self.lights.chance(light) as f32;
+            pdf += found.pdf * narrow(self.lights.chance(light));
         }
         (le, pdf)
     }
 }
 
+/// A shining placement from which light is sampled.
 struct SurfaceLight<'a> {
     object: &'a Object,
     placement: u32,
     area: f64,
+    /// The chosen triangle of a mesh.
+    triangle: Option<u32>,
 }
 
 impl FoundLight {

@@ -3,6 +3,7 @@
 use glam::UVec2;
 use luxel_sdk::color::Observer;
 
+use crate::cast::whole;
 use crate::registry::Display;
 use crate::scene::{Argument, Node, Value};
 
@@ -60,7 +61,7 @@ impl Film {
         for Argument { name, value, .. } in &node.params {
             match (*name, value) {
                 ("resolution", Value::Vector(v)) if v.len() == 2 => {
-                    film.resolution = UVec2::new(v[0] as u32, v[1] as u32);
+                    film.resolution = UVec2::new(whole(v[0]), whole(v[1]));
                 }
                 ("exposure", Value::Number(ev, _)) => film.exposure = Some(*ev),
                 ("observer", Value::Text(word)) => {

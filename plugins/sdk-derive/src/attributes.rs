@@ -43,6 +43,7 @@ pub(crate) fn snake_case(name: &str) -> String {
 
 /// What `#[param(…)]` says of one field.
 #[derive(Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a key that is there or not")]
 pub(crate) struct Attributes {
     pub(crate) derived: bool,
     pub(crate) shared: bool,

@@ -159,9 +159,10 @@ fn descriptor(id: &Ident, ty: &Type, type_name: &str, doc: &str, a: &Attributes)
     };
     let min = a.min.as_ref().map_or(low, |e| quote!((#e) as f64));
     let max = a.max.as_ref().map_or(high, |e| quote!((#e) as f64));
-    let choices = match a.choice {
-        true => quote!(<#ty as ::luxel_sdk::params::Choice>::WORDS),
-        false => quote!(&[]),
+    let choices = if a.choice {
+        quote!(<#ty as ::luxel_sdk::params::Choice>::WORDS)
+    } else {
+        quote!(&[])
     };
     let default = default(ty, type_name, a);
     let (required, textured) = (a.required, a.textured);

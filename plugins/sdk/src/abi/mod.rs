@@ -70,6 +70,7 @@ impl std::fmt::Debug for Class {
     }
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "it stands where classes check")]
 unsafe fn no_check(_: *const u8) -> Result<(), Fault> {
     Ok(())
 }
@@ -207,7 +208,10 @@ where
     Ok(Object { address: (&raw const *table).cast(), owner: table })
 }
 
-/// Refuses, while the plugin compiles, a default outside its own range.
+/// Refuses a default outside its own range, while the plugin compiles.
+///
+/// # Panics
+/// Then: the panic is the compiler's message.
 pub const fn check_schema(schema: &[Param]) {
     let mut i = 0;
     while i < schema.len() {

@@ -61,7 +61,7 @@ pub enum ArrivalKind {
 pub struct Direct {
     /// From the arrival to the light, offset at both ends.
     pub ray: Ray,
-    /// f·|cos_i|·le / pdf: what arrives if nothing lies between.
+    /// `f·|cos_i|·le / pdf`: what arrives if nothing lies between.
     pub f_le: Spectrum,
     /// Solid-angle density of the light sample; infinite for a delta light.
     pub pdf: f32,

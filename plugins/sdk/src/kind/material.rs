@@ -11,7 +11,7 @@ use crate::params::Fault;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Eval {
-    /// f·|cos_i|, sr⁻¹.
+    /// `f·|cos_i|`, sr⁻¹.
     pub f: Spectrum,
     /// Density with which `sample` finds `wi`, sr⁻¹; delta lobes do not count.
     pub pdf: f32,
@@ -59,7 +59,7 @@ pub struct Sample {
     pub wi: Vec3,
     /// Solid-angle density, sr⁻¹; 1 for a delta lobe.
     pub pdf: f32,
-    /// Relative index eta_t / eta_i of a transmission (radiance grows by its square), else 1.
+    /// Relative index `eta_t / eta_i` of a transmission (radiance grows by its square), else 1.
     pub eta: f32,
     /// Where it came from.
     pub lobe: Lobe,
@@ -94,7 +94,7 @@ pub trait Material: Send + Sync {
         Ok(())
     }
 
-    /// f·|cos_i| and the density of `sample`, without delta lobes.
+    /// `f·|cos_i|` and the density of `sample`, without delta lobes.
     fn eval(&self, wo: Vec3, wi: Vec3) -> Eval;
 
     /// A direction, `u` uniform in [0, 1)³. `None` when nothing is scattered.

@@ -11,6 +11,9 @@ mod context;
 mod patch;
 mod resolve;
 
+#[cfg(test)]
+mod tests;
+
 use std::any::Any;
 use std::sync::Arc;
 

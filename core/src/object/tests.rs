@@ -1,0 +1,245 @@
+//! Objects of plugins that exist only here.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec2, Vec3};
+use luxel_sdk::Params;
+use luxel_sdk::abi::Class;
+use luxel_sdk::color::{Observer, Palette, Spectrum, Wavelengths, to_xyz};
+use luxel_sdk::kind::{
+    Eval, Kind, Light, LightForm, Material, MaterialRef, Output, Sample, Texture, TexturePoint,
+};
+use luxel_sdk::params::{Dimension, Emission, Unit};
+
+use super::{Builder, ColorMode, Object, Objects, Scratch, Site};
+use crate::diag::{SourceId, Span};
+use crate::files::MemoryFiles;
+use crate::registry::Registry;
+use crate::scene::{Argument, Color, Node, NodeId, Scene, Value};
+
+/// Gives back its parameters as an `Eval`.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Echo {
+    /// Comes back as `f`.
+    #[param(default = 0.25, role = reflectance, textured)]
+    reflectance: Spectrum,
+    /// Comes back doubled as `pdf`.
+    #[param(default = 0.5, min = 0, max = 1, textured)]
+    roughness: f32,
+    #[param(derived)]
+    doubled: f32,
+}
+
+impl Material for Echo {
+    fn prepare(&mut self) {
+        self.doubled = 2.0 * self.roughness;
+    }
+    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Eval {
+        Eval { f: self.reflectance, pdf: self.doubled }
+    }
+    fn sample(&self, _wo: Vec3, _u: [f32; 3]) -> Option<Sample> {
+        None
+    }
+}
+
+/// Hands on to another material.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Through<'a> {
+    /// To which.
+    #[param(required)]
+    base: MaterialRef<'a>,
+}
+
+impl Material for Through<'_> {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
+        self.base.eval(wo, wi)
+    }
+    fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Sample> {
+        self.base.sample(wo, u)
+    }
+}
+
+/// Its own coordinates as a colour, scaled.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Coordinates {
+    /// By how much.
+    #[param(default = 1.0)]
+    scale: f32,
+}
+
+impl Texture for Coordinates {
+    fn eval(&self, at: &TexturePoint) -> Spectrum {
+        Spectrum::from_rgb(at.uv.extend(0.5) * self.scale)
+    }
+    fn output(&self) -> Output {
+        Output::Rgb
+    }
+}
+
+/// A lamp that gives back what it emits as radiance.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Lamp {
+    /// What.
+    #[param(emission(radiance, scale), textured)]
+    emission: Emission,
+}
+
+impl Light for Lamp {
+    fn form(&self) -> LightForm {
+        LightForm::Surface
+    }
+    fn le(&self, _cos_o: f32, _uv: Vec2, _area: f64) -> Spectrum {
+        self.emission.spectrum
+    }
+    fn power(&self, _area: f64, _radius: f64) -> f32 {
+        1.0
+    }
+}
+
+struct World {
+    registry: Registry,
+    scene: Scene,
+}
+
+impl World {
+    fn new() -> Self {
+        let mut registry = Registry::default();
+        let classes = [
+            Class::material::<Echo>("echo"),
+            Class::material::<Through<'_>>("through"),
+            Class::texture::<Coordinates>("coordinates"),
+            Class::light::<Lamp>("lamp"),
+        ];
+        registry.add("test", &classes).unwrap();
+        Self { registry, scene: Scene::default() }
+    }
+
+    fn node(&mut self, kind: Kind, class: &str, params: &[(&'static str, Value)]) -> NodeId {
+        let span = Span::new(SourceId(0), 0, 0);
+        let params =
+            params.iter().map(|(name, value)| Argument { name, value: value.clone(), span });
+        self.scene.add(Node {
+            kind,
+            class: class.into(),
+            label: None,
+            params: params.collect(),
+            overrides: vec![],
+            span,
+            hash: [0; 32],
+        })
+    }
+
+    fn build(&self, id: NodeId, mode: ColorMode) -> Result<Arc<Object>, Vec<&'static str>> {
+        let (files, before) = (MemoryFiles::default(), Objects::new());
+        let mut builder = Builder::new(&self.registry, &self.scene, &files, mode, &before);
+        let object = builder.build(id);
+        object.ok_or_else(|| builder.diagnostics.iter().map(|d| d.code).collect())
+    }
+}
+
+fn echo(object: &Object, uv: Vec2, palette: &Palette) -> Eval {
+    let scratch = Scratch::default();
+    let site = Site { p: DVec3::ZERO, uv, palette };
+    object.resolve(&site, &scratch).material().eval(Vec3::Z, Vec3::Z)
+}
+
+#[test]
+fn what_does_not_vary_is_the_template_itself() {
+    let mut world = World::new();
+    let id = world.node(Kind::Material, "echo", &[("roughness", number(0.75))]);
+    let object = world.build(id, ColorMode::Spectral).unwrap();
+    assert!(object.is_constant());
+    let got = echo(&object, Vec2::ZERO, &Palette::rgb());
+    assert_eq!((got.f, got.pdf.to_bits()), (Spectrum::splat(0.25), 1.5f32.to_bits()));
+}
+
+#[test]
+fn a_texture_is_clamped_to_the_range_and_prepared_at_the_hit() {
+    let mut world = World::new();
+    let texture = world.node(Kind::Texture, "coordinates", &[("scale", number(2.0))]);
+    let params = [("roughness", Value::Node(texture)), ("reflectance", Value::Node(texture))];
+    let id = world.node(Kind::Material, "echo", &params);
+    let object = world.build(id, ColorMode::Rgb).unwrap();
+    let got = echo(&object, Vec2::new(0.25, 0.75), &Palette::rgb());
+    assert_eq!(got.f.rgb(), Vec3::new(0.5, 1.0, 1.0));
+    assert_eq!(got.pdf.to_bits(), 1.0f32.to_bits());
+}
+
+#[test]
+fn a_nested_material_is_resolved_at_the_same_point() {
+    let mut world = World::new();
+    let texture = world.node(Kind::Texture, "coordinates", &[]);
+    let inner = world.node(Kind::Material, "echo", &[("reflectance", Value::Node(texture))]);
+    let mut id = inner;
+    for _ in 0..10 {
+        id = world.node(Kind::Material, "through", &[("base", Value::Node(id))]);
+    }
+    let object = world.build(id, ColorMode::Rgb).unwrap();
+    let got = echo(&object, Vec2::new(0.25, 0.75), &Palette::rgb());
+    assert_eq!(got.f.rgb(), Vec3::new(0.25, 0.75, 0.5));
+}
+
+#[test]
+fn nesting_beyond_the_scratch_is_refused() {
+    let mut world = World::new();
+    let texture = world.node(Kind::Texture, "coordinates", &[]);
+    let mut id = world.node(Kind::Material, "echo", &[("reflectance", Value::Node(texture))]);
+    for _ in 0..64 {
+        id = world.node(Kind::Material, "through", &[("base", Value::Node(id))]);
+    }
+    assert_eq!(world.build(id, ColorMode::Rgb).unwrap_err(), ["E0416"]);
+}
+
+#[test]
+fn radiance_means_the_same_light_in_both_modes_and_both_systems() {
+    // 1 W/m²/sr of equal-energy light has Y = 1, and is 155.3 cd/m².
+    let nit = luxel_sdk::color::luminance_cd_m2(1.0);
+    for (amount, unit) in [(1.0, "W/m^2/sr"), (nit, "nit")] {
+        let mut world = World::new();
+        let amount = Value::Number(amount, Unit::parse(unit).unwrap().dimension);
+        let white = Value::Color(Color::Constant(7.0), Dimension::NONE);
+        let id = world.node(Kind::Light, "lamp", &[("radiance", amount), ("spectrum", white)]);
+        let luminance = |mode| {
+            let object = world.build(id, mode).unwrap();
+            let palette = Palette::new(Wavelengths::sample(0.3));
+            let scratch = Scratch::default();
+            let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette };
+            object.resolve(&site, &scratch).light().le(1.0, Vec2::ZERO, 1.0)
+        };
+        let rgb = luminance(ColorMode::Rgb).rgb().as_dvec3();
+        let weights = luxel_sdk::color::RgbSpace::LinearSrgb.luminance_weights();
+        // Lanes are f32: a few roundings.
+        assert!((weights.dot(rgb) - 1.0).abs() < 1e-6, "{unit}: {rgb}");
+        let lanes = luminance(ColorMode::Spectral);
+        assert!((lanes - Spectrum::ONE).max_element().abs() < 1e-6, "{unit}: {lanes:?}");
+    }
+}
+
+#[test]
+fn rgb_light_of_scale_one_is_white_in_both_modes() {
+    let mut world = World::new();
+    let id = world.node(Kind::Light, "lamp", &[("scale", number(1.0))]);
+    let object = world.build(id, ColorMode::Spectral).unwrap();
+    // The mean of Y over stratified hero wavelengths: a rectangle rule over the whole band.
+    let n = 4096_u16;
+    let mean: f64 = (0..n)
+        .map(|i| {
+            let w = Wavelengths::sample((f32::from(i) + 0.5) / f32::from(n) / 4.0);
+            let palette = Palette::new(w);
+            let scratch = Scratch::default();
+            let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette };
+            let le = object.resolve(&site, &scratch).light().le(1.0, Vec2::ZERO, 1.0);
+            to_xyz(Observer::Cie1931, le, &w).y
+        })
+        .sum();
+    // D65 is piecewise linear at 1 nm, the rule has 35 points in each: error far below 1e-4.
+    assert!((mean / f64::from(n) - 1.0).abs() < 1e-4, "{}", mean / f64::from(n));
+}
+
+fn number(x: f64) -> Value {
+    Value::Number(x, Dimension::NONE)
+}

@@ -227,7 +227,8 @@ impl Object {
         // SAFETY: the template is a valid struct of this class.
         let table = unsafe { (shared.build)(self.template.address(), context) }?;
         self.template.write_raw(shared.offset, table.address);
-        self.owned.push(Arc::from(table.owner));
+        // Boxed still: an `Arc` made from the box would move the table away from its address.
+        self.owned.push(Arc::new(table.owner));
         Ok(())
     }
 }

@@ -1,6 +1,17 @@
 //! The built-in plugins of kind texture.
 
+mod checker;
+mod decode;
+mod image;
+mod scale;
+
+pub(crate) use decode::{Pixels, Wrap, decode};
+
 use luxel_sdk::abi::Class;
 
 /// All of them.
-pub(crate) const CLASSES: &[Class] = &[];
+pub(crate) const CLASSES: &[Class] = &[
+    Class::texture::<image::Image<'static>>("image"),
+    Class::texture::<checker::Checker>("checker"),
+    Class::texture::<scale::Scale>("scale"),
+];

@@ -1,0 +1,314 @@
+//! Picture files, kept as compactly as they are.
+
+use std::io::Cursor;
+use std::ops::{Add, Mul};
+
+use ::image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use glam::Vec3;
+use luxel_sdk::Choice;
+use luxel_sdk::color::{RgbSpace, srgb_decode};
+
+/// The largest side that is read, pixels.
+const MAX_SIDE: u32 = 1 << 16;
+/// Memory that a decoded picture may take: this much, and so much for each byte of its file.
+/// Deflate packs at most 1032 bytes into one, and half floats double.
+const MAX_BYTES: (u64, u64) = (64 << 20, 2100);
+/// The most memory for one picture, bytes.
+const MAX_ALLOC: u64 = 4 << 30;
+/// The largest half float: what infinity in a picture counts as.
+const LARGEST: f32 = 65504.0;
+
+/// What lies beyond a picture's edges.
+#[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(crate) enum Wrap {
+    /// The picture again.
+    Repeat,
+    /// Its outermost pixels.
+    Clamp,
+    /// The picture mirrored.
+    Mirror,
+}
+
+impl Wrap {
+    /// A coordinate brought into [0, 1]; 0 for one that is not finite.
+    fn inside(self, x: f64) -> f64 {
+        if !x.is_finite() {
+            return 0.0;
+        }
+        match self {
+            Self::Repeat => x - x.floor(),
+            Self::Clamp => x.clamp(0.0, 1.0),
+            Self::Mirror => 1.0 - (x.rem_euclid(2.0) - 1.0).abs(),
+        }
+    }
+
+    /// The two of `n` pixels around a coordinate, and the share of the second.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within [0, n]")]
+    fn pair(self, x: f64, n: usize) -> ([usize; 2], f32) {
+        let at = self.inside(x) * n as f64 + 0.5;
+        // Counted from one pixel before the first.
+        let second = (at as usize).min(n);
+        let share = (at - second as f64) as f32;
+        let pair = match self {
+            Self::Repeat => [(second + n - 1) % n, second % n],
+            Self::Clamp | Self::Mirror => [second.saturating_sub(1), second.min(n - 1)],
+        };
+        (pair, share)
+    }
+
+    /// The pixel of `n` at a coordinate.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within [0, n]")]
+    fn nearest(self, x: f64, n: usize) -> usize {
+        ((self.inside(x) * n as f64) as usize).min(n - 1)
+    }
+}
+
+enum Data {
+    U8(Vec<u8>),
+    U16(Vec<u16>),
+    F32(Vec<f32>),
+}
+
+/// A decoded picture: rows from the top, channels interleaved as in the file.
+pub(crate) struct Pixels {
+    width: usize,
+    height: usize,
+    /// 1 grey, 2 with alpha, 3 RGB, 4 with alpha.
+    channels: usize,
+    data: Data,
+    /// What the whole numbers of the colour channels stand for; empty for floats.
+    values: Vec<f32>,
+    /// Of red, green and blue in luminance.
+    weights: Vec3,
+}
+
+/// Decodes PNG, JPEG, HDR or EXR.
+pub(crate) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
+    let mut reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|error| error.to_string())?;
+    match reader.format() {
+        Some(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Hdr | ImageFormat::OpenExr) => {}
+        Some(_) => return Err("not a PNG, JPEG, HDR or EXR file".to_owned()),
+        None => return Err("not a picture: PNG, JPEG, HDR and EXR can be read".to_owned()),
+    }
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    let room = (bytes.len() as u64).saturating_mul(MAX_BYTES.1).saturating_add(MAX_BYTES.0);
+    limits.max_alloc = Some(room.min(MAX_ALLOC));
+    reader.limits(limits);
+    let picture = reader.decode().map_err(|error| error.to_string())?;
+    Pixels::new(picture).ok_or_else(|| "a picture without pixels".to_owned())
+}
+
+impl Pixels {
+    fn new(picture: DynamicImage) -> Option<Self> {
+        let (width, height) = (picture.width() as usize, picture.height() as usize);
+        let channels = usize::from(picture.color().channel_count());
+        let data = match picture {
+            DynamicImage::ImageLuma8(p) => Data::U8(p.into_raw()),
+            DynamicImage::ImageLumaA8(p) => Data::U8(p.into_raw()),
+            DynamicImage::ImageRgb8(p) => Data::U8(p.into_raw()),
+            DynamicImage::ImageRgba8(p) => Data::U8(p.into_raw()),
+            DynamicImage::ImageLuma16(p) => Data::U16(p.into_raw()),
+            DynamicImage::ImageLumaA16(p) => Data::U16(p.into_raw()),
+            DynamicImage::ImageRgb16(p) => Data::U16(p.into_raw()),
+            DynamicImage::ImageRgba16(p) => Data::U16(p.into_raw()),
+            DynamicImage::ImageRgb32F(p) => Data::F32(p.into_raw()),
+            DynamicImage::ImageRgba32F(p) => Data::F32(p.into_raw()),
+            _ => return None,
+        };
+        let weights = RgbSpace::LinearSrgb.luminance_weights().as_vec3();
+        let mut pixels = Self { width, height, channels, data, values: vec![], weights };
+        pixels.decode_srgb(false);
+        (width > 0 && height > 0).then_some(pixels)
+    }
+
+    /// Columns, at least 1.
+    pub(crate) fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows, at least 1.
+    pub(crate) fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Whether the file holds whole numbers, which are sRGB by custom.
+    pub(crate) fn is_integer(&self) -> bool {
+        !matches!(self.data, Data::F32(_))
+    }
+
+    /// States whether colours are sRGB signals or linear; floats are decoded once and for all.
+    #[expect(clippy::cast_possible_truncation, reason = "rounds; a table of f32")]
+    pub(crate) fn decode_srgb(&mut self, srgb: bool) {
+        let value = |x: f64| if srgb { srgb_decode(x) as f32 } else { x as f32 };
+        let table = |n: u32| (0..n).map(|i| value(f64::from(i) / f64::from(n - 1))).collect();
+        match &mut self.data {
+            Data::U8(_) => self.values = table(1 << 8),
+            Data::U16(_) => self.values = table(1 << 16),
+            Data::F32(values) if srgb => {
+                let n_colours = if self.channels == 4 { 3 } else { self.channels };
+                for pixel in values.chunks_exact_mut(self.channels) {
+                    for v in &mut pixel[..n_colours] {
+                        *v = value(f64::from(*v));
+                    }
+                }
+            }
+            Data::F32(_) => {}
+        }
+    }
+
+    /// Replaces floats that are not finite, or that fail `legal`, by 0 or the largest half float;
+    /// says how many.
+    pub(crate) fn replace(&mut self, legal: impl Fn(f32) -> bool) -> usize {
+        let Data::F32(values) = &mut self.data else { return 0 };
+        let mut n = 0;
+        for v in values.iter_mut().filter(|v| !(v.is_finite() && legal(**v))) {
+            *v = if *v > 0.0 { LARGEST } else { 0.0 };
+            n += 1;
+        }
+        n
+    }
+
+    fn colour(&self, i: usize) -> f32 {
+        match &self.data {
+            Data::U8(values) => self.values[usize::from(values[i])],
+            Data::U16(values) => self.values[usize::from(values[i])],
+            Data::F32(values) => values[i],
+        }
+    }
+
+    /// Linear sRGB of a pixel; grey three times.
+    pub(crate) fn rgb(&self, column: usize, row: usize) -> Vec3 {
+        let i = (row * self.width + column) * self.channels;
+        if self.channels < 3 {
+            return Vec3::splat(self.colour(i));
+        }
+        Vec3::new(self.colour(i), self.colour(i + 1), self.colour(i + 2))
+    }
+
+    /// CIE luminance of a pixel.
+    pub(crate) fn luminance(&self, column: usize, row: usize) -> f32 {
+        self.rgb(column, row).dot(self.weights)
+    }
+
+    /// Opacity of a pixel: as it stands in the file, 1 without such a channel.
+    pub(crate) fn alpha(&self, column: usize, row: usize) -> f32 {
+        if self.channels % 2 == 1 {
+            return 1.0;
+        }
+        let i = (row * self.width + column) * self.channels + self.channels - 1;
+        match &self.data {
+            Data::U8(values) => f32::from(values[i]) / 255.0,
+            Data::U16(values) => f32::from(values[i]) / 65535.0,
+            Data::F32(values) => values[i],
+        }
+    }
+
+    /// A blend of the four pixels around a place: across and down the picture, [0, 1]² for all
+    /// of it.
+    pub(crate) fn bilinear<T>(
+        &self,
+        [u, v]: [f64; 2],
+        wrap: [Wrap; 2],
+        pixel: impl Fn(usize, usize) -> T,
+    ) -> T
+    where
+        T: Add<Output = T> + Mul<f32, Output = T>,
+    {
+        let (columns, right) = wrap[0].pair(u, self.width);
+        let (rows, down) = wrap[1].pair(v, self.height);
+        let across = |row| pixel(columns[0], row) * (1.0 - right) + pixel(columns[1], row) * right;
+        across(rows[0]) * (1.0 - down) + across(rows[1]) * down
+    }
+
+    /// The pixel at a place.
+    pub(crate) fn nearest<T>(
+        &self,
+        [u, v]: [f64; 2],
+        wrap: Wrap,
+        pixel: impl Fn(usize, usize) -> T,
+    ) -> T {
+        pixel(wrap.nearest(u, self.width), wrap.nearest(v, self.height))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn encoded(format: ImageFormat) -> Vec<u8> {
+        let picture = ::image::Rgb32FImage::from_fn(17, 5, |x, y| {
+            #[expect(clippy::cast_precision_loss, reason = "small")]
+            ::image::Rgb([x as f32 / 16.0, y as f32 / 4.0, 0.5])
+        });
+        let picture = DynamicImage::ImageRgb32F(picture);
+        let picture = match format {
+            ImageFormat::Png => DynamicImage::ImageRgb16(picture.to_rgb16()),
+            ImageFormat::Jpeg => DynamicImage::ImageRgb8(picture.to_rgb8()),
+            _ => picture,
+        };
+        let mut out = Cursor::new(vec![]);
+        picture.write_to(&mut out, format).unwrap();
+        out.into_inner()
+    }
+
+    const FORMATS: [ImageFormat; 4] =
+        [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Hdr, ImageFormat::OpenExr];
+
+    #[test]
+    fn every_format_gives_its_pixels_back() {
+        // Half a step of each: 16 bits, JPEG's quantisation, a shared exponent, exact.
+        for (format, error) in FORMATS.into_iter().zip([8e-6, 0.08, 0.01, 1e-7]) {
+            let pixels = decode(&encoded(format)).unwrap();
+            assert_eq!((pixels.width(), pixels.height()), (17, 5));
+            let off = pixels.rgb(12, 3) - Vec3::new(0.75, 0.75, 0.5);
+            assert!(off.abs().max_element() <= error, "{format:?} {off}");
+            assert!((pixels.alpha(0, 0) - 1.0).abs() <= 0.0);
+        }
+    }
+
+    #[test]
+    fn damaged_files_are_refused_without_a_panic() {
+        for format in FORMATS {
+            let whole = encoded(format);
+            for cut in (0..whole.len()).step_by(whole.len() / 40 + 1) {
+                let read = decode(&whole[..cut]);
+                assert!(read.is_err() || format == ImageFormat::Jpeg, "{format:?} {cut}");
+                let mut changed = whole.clone();
+                changed[cut] ^= 0x55;
+                drop(decode(&changed));
+            }
+        }
+        assert!(decode(b"hello").err().unwrap().contains("not a picture"));
+    }
+
+    #[test]
+    fn a_small_file_cannot_claim_a_large_picture() {
+        for size in [100_000, 60_000] {
+            let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {size} +X {size}\n");
+            assert!(decode(header.as_bytes()).is_err());
+        }
+    }
+
+    #[test]
+    fn pixels_blend_around_their_centres() {
+        let pixels = decode(&encoded(ImageFormat::OpenExr)).unwrap();
+        let red = |u: f64, wrap| pixels.bilinear([u, 0.5], [wrap; 2], |c, r| pixels.rgb(c, r).x);
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            // Red runs from 0 at the centre of the first pixel to 1 at that of the last.
+            assert!((red(0.5, wrap) - 0.5).abs() < 1e-6);
+            assert!((red(3.0 / 17.0, wrap) - 2.5 / 16.0).abs() < 1e-6);
+        }
+        assert!((red(0.0, Wrap::Repeat) - 0.5).abs() < 1e-6);
+        assert!(red(-3.0, Wrap::Clamp).abs() <= 0.0 && (red(1e9, Wrap::Clamp) - 1.0).abs() <= 0.0);
+        assert!((red(1.25, Wrap::Mirror) - red(0.75, Wrap::Mirror)).abs() < 1e-6);
+        for odd in [f64::NAN, f64::INFINITY, 1e300, -1e300] {
+            assert!(red(odd, Wrap::Mirror).is_finite() && red(odd, Wrap::Repeat).is_finite());
+        }
+        assert!((pixels.nearest([0.999, 0.0], Wrap::Clamp, |c, _| c) == 16));
+    }
+}

@@ -1,6 +1,9 @@
 //! The built-in plugins of kind medium.
 
+mod homogeneous;
+
 use luxel_sdk::abi::Class;
 
 /// All of them.
-pub(crate) const CLASSES: &[Class] = &[];
+pub(crate) const CLASSES: &[Class] =
+    &[Class::medium::<homogeneous::Homogeneous<'static>>("homogeneous")];

@@ -1,0 +1,140 @@
+//! Integrators in a furnace that is no more than an arrival: every ray meets the same matt wall.
+
+use glam::DVec3;
+use luxel_sdk::color::Spectrum;
+use luxel_sdk::kind::{
+    Arrival, ArrivalKind, Direct as Light, Host, Integrator, Job, Lane, Requests, SampleAt,
+    Sampler, Samples, Scatter,
+};
+use luxel_sdk::num::Ray;
+use luxel_sdk::sampling::{hash_combine64, u32_to_unit};
+
+use super::ambient_occlusion::AmbientOcclusion;
+use super::path::PathTracer;
+
+struct Numbers;
+
+impl Sampler for Numbers {
+    fn samples(&self) -> u32 {
+        1
+    }
+    fn seed(&self) -> u32 {
+        0
+    }
+    fn get_1d(&self, at: SampleAt) -> f32 {
+        self.get_2d(at)[0]
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "two halves")]
+    fn get_2d(&self, at: SampleAt) -> [f32; 2] {
+        let bits = hash_combine64(u64::from(at.index), u64::from(at.dimension));
+        [u32_to_unit((bits >> 32) as u32), u32_to_unit(bits as u32)]
+    }
+}
+
+struct Open;
+
+impl Host for Open {
+    fn occluded(&self, _ray: &Ray) -> bool {
+        false
+    }
+    fn scene_sphere(&self) -> (DVec3, f64) {
+        (DVec3::ZERO, 1.0)
+    }
+}
+
+/// A wall of the given albedo that shines with radiance 1, and half of it is found by light
+/// sampling: both techniques have the same density.
+fn wall(albedo: f32, sampled: bool) -> Arrival {
+    let ray = Ray::new(DVec3::ZERO, DVec3::Z);
+    let weight = Spectrum::splat(albedo);
+    let light = Light { ray, f_le: weight, pdf: 0.3, f_pdf: 0.3 };
+    Arrival {
+        kind: ArrivalKind::Surface,
+        ng: DVec3::Z,
+        ns: DVec3::Z,
+        wo: DVec3::Z,
+        le: Spectrum::ONE,
+        le_pdf: 0.3,
+        direct: sampled.then_some(light),
+        scatter: Some(Scatter { weight, wi: DVec3::Z, pdf: 0.3, eta: 1.0 }),
+        ..Arrival::default()
+    }
+}
+
+/// Radiance of path number `index`, where every ray arrives at `at` and no shadow ray is blocked.
+fn radiance(integrator: &dyn Integrator, at: Arrival, index: u32) -> f64 {
+    let samples = Samples::new(&Numbers, SampleAt { stream: 0, index, dimension: 0 });
+    let mut lanes = [Lane { at, l: Spectrum::ZERO, samples }];
+    let mut states = integrator.lanes(1);
+    let (mut requests, mut shadows) = (Requests::default(), Spectrum::ZERO);
+    let job = Job { ray: Ray::new(DVec3::ZERO, DVec3::NEG_Z) };
+    states.start(0, &job, &mut lanes[0].l, &mut requests);
+    while !requests.rays.is_empty() {
+        requests.clear();
+        states.arrive_n(&mut lanes, &[0], &Open, &mut requests);
+        shadows += requests.shadows.iter().map(|shadow| shadow.l).sum::<Spectrum>();
+    }
+    f64::from((lanes[0].l + shadows).lane(0))
+}
+
+fn path(max_depth: u32, russian_roulette_from: u32, light_sampling: bool) -> PathTracer {
+    PathTracer { max_depth, russian_roulette_from, light_sampling }
+}
+
+#[test]
+fn a_cut_off_furnace_gives_the_partial_sum() {
+    for light_sampling in [false, true] {
+        for n in [0, 1, 5, 40] {
+            let tracer = path(n, u32::MAX, light_sampling);
+            let got = radiance(&tracer, wall(0.5, light_sampling), 0);
+            // Sampling a light and arriving at it by chance both count as one scattering: neither
+            // half may go one event further than the other.
+            let full = (1.0 - 0.5f64.powi(i32::try_from(n).unwrap() + 1)) / 0.5;
+            assert!((got - full).abs() < 1e-5, "{light_sampling} {n} {got} {full}");
+        }
+    }
+}
+
+#[test]
+fn russian_roulette_by_throughput_has_variance_ninety_at_albedo_nine_tenths() {
+    // Truth stat.rr_furnace: geometric numbers of bounces, mean 10, variance 90, fourth central
+    // moment 9·90² + 90.
+    let tracer = path(1_000_000, 0, false);
+    let n = 200_000;
+    let (mut mean, mut square) = (0.0, 0.0);
+    for i in 0..n {
+        let l = radiance(&tracer, wall(0.9, false), i);
+        mean += l / f64::from(n);
+        square += l * l / f64::from(n);
+    }
+    let variance = square - mean * mean;
+    assert!((mean - 10.0).abs() < 5.0 * (90.0 / f64::from(n)).sqrt(), "{mean}");
+    let error = 5.0 * ((9.0 * 8100.0 + 90.0 - 8100.0) / f64::from(n)).sqrt();
+    assert!((variance - 90.0).abs() < error, "{variance}");
+}
+
+#[test]
+fn light_sampling_and_chance_share_the_light() {
+    let tracer = path(1_000_000, 3, true);
+    let n = 20_000;
+    let mean: f64 = (0..n).map(|i| radiance(&tracer, wall(0.8, true), i) / f64::from(n)).sum();
+    // The number of bounces beyond the third varies by .8/.04 = 20 at most.
+    assert!((mean - 5.0).abs() < 5.0 * (20.0 / f64::from(n)).sqrt(), "{mean}");
+}
+
+#[test]
+fn dark_and_broken_paths_end() {
+    for weight in [0.0, f32::NAN, f32::INFINITY] {
+        let got = radiance(&path(1_000_000, 3, false), wall(weight, false), 0);
+        assert!((got - 1.0).abs() <= 0.0, "{got}");
+    }
+}
+
+#[test]
+fn an_open_place_sees_the_whole_sky() {
+    let integrator = AmbientOcclusion { distance: luxel_sdk::params::Maybe::default() };
+    for i in 0..20 {
+        assert!((radiance(&integrator, wall(0.0, false), i) - 1.0).abs() <= 0.0);
+    }
+    assert!(radiance(&integrator, Arrival::default(), 0).abs() <= 0.0);
+}

@@ -1,0 +1,103 @@
+//! Text that no terminal takes for a command, counts, and diagnostics as JSON.
+
+use luxel_core::diag::{Diagnostic, Severity, Sources, Span};
+use serde_json::{Value, json};
+
+/// Replaces control characters, which a file may hold and a terminal would obey.
+pub(super) fn clean(text: &str) -> String {
+    let harmless = |c: char| if c.is_control() && c != '\n' { '\u{fffd}' } else { c };
+    text.chars().map(harmless).collect()
+}
+
+/// `2 errors, 1 warning`
+pub(super) fn count(found: &[Diagnostic]) -> String {
+    let errors = found.iter().filter(|diagnostic| diagnostic.is_error()).count();
+    let told = |n: usize, word: &str| match n {
+        0 => None,
+        1 => Some(format!("1 {word}")),
+        n => Some(format!("{n} {word}s")),
+    };
+    let parts = [told(errors, "error"), told(found.len() - errors, "warning")];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// One object: `code, severity, message, file, line, column, end_line, end_column, labels, help,
+/// fixes`. Lines and columns count from 1, columns in characters; `null` where no place is at fault.
+pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
+    let Diagnostic { code, severity, message, labels, help, fixes } = diagnostic;
+    let severity = match severity {
+        Severity::Warning => "warning",
+        Severity::Error => "error",
+    };
+    let mut object = diagnostic.span().map_or_else(place_of_nothing, |span| place(span, sources));
+    let labels = labels.iter().skip(1).map(|label| {
+        let mut object = place(label.span, sources);
+        object["text"] = json!(label.text);
+        object
+    });
+    let fixes = fixes.iter().map(|fix| {
+        let mut object = place(fix.span, sources);
+        object["replacement"] = json!(fix.replacement);
+        object
+    });
+    object["label"] = json!(diagnostic.labels.first().map(|label| &label.text));
+    object["labels"] = labels.collect();
+    object["fixes"] = fixes.collect();
+    object["code"] = json!(code);
+    object["severity"] = json!(severity);
+    object["message"] = json!(message);
+    object["help"] = json!(help);
+    object
+}
+
+fn place(span: Span, sources: &Sources) -> Value {
+    let start = sources.line_column(span.source, span.start as usize);
+    let end = sources.line_column(span.source, span.end as usize);
+    json!({
+        "file": sources.name(span.source),
+        "line": start.line,
+        "column": start.column,
+        "end_line": end.line,
+        "end_column": end.column,
+        "start_byte": span.start,
+        "end_byte": span.end,
+    })
+}
+
+fn place_of_nothing() -> Value {
+    json!({ "file": null, "line": null, "column": null })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_names_file_line_and_column_of_place_labels_and_fixes() {
+        let mut sources = Sources::default();
+        let id = sources.add("a.scene", "scene 1\né = gld\n");
+        let span = Span::new(id, 13, 16);
+        let found = Diagnostic::error("E0101", span, "there is no `gld`")
+            .saying("not known")
+            .label(Span::new(id, 0, 5), "see")
+            .help("did you mean `gold`?")
+            .fix(span, "gold");
+        let value = json(&found, &sources);
+        assert_eq!((&value["file"], &value["line"]), (&json!("a.scene"), &json!(2)));
+        assert_eq!((&value["column"], &value["end_column"]), (&json!(5), &json!(8)));
+        assert_eq!(value["labels"][0]["line"], 1);
+        assert_eq!(value["fixes"][0]["replacement"], "gold");
+        assert_eq!(value["severity"], "error");
+        let nowhere = json(&Diagnostic::unplaced("E0409", "no camera"), &sources);
+        assert_eq!((&nowhere["line"], &nowhere["code"]), (&Value::Null, &json!("E0409")));
+    }
+
+    #[test]
+    fn counts_use_singular_and_plural_and_escapes_are_made_harmless() {
+        let error = Diagnostic::unplaced("E0001", "x");
+        let warning = Diagnostic { severity: Severity::Warning, ..error.clone() };
+        assert_eq!(count(&[error.clone(), error.clone(), warning]), "2 errors, 1 warning");
+        assert_eq!(count(&[error]), "1 error");
+        assert_eq!(clean("a\x1b[31m\nb"), "a\u{fffd}[31m\nb");
+    }
+}

@@ -1,0 +1,222 @@
+//! Where pictures go: two files that appear whole or not at all.
+
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use crate::exit::{Exit, Failure};
+use crate::files::DiskFiles;
+
+/// The two files of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Output {
+    /// What was measured, in linear floats.
+    pub(crate) exr: PathBuf,
+    /// How it looks.
+    pub(crate) png: PathBuf,
+}
+
+impl Output {
+    /// From `-o`, else the film's `file`, else the scene's name in the current folder.
+    ///
+    /// # Errors
+    /// A film's `file` that would leave the current folder: only the person at the keyboard may
+    /// say that.
+    pub(crate) fn choose(
+        given: Option<&Path>,
+        film: Option<&str>,
+        scene: &Path,
+    ) -> Result<Self, Failure> {
+        let stem = match (given, film) {
+            (Some(path), _) => path.to_path_buf(),
+            (None, Some(name)) => {
+                let path = PathBuf::from(name);
+                let stays = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+                if !path.components().all(stays) {
+                    let message = format!("the film's file `{name}` lies outside this folder");
+                    return Err(
+                        Failure::new(Exit::Input, message).help("give the place yourself: -o OUT")
+                    );
+                }
+                path
+            }
+            (None, None) => scene.file_stem().unwrap_or(OsStr::new("luxel")).into(),
+        };
+        let known = |e: &OsStr| ["exr", "png"].iter().any(|k| e.eq_ignore_ascii_case(k));
+        let stem = if stem.extension().is_some_and(known) { stem.with_extension("") } else { stem };
+        if stem.file_name().is_none() {
+            let message = format!("`{}` is not a file name", stem.display());
+            return Err(Failure::new(Exit::Usage, message).help("as in -o picture"));
+        }
+        Ok(Self { exr: with_suffix(&stem, ".exr"), png: with_suffix(&stem, ".png") })
+    }
+
+    /// Tells before the work begins whether the files can be written.
+    ///
+    /// # Errors
+    /// What stands in the way, naming the file.
+    pub(crate) fn check(&self, files: &DiskFiles) -> Result<(), Failure> {
+        for path in [&self.exr, &self.png] {
+            if let Ok(place) = fs::canonicalize(path) {
+                let reads = |asked: &PathBuf| fs::canonicalize(asked).is_ok_and(|p| p == place);
+                if files.asked().keys().any(reads) {
+                    let message = format!("the scene reads `{}`, its own output", path.display());
+                    return Err(Failure::new(Exit::Input, message).help("choose another: -o OUT"));
+                }
+            }
+            Draft::begin(path).map_err(|error| unwritable(path, &error))?;
+        }
+        Ok(())
+    }
+}
+
+/// The failure of a file that cannot be written.
+pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    Failure::new(Exit::Input, format!("cannot write `{}`: {error}", path.display()))
+}
+
+fn with_suffix(stem: &Path, suffix: &str) -> PathBuf {
+    let mut name = stem.as_os_str().to_owned();
+    name.push(suffix);
+    name.into()
+}
+
+/// A file in the making, beside the one whose place it will take. Dropped before `finish`, it
+/// leaves no trace.
+#[derive(Debug)]
+pub(crate) struct Draft {
+    temporary: PathBuf,
+    place: PathBuf,
+    /// Where the bytes go.
+    pub(crate) file: fs::File,
+}
+
+impl Draft {
+    /// Opens a temporary file in the folder of `path`.
+    ///
+    /// # Errors
+    /// The system's; also when something other than a writable, regular file is in the place.
+    pub(crate) fn begin(path: &Path) -> io::Result<Self> {
+        // Through a link, so that the file it points to is replaced and not the link.
+        let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        if let Ok(about) = fs::metadata(&place) {
+            if !about.is_file() {
+                return Err(io::Error::other("something that is not a file is in its place"));
+            }
+            if about.permissions().readonly() {
+                return Err(io::Error::other("the file in its place is read-only"));
+            }
+        }
+        let mut name = OsString::from(".");
+        name.push(place.file_name().unwrap_or_default());
+        name.push(format!(".{}.tmp", std::process::id()));
+        let temporary = place.with_file_name(name);
+        let file = fs::OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        Ok(Self { temporary, place, file })
+    }
+
+    /// Puts the file in its place, once its bytes are safe on the disk.
+    ///
+    /// # Errors
+    /// The system's, a full disk among them; the file that was there before stays.
+    pub(crate) fn finish(self) -> io::Result<()> {
+        self.file.sync_all()?;
+        fs::rename(&self.temporary, &self.place)
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        // After `finish` nothing has that name any more.
+        let _ = fs::remove_file(&self.temporary);
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    /// A folder of one test's own, removed in the end.
+    pub(crate) struct Folder(PathBuf);
+
+    impl Folder {
+        pub(crate) fn new(name: &str) -> Self {
+            let path = std::env::temp_dir().join(format!("luxel-{name}-{}", std::process::id()));
+            fs::create_dir_all(&path).unwrap();
+            Self(path)
+        }
+
+        pub(crate) fn path(&self, name: &str) -> PathBuf {
+            self.0.join(name)
+        }
+
+        #[expect(clippy::disallowed_methods, reason = "tests prepare files")]
+        pub(crate) fn write(&self, name: &str, bytes: &[u8]) {
+            let path = self.path(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, bytes).unwrap();
+        }
+
+        pub(crate) fn names(&self) -> Vec<String> {
+            let name = |entry: io::Result<fs::DirEntry>| entry.unwrap().file_name();
+            let entries = fs::read_dir(&self.0).unwrap().map(name);
+            entries.map(|name| name.into_string().unwrap()).collect()
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[expect(clippy::disallowed_methods, reason = "tests look at files")]
+    fn bytes(path: &Path) -> Vec<u8> {
+        fs::read(path).unwrap()
+    }
+
+    #[test]
+    fn a_draft_that_is_not_finished_leaves_the_old_file_and_no_other() {
+        let folder = Folder::new("draft");
+        folder.write("a.exr", b"old");
+        let mut draft = Draft::begin(&folder.path("a.exr")).unwrap();
+        draft.file.write_all(b"half of the new").unwrap();
+        assert_eq!(folder.names().len(), 2);
+        drop(draft);
+        assert_eq!(folder.names(), ["a.exr"]);
+        assert_eq!(bytes(&folder.path("a.exr")), b"old");
+        let mut draft = Draft::begin(&folder.path("a.exr")).unwrap();
+        draft.file.write_all(b"new").unwrap();
+        draft.finish().unwrap();
+        assert_eq!(folder.names(), ["a.exr"]);
+        assert_eq!(bytes(&folder.path("a.exr")), b"new");
+    }
+
+    #[test]
+    fn folders_in_the_place_and_missing_folders_are_told() {
+        let folder = Folder::new("places");
+        folder.write("a.exr/inside", b"");
+        assert!(Draft::begin(&folder.path("a.exr")).is_err());
+        assert!(Draft::begin(&folder.path("none/b.exr")).is_err());
+        assert!(!cfg!(unix) || Draft::begin(Path::new("/dev/full")).is_err());
+    }
+
+    #[test]
+    fn the_output_is_named_by_the_person_then_the_film_then_the_scene() {
+        let name = |given: Option<&str>, film| {
+            Output::choose(given.map(Path::new), film, Path::new("scenes/box.scene"))
+                .map(|output| output.exr.display().to_string())
+                .map_err(|failure| failure.exit)
+        };
+        assert_eq!(name(None, None).unwrap(), "box.exr");
+        assert_eq!(name(None, Some("film.exr")).unwrap(), "film.exr");
+        assert_eq!(name(Some("out/v1.2"), Some("film.exr")).unwrap(), "out/v1.2.exr");
+        assert_eq!(name(Some("out.PNG"), None).unwrap(), "out.exr");
+        assert_eq!(name(None, Some("../up.exr")), Err(Exit::Input));
+        assert_eq!(name(None, Some("/etc/x.exr")), Err(Exit::Input));
+        assert_eq!(name(Some("/"), None), Err(Exit::Usage));
+    }
+}

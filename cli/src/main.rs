@@ -1,2 +1,92 @@
-//! Luxel.
-fn main() {}
+//! The program: scenes in, pictures out. One file per command; `report` alone prints.
+#![forbid(unsafe_code)]
+
+mod args;
+mod check;
+mod describe;
+mod exit;
+mod files;
+mod interrupt;
+mod list;
+mod load;
+mod measure;
+mod output;
+mod picture;
+mod progress;
+mod render;
+mod report;
+mod summary;
+mod watch;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::exit::{Exit, Failure};
+
+/// A scene written as text becomes a picture that obeys physics and says how wrong it may be.
+#[derive(Parser)]
+#[command(name = "luxel", version, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 fine, 1 the input is at fault, 2 usage, 3 incomplete (interrupted), 4 our fault.
+
+Examples:
+  luxel render scenes/cornell.scene
+  luxel watch scenes/cornell.scene --spp 16
+  luxel describe material diffuse";
+
+#[derive(Subcommand)]
+enum Command {
+    Render(render::Args),
+    Watch(watch::Args),
+    Check(check::Args),
+    List(list::Args),
+    Describe(describe::Args),
+}
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are errors to clap; they go to stdout with code 0.
+            let told = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
+            report::usage(&error);
+            return told.into();
+        }
+    };
+    let done = exit::guarded(|| match &cli.command {
+        Command::Render(args) => render::run(args),
+        Command::Watch(args) => watch::run(args),
+        Command::Check(args) => check::run(args),
+        Command::List(args) => list::run(args),
+        Command::Describe(args) => describe::run(args),
+    });
+    let exit = done.unwrap_or_else(|failure: Failure| {
+        report::failure(&failure);
+        failure.exit
+    });
+    exit.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent_and_every_command_shows_examples() {
+        let mut command = Cli::command();
+        command.build();
+        command.clone().debug_assert();
+        for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
+            let help = sub.clone().render_long_help().to_string();
+            assert!(help.contains("Examples:"), "{help}");
+        }
+    }
+}

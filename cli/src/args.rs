@@ -1,0 +1,106 @@
+//! Arguments that several commands share.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+use glam::UVec2;
+use luxel_core::film::Rect;
+use luxel_core::render::Options;
+
+/// How a scene is read.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct LoadArgs {
+    /// Give a `param` of the scene another value
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+    /// Let the scene read files below this folder too (its own folder is always allowed)
+    #[arg(long, value_name = "DIR")]
+    pub(crate) allow_path: Vec<PathBuf>,
+}
+
+/// What is rendered and where it goes.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct RenderArgs {
+    /// Where the pictures go: OUT.exr and OUT.png [default: the film's `file`, else the scene's
+    /// name, in the current folder]
+    #[arg(short, long = "output", value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+    /// Another size, in pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<UVec2>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) spp: Option<u32>,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u32>,
+    /// Threads [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// Only this part of the picture, in pixels from the upper left
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
+    pub(crate) crop: Option<Rect>,
+}
+
+impl RenderArgs {
+    pub(crate) fn options(&self) -> Options {
+        let Self { spp, seed, crop, threads, .. } = *self;
+        Options { spp, seed, crop, threads }
+    }
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    if name.is_empty() {
+        return Err("the name is missing before `=`".into());
+    }
+    Ok((name.to_owned(), value.to_owned()))
+}
+
+/// Side of the largest picture; as the film's schema says.
+const MAX_SIDE: u32 = 65536;
+
+fn size(text: &str) -> Result<UVec2, String> {
+    let sides = text.split_once(['x', 'X']).map(|(w, h)| (w.parse(), h.parse()));
+    match sides {
+        Some((Ok(w @ 1..=MAX_SIDE), Ok(h @ 1..=MAX_SIDE))) => Ok(UVec2::new(w, h)),
+        _ => Err(format!("expected WIDTHxHEIGHT, each from 1 to {MAX_SIDE}, as in 640x480")),
+    }
+}
+
+fn crop(text: &str) -> Result<Rect, String> {
+    let numbers: Result<Vec<u32>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, w, h]) if w > 0 && h > 0 => Ok(Rect::new(UVec2::new(x, y), UVec2::new(w, h))),
+        _ => Err("expected X,Y,WIDTH,HEIGHT in pixels, as in 100,50,64,64".into()),
+    }
+}
+
+/// More threads than any machine has cost memory and gain nothing.
+const MAX_THREADS: usize = 4096;
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let found = text.parse().ok().filter(|n: &NonZeroUsize| n.get() <= MAX_THREADS);
+    found.ok_or_else(|| format!("expected a whole number from 1 to {MAX_THREADS}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_crops_and_assignments_are_read_or_refused() {
+        assert_eq!(size("64x48"), Ok(UVec2::new(64, 48)));
+        for bad in ["64", "0x4", "65537x1", "-1x4", "4x", "ax4", ""] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+        assert_eq!(crop("1, 2,3,4"), Ok(Rect::new(UVec2::new(1, 2), UVec2::new(3, 4))));
+        for bad in ["1,2,3", "1,2,0,4", "1,2,3,4,5", "a,b,c,d", "-1,0,4,4"] {
+            assert!(crop(bad).is_err(), "{bad}");
+        }
+        assert_eq!(assignment("a=b=c"), Ok(("a".into(), "b=c".into())));
+        assert!(assignment("a").is_err() && assignment("=b").is_err());
+        assert!(threads("0").is_err() && threads("5000").is_err() && threads("2").is_ok());
+    }
+}

@@ -1,0 +1,54 @@
+//! `luxel check`: everything that is wrong with scenes, without rendering.
+
+use std::path::PathBuf;
+
+use luxel_core::diag::Diagnostic;
+
+use crate::args::LoadArgs;
+use crate::exit::{Exit, Failure};
+use crate::load;
+use crate::report::{self, Form, Stream};
+
+/// Tell everything that is wrong with scenes
+///
+/// Reads each scene with its meshes and textures and makes it ready to trace. Exit code 1 if any
+/// has an error; warnings alone are fine.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "\
+Examples:
+  luxel check scenes/*.scene
+  luxel check scenes/cornell.scene --print
+  luxel check scenes/cornell.scene --json")]
+pub(crate) struct Args {
+    /// The scenes
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Print the scene graph that each file evaluates to
+    #[arg(long, conflicts_with = "json")]
+    print: bool,
+    /// Diagnostics as JSON lines on standard output
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    load: LoadArgs,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let registry = load::registry();
+    let form = if args.json { Form::Json } else { Form::Text };
+    let stream = if args.json { Stream::Out } else { Stream::Error };
+    let mut exit = Exit::Fine;
+    for file in &args.files {
+        let loaded = load::load(file, &args.load, None, &registry, None)?;
+        report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream);
+        if loaded.stage.is_none() || loaded.diagnostics.iter().any(Diagnostic::is_error) {
+            exit = Exit::Input;
+        } else if !args.json && !args.print {
+            report::out(&format!("{}: fine\n", file.display()));
+        }
+        if let (true, Some(scene)) = (args.print, &loaded.scene) {
+            report::out(&luxel_core::scene::print(scene));
+        }
+    }
+    Ok(exit)
+}

@@ -1,0 +1,141 @@
+//! Files on disk, as scenes may see them.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use luxel_core::files::{FileError, Files, normalise};
+
+/// Bytes of one file, at most: far above any mesh, below what would take a machine down.
+const MAX_BYTES: u64 = 4 << 30;
+
+/// Hash of a file's bytes; `None` when it could not be read.
+pub(crate) type Seen = Option<blake3::Hash>;
+
+/// Reads below the scene's folder and the folders that were allowed, and remembers what was asked.
+#[derive(Debug)]
+pub(crate) struct DiskFiles {
+    allowed: Vec<PathBuf>,
+    asked: Mutex<BTreeMap<PathBuf, Seen>>,
+}
+
+impl DiskFiles {
+    /// Files for one scene: its own folder, and those below `allow`, may be read.
+    pub(crate) fn new(scene: &Path, allow: &[PathBuf]) -> Self {
+        let own = match scene.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        let allowed = std::iter::once(own).chain(allow.iter().map(PathBuf::as_path));
+        // A folder that does not exist holds nothing that could be allowed.
+        let allowed = allowed.filter_map(|folder| fs::canonicalize(folder).ok()).collect();
+        Self { allowed, asked: Mutex::default() }
+    }
+
+    /// Every path that was asked for, with the hash of what was found there.
+    pub(crate) fn asked(&self) -> BTreeMap<PathBuf, Seen> {
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// One hash over the contents of all files that were read.
+    pub(crate) fn hash(&self) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new();
+        for seen in self.asked().values().flatten() {
+            hasher.update(seen.as_bytes());
+        }
+        hasher.finalize()
+    }
+
+    fn fetch(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+        let place = fs::canonicalize(path).map_err(|error| told(&error))?;
+        if !self.allowed.iter().any(|folder| place.starts_with(folder)) {
+            return Err(FileError::Outside);
+        }
+        read_regular(&place).map(Arc::from)
+    }
+}
+
+impl Files for DiskFiles {
+    fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+        let found = self.fetch(path);
+        let seen = found.as_ref().ok().map(|bytes| blake3::hash(bytes));
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_path_buf(), seen);
+        found
+    }
+
+    fn canonical(&self, path: &Path) -> PathBuf {
+        fs::canonicalize(path).unwrap_or_else(|_| normalise(path))
+    }
+}
+
+/// The bytes of a regular file; a pipe or a device would wait for ever or never end.
+pub(crate) fn read_regular(path: &Path) -> Result<Vec<u8>, FileError> {
+    let about = fs::metadata(path).map_err(|error| told(&error))?;
+    if !about.is_file() {
+        let what = if about.is_dir() { "it is a folder" } else { "it is not a regular file" };
+        return Err(FileError::Unreadable(what.into()));
+    }
+    if about.len() > MAX_BYTES {
+        return Err(FileError::TooLarge(MAX_BYTES));
+    }
+    #[expect(clippy::disallowed_methods, reason = "the one place where scenes' files are read")]
+    let file = fs::File::open(path).map_err(|error| told(&error))?;
+    let mut bytes = Vec::with_capacity(usize::try_from(about.len()).unwrap_or(0));
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|error| told(&error))?;
+    if bytes.len() as u64 > MAX_BYTES { Err(FileError::TooLarge(MAX_BYTES)) } else { Ok(bytes) }
+}
+
+fn told(error: &io::Error) -> FileError {
+    match error.kind() {
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => FileError::NotFound,
+        _ => FileError::Unreadable(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::tests::Folder;
+
+    #[test]
+    fn only_the_scenes_folder_and_allowed_ones_are_read() {
+        let folder = Folder::new("files");
+        folder.write("scenes/a.scene", b"scene 1");
+        folder.write("scenes/sub/mesh.obj", b"v");
+        folder.write("other/secret", b"x");
+        let scene = folder.path("scenes/a.scene");
+        let files = DiskFiles::new(&scene, &[]);
+        assert_eq!(&*files.read(&scene).unwrap(), b"scene 1");
+        assert_eq!(&*files.read(&folder.path("scenes/sub/mesh.obj")).unwrap(), b"v");
+        let secret = folder.path("scenes/../other/secret");
+        assert_eq!(files.read(&secret), Err(FileError::Outside));
+        let allowed = DiskFiles::new(&scene, &[folder.path("other")]);
+        assert_eq!(&*allowed.read(&secret).unwrap(), b"x");
+        let missing = folder.path("scenes/none.obj");
+        assert_eq!(files.read(&missing), Err(FileError::NotFound));
+        assert_eq!(files.asked().get(&missing), Some(&None));
+        assert_eq!(files.asked().len(), 4);
+    }
+
+    #[test]
+    fn folders_and_devices_are_refused_and_not_waited_for() {
+        let folder = Folder::new("devices");
+        let refused = |path: &Path| matches!(read_regular(path), Err(FileError::Unreadable(_)));
+        assert!(refused(&folder.path("")));
+        assert!(!cfg!(unix) || refused(Path::new("/dev/zero")));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_that_leads_outside_is_refused() {
+        let folder = Folder::new("links");
+        folder.write("scenes/a.scene", b"scene 1");
+        folder.write("secret", b"x");
+        let link = folder.path("scenes/link");
+        std::os::unix::fs::symlink(folder.path("secret"), &link).unwrap();
+        let files = DiskFiles::new(&folder.path("scenes/a.scene"), &[]);
+        assert_eq!(files.read(&link), Err(FileError::Outside));
+    }
+}

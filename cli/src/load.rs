@@ -1,0 +1,73 @@
+//! From a scene file to a stage: the registry, the language, and what may be changed from outside.
+
+use std::path::Path;
+
+use glam::UVec2;
+use luxel_core::diag::{Diagnostic, Sources};
+use luxel_core::registry::Registry;
+use luxel_core::scene::Scene;
+use luxel_core::stage::{self, Stage};
+
+use crate::args::LoadArgs;
+use crate::exit::{Failure, blaming};
+use crate::files::DiskFiles;
+
+/// A scene file as far as it could be read, with everything that was found.
+pub(crate) struct Loaded {
+    /// The scene, if it has no error.
+    pub(crate) scene: Option<Scene>,
+    /// The stage, if nothing is wrong.
+    pub(crate) stage: Option<Stage>,
+    /// What was found.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+    /// The texts that were read.
+    pub(crate) sources: Sources,
+    /// The files that were asked for.
+    pub(crate) files: DiskFiles,
+}
+
+/// Every class that a scene may name.
+pub(crate) fn registry() -> Registry {
+    let mut registry = Registry::new();
+    for classes in luxel_builtin::CLASSES {
+        registry.add("builtin", classes).expect("built-in classes have distinct names");
+    }
+    registry
+}
+
+/// Reads a scene and makes it ready to trace, at `size` if one is given, keeping what has not
+/// changed since `before`.
+///
+/// # Errors
+/// A panic below, as our fault. The author's mistakes are in `diagnostics`.
+pub(crate) fn load(
+    path: &Path,
+    args: &LoadArgs,
+    size: Option<UVec2>,
+    registry: &Registry,
+    before: Option<&Stage>,
+) -> Result<Loaded, Failure> {
+    blaming(&path.display().to_string(), || {
+        let files = DiskFiles::new(path, &args.allow_path);
+        let settings = luxel_lang::Settings { set: args.set.clone(), ..Default::default() };
+        let read = luxel_lang::load(path, &files, registry, &settings);
+        let (mut scene, mut diagnostics) = (read.scene, read.diagnostics);
+        if let (Some(scene), Some(size)) = (&mut scene, size) {
+            scene.set_resolution(size);
+        }
+        let built = scene.as_ref().map(|scene| stage::build(scene, registry, &files, before));
+        let stage = match built {
+            Some(Ok(built)) => {
+                diagnostics.extend(built.warnings);
+                Some(built.stage)
+            }
+            Some(Err(found)) => {
+                diagnostics.extend(found);
+                None
+            }
+            None => None,
+        };
+        let stage = stage.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
+        Loaded { scene, stage, diagnostics, sources: read.sources, files }
+    })
+}

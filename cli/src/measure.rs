@@ -1,0 +1,62 @@
+//! One render: progress, the end by Ctrl-C, panics told with the scene's name.
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::UVec2;
+use luxel_core::film::{Film, Rect};
+use luxel_core::render::{Control, Options, Outcome, render};
+use luxel_core::stage::Stage;
+
+use crate::exit::{Exit, Failure, blaming};
+use crate::progress;
+
+/// Pixels of one film, at most: 56 bytes each, 7.5 GB.
+const MAX_PIXELS: usize = 1 << 27;
+
+/// A film with what it took.
+pub(crate) struct Measured {
+    pub(crate) film: Film,
+    pub(crate) outcome: Outcome,
+    pub(crate) seconds: f64,
+}
+
+/// What will be measured, checked.
+///
+/// # Errors
+/// A crop outside the picture, or more pixels than memory should hold.
+pub(crate) fn window(stage: &Stage, options: &Options) -> Result<Rect, Failure> {
+    let size = stage.film.resolution;
+    let whole = Rect::new(UVec2::ZERO, size);
+    let window = options.crop.unwrap_or(whole).intersection(whole);
+    if window.area() == 0 {
+        let message = format!("the crop lies outside the picture of {} x {}", size.x, size.y);
+        return Err(Failure::new(Exit::Usage, message));
+    }
+    if window.area() > MAX_PIXELS {
+        let message = format!("{} x {} pixels are too many at once", window.size.x, window.size.y);
+        return Err(Failure::new(Exit::Input, message)
+            .help(format!("at most {MAX_PIXELS}; render parts with --crop X,Y,W,H")));
+    }
+    Ok(window)
+}
+
+/// Renders, with a line of progress if wanted.
+///
+/// # Errors
+/// As `window`; a panic in the renderer or a plugin, with the scene's name.
+pub(crate) fn measure(
+    (scene, stage): (&Path, &Stage),
+    options: &Options,
+    control: &Control,
+    line: bool,
+) -> Result<Measured, Failure> {
+    let window = window(stage, options)?;
+    let total = window.area() as u64 * u64::from(options.samples(stage));
+    let start = Instant::now();
+    let rendered = blaming(&scene.display().to_string(), || {
+        progress::shown_while(control, total, line, || render(stage, options, control))
+    });
+    let (film, outcome) = rendered?;
+    Ok(Measured { film, outcome, seconds: start.elapsed().as_secs_f64() })
+}

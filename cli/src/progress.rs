@@ -1,0 +1,86 @@
+//! A line on the terminal while a render runs: rate, samples, share done, time left.
+
+use std::io::IsTerminal;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+use luxel_core::render::Control;
+
+use crate::report;
+
+/// Between two redraws.
+const PERIOD: Duration = Duration::from_millis(100);
+
+/// Runs `work` while a line shows how far `control` has come of `total` samples. No line is shown
+/// unless standard error is a terminal and `shown` is true.
+pub(crate) fn shown_while<T>(
+    control: &Control,
+    total: u64,
+    shown: bool,
+    work: impl FnOnce() -> T,
+) -> T {
+    if !shown || !std::io::stderr().is_terminal() {
+        return work();
+    }
+    // The sender is dropped when the work ends, also by a panic; that ends the thread.
+    let (end, ended) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            let start = Instant::now();
+            while ended.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
+                let seconds = start.elapsed().as_secs_f64();
+                report::progress(&line(control.samples_done(), total, seconds));
+            }
+            report::progress("");
+        });
+        let _end = end;
+        work()
+    })
+}
+
+/// ` 42 %  3.20 Msamples/s  110.1 of 262.1 Msamples  48 s left`
+fn line(done: u64, total: u64, seconds: f64) -> String {
+    let share = if total == 0 { 1.0 } else { done as f64 / total as f64 };
+    let rate = done as f64 / seconds.max(f64::MIN_POSITIVE);
+    let left =
+        if done == 0 { "…".into() } else { duration((total - done.min(total)) as f64 / rate) };
+    format!(
+        "{:3.0} %  {:.2} Msamples/s  {:.1} of {:.1} Msamples  {left} left",
+        (share * 100.0).min(100.0),
+        rate / 1e6,
+        done as f64 / 1e6,
+        total as f64 / 1e6,
+    )
+}
+
+/// A length of time for people: `0.42 s`, `48 s`, `3 min 05 s`, `2 h 11 min`.
+#[expect(clippy::cast_possible_truncation, reason = "beyond 2^64 s the number stays at 2^64")]
+#[expect(clippy::cast_sign_loss, reason = "a negative length counts as none")]
+pub(crate) fn duration(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match whole {
+        _ if seconds < 10.0 => format!("{seconds:.2} s"),
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
+        _ => format!("{} h {:02} min", whole / 3600, whole / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_tells_rate_share_and_time_left() {
+        let told = line(1_000_000, 4_000_000, 2.0);
+        assert_eq!(told, " 25 %  0.50 Msamples/s  1.0 of 4.0 Msamples  6.00 s left");
+        assert!(line(0, 10, 0.0).contains("… left"));
+        assert!(line(11, 10, 1.0).starts_with("100 %"));
+    }
+
+    #[test]
+    fn durations_are_short_and_never_lose_a_minute() {
+        let told = [0.4249, 48.3, 59.7, 185.0, 7865.0].map(duration);
+        assert_eq!(told, ["0.42 s", "48 s", "1 min 00 s", "3 min 05 s", "2 h 11 min"]);
+    }
+}

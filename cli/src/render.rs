@@ -1,0 +1,90 @@
+//! `luxel render`: a scene to a picture.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use luxel_core::render::{Control, Outcome};
+
+use crate::args::{LoadArgs, RenderArgs};
+use crate::exit::{Exit, Failure};
+use crate::load::{self, Loaded};
+use crate::measure::{self, Measured};
+use crate::output::Output;
+use crate::report::{self, Form};
+use crate::summary::Summary;
+use crate::{interrupt, picture};
+
+/// Render a scene to OUT.exr and OUT.png
+///
+/// The EXR holds linear sRGB radiance (R, G, B), its standard error (SE.R, SE.G, SE.B) and the
+/// number of samples (N) of each pixel, with the settings as an attribute. The PNG shows it exposed.
+/// Ctrl-C ends early with a valid picture of what was measured and exit code 3.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "\
+Examples:
+  luxel render scenes/cornell.scene
+  luxel render scenes/cornell.scene -o /tmp/cornell --size 256x256 --spp 64
+  luxel render scenes/cornell.scene --crop 100,100,64,64 --json")]
+pub(crate) struct Args {
+    /// The scene
+    file: PathBuf,
+    #[command(flatten)]
+    render: RenderArgs,
+    #[command(flatten)]
+    load: LoadArgs,
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "json")]
+    quiet: bool,
+    /// The summary as one JSON object on standard output, diagnostics as JSON lines on standard error
+    #[arg(long)]
+    json: bool,
+    /// Exit with 4 if a sample is not finite
+    #[arg(long)]
+    strict: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let registry = load::registry();
+    let loaded = load::load(&args.file, &args.load, args.render.size, &registry, None)?;
+    let form = if args.json { Form::Json } else { Form::Text };
+    report::diagnostics(&loaded.diagnostics, &loaded.sources, form, report::Stream::Error);
+    let Loaded { stage: Some(stage), files, .. } = loaded else { return Ok(Exit::Input) };
+
+    let options = args.render.options();
+    measure::window(&stage, &options)?;
+    let film_file = stage.film.file.as_deref();
+    let output = Output::choose(args.render.output.as_deref(), film_file, &args.file)?;
+    output.check(&files)?;
+
+    let control = Arc::new(Control::default());
+    let stop = control.clone();
+    interrupt::on_ctrl_c(move || stop.cancel())?;
+    let line = !args.quiet;
+    let measured = measure::measure((&args.file, &stage), &options, &control, line)?;
+    let Measured { film, outcome, seconds } = measured;
+    let samples = control.samples_done();
+    if samples == 0 {
+        let message = "interrupted before anything was measured: no picture was written";
+        return Err(Failure::new(Exit::Incomplete, message));
+    }
+    let summary = Summary::new((&stage, &files), &options, (&film, outcome), (seconds, samples));
+    picture::write(&output, &film, &stage.film, &summary.notes())?;
+    tell(args, &summary, &output);
+    Ok(match outcome {
+        _ if args.strict && summary.bad > 0 => Exit::Ours,
+        Outcome::Cancelled => Exit::Incomplete,
+        Outcome::Complete => Exit::Fine,
+    })
+}
+
+fn tell(args: &Args, summary: &Summary, output: &Output) {
+    if args.json {
+        report::out(&format!("{}\n", summary.json(output)));
+    } else if !args.quiet {
+        report::out(&summary.text(output));
+    }
+    if summary.bad > 0 {
+        let message = format!("{} samples were not finite and were left out", summary.bad);
+        report::warning(&message);
+    }
+}

@@ -11,12 +11,17 @@ pub(crate) struct Profile {
     density: [f32; STEPS + 1],
     /// Share of [0, x] at each step, of both sides together: from 0 to 1.
     cumulative: [f32; STEPS + 1],
+    /// For each of as many equal parts of [0, 1): the first step that ends beyond its beginning.
+    guide: [u16; STEPS],
 }
 
 impl Profile {
     /// A polygon through `f` (finite, not negative, somewhere positive), at distances up to
     /// `radius` pixels.
-    #[expect(clippy::cast_possible_truncation, reason = "a table of f32 made in f64")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a table of f32 made in f64, and steps below 2^16"
+    )]
     pub(crate) fn new(radius: f32, f: impl Fn(f64) -> f64) -> Self {
         let step = f64::from(radius) / STEPS as f64;
         let values: [f64; STEPS + 1] = std::array::from_fn(|i| f(i as f64 * step));
@@ -25,10 +30,16 @@ impl Profile {
             sums[i + 1] = sums[i] + 0.5 * (values[i] + values[i + 1]);
         }
         let total = sums[STEPS];
+        let cumulative = sums.map(|s| (s / total) as f32);
+        let first = |part: usize| {
+            let begin = part as f32 / STEPS as f32;
+            cumulative[1..].iter().position(|&c| c > begin).unwrap_or(STEPS - 1) as u16
+        };
         Self {
             radius,
             density: values.map(|v| (0.5 * v / (total * step)) as f32),
-            cumulative: sums.map(|s| (s / total) as f32),
+            cumulative,
+            guide: std::array::from_fn(first),
         }
     }
 
@@ -44,9 +55,13 @@ impl Profile {
     }
 
     /// A place with density `eval`; `u` in [0, 1). Increasing in `u`.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [0, STEPS)")]
     pub(crate) fn sample(&self, u: f32) -> f32 {
         let (sign, u) = if u < 0.5 { (-1.0, 1.0 - 2.0 * u) } else { (1.0, 2.0 * u - 1.0) };
-        let i = self.cumulative.partition_point(|&c| c <= u).clamp(1, STEPS) - 1;
+        let mut i = usize::from(self.guide[(u * STEPS as f32) as usize & (STEPS - 1)]);
+        while i + 1 < STEPS && self.cumulative[i + 1] <= u {
+            i += 1;
+        }
         let (low, high) = (self.cumulative[i], self.cumulative[i + 1]);
         // Where the trapezoid from a to b holds the fraction v of its area: the stable root.
         let v = ((u - low) / (high - low)).clamp(0.0, 1.0);

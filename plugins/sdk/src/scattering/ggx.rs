@@ -68,7 +68,7 @@ impl Ggx {
         0.5 * self.g2_over_cos_o(wo, wi) * (wo.z.abs() + self.stretch(wo))
     }
 
-    fn stretch(&self, w: Vec3) -> f32 {
+    fn stretch(self, w: Vec3) -> f32 {
         Vec3::new(w.x * self.alpha.x, w.y * self.alpha.y, w.z).length()
     }
 }

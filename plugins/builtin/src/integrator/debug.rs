@@ -55,7 +55,7 @@ fn colour(index: u32) -> Vec3 {
 
 impl Debug {
     #[expect(clippy::cast_possible_truncation, reason = "rounds; a picture for the eye")]
-    fn value(&self, at: &Arrival) -> Option<Vec3> {
+    fn value(self, at: &Arrival) -> Option<Vec3> {
         if self.show == Show::Cost {
             return Some(Vec3::splat(at.steps as f32 * self.scale));
         }

@@ -20,7 +20,7 @@ pub(crate) struct Direct {
 }
 
 impl Direct {
-    fn path(&self) -> PathTracer {
+    fn path(self) -> PathTracer {
         let light_sampling = self.light_sampling;
         PathTracer { max_depth: 1, russian_roulette_from: u32::MAX, light_sampling }
     }

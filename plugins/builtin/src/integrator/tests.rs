@@ -62,9 +62,9 @@ fn wall(albedo: f32, sampled: bool) -> Arrival {
 }
 
 /// Radiance of path number `index`, where every ray arrives at `at` and no shadow ray is blocked.
-fn radiance(integrator: &dyn Integrator, at: Arrival, index: u32) -> f64 {
+fn radiance(integrator: &dyn Integrator, at: &Arrival, index: u32) -> f64 {
     let samples = Samples::new(&Numbers, SampleAt { stream: 0, index, dimension: 0 });
-    let mut lanes = [Lane { at, l: Spectrum::ZERO, samples }];
+    let mut lanes = [Lane { at: *at, l: Spectrum::ZERO, samples }];
     let mut states = integrator.lanes(1);
     let (mut requests, mut shadows) = (Requests::default(), Spectrum::ZERO);
     let job = Job { ray: Ray::new(DVec3::ZERO, DVec3::NEG_Z) };
@@ -86,7 +86,7 @@ fn a_cut_off_furnace_gives_the_partial_sum() {
     for light_sampling in [false, true] {
         for n in [0, 1, 5, 40] {
             let tracer = path(n, u32::MAX, light_sampling);
-            let got = radiance(&tracer, wall(0.5, light_sampling), 0);
+            let got = radiance(&tracer, &wall(0.5, light_sampling), 0);
             // Sampling a light and arriving at it by chance both count as one scattering: neither
             // half may go one event further than the other.
             let full = (1.0 - 0.5f64.powi(i32::try_from(n).unwrap() + 1)) / 0.5;
@@ -103,7 +103,7 @@ fn russian_roulette_by_throughput_has_variance_ninety_at_albedo_nine_tenths() {
     let n = 200_000;
     let (mut mean, mut square) = (0.0, 0.0);
     for i in 0..n {
-        let l = radiance(&tracer, wall(0.9, false), i);
+        let l = radiance(&tracer, &wall(0.9, false), i);
         mean += l / f64::from(n);
         square += l * l / f64::from(n);
     }
@@ -117,7 +117,7 @@ fn russian_roulette_by_throughput_has_variance_ninety_at_albedo_nine_tenths() {
 fn light_sampling_and_chance_share_the_light() {
     let tracer = path(1_000_000, 3, true);
     let n = 20_000;
-    let mean: f64 = (0..n).map(|i| radiance(&tracer, wall(0.8, true), i) / f64::from(n)).sum();
+    let mean: f64 = (0..n).map(|i| radiance(&tracer, &wall(0.8, true), i) / f64::from(n)).sum();
     // The number of bounces beyond the third varies by .8/.04 = 20 at most.
     assert!((mean - 5.0).abs() < 5.0 * (20.0 / f64::from(n)).sqrt(), "{mean}");
 }
@@ -125,7 +125,7 @@ fn light_sampling_and_chance_share_the_light() {
 #[test]
 fn dark_and_broken_paths_end() {
     for weight in [0.0, f32::NAN, f32::INFINITY] {
-        let got = radiance(&path(1_000_000, 3, false), wall(weight, false), 0);
+        let got = radiance(&path(1_000_000, 3, false), &wall(weight, false), 0);
         assert!((got - 1.0).abs() <= 0.0, "{got}");
     }
 }
@@ -134,7 +134,7 @@ fn dark_and_broken_paths_end() {
 fn an_open_place_sees_the_whole_sky() {
     let integrator = AmbientOcclusion { distance: luxel_sdk::params::Maybe::default() };
     for i in 0..20 {
-        assert!((radiance(&integrator, wall(0.0, false), i) - 1.0).abs() <= 0.0);
+        assert!((radiance(&integrator, &wall(0.0, false), i) - 1.0).abs() <= 0.0);
     }
-    assert!(radiance(&integrator, Arrival::default(), 0).abs() <= 0.0);
+    assert!(radiance(&integrator, &Arrival::default(), 0).abs() <= 0.0);
 }

@@ -28,7 +28,7 @@ pub(crate) struct HenyeyGreenstein {
 impl HenyeyGreenstein {
     /// The phase function where 1 − cos of the turn is `versine` in [0, 2] and 1 + cos is `other`:
     /// with both, nothing cancels for lobes as narrow as you like. PBR4 §11.3.1.
-    fn value(&self, versine: f32, other: f32) -> f32 {
+    fn value(self, versine: f32, other: f32) -> f32 {
         let g = self.g.abs();
         let nearest = if self.g < 0.0 { other } else { versine };
         let base = (1.0 - g) * (1.0 - g) + 2.0 * g * nearest;

@@ -304,3 +304,17 @@ fn large_binary_plys_are_read_in_place() {
     assert_eq!((mesh.points.len(), mesh.indices.len()), (90_000, 2 * 299 * 299));
     assert_eq!(mesh.corners(0)[1], DVec3::new(0.0, 300.0 % 7.0, 1.0));
 }
+
+#[test]
+fn a_real_cage_of_quads_is_closed() {
+    let bytes = include_bytes!("../../../../../tests/data/mesh/spot_control_mesh.obj");
+    let mesh = load(params("spot.obj"), bytes).unwrap();
+    // Over a closed surface the vector areas of all triangles cancel.
+    let sum: DVec3 = (0..mesh.indices.len())
+        .map(|i| {
+            let [a, b, c] = mesh.corners(i.try_into().unwrap());
+            (b - a).cross(c - a)
+        })
+        .sum();
+    assert!(mesh.indices.len() == 372 && sum.length() <= 1e-12, "{sum} {}", mesh.indices.len());
+}

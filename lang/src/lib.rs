@@ -7,12 +7,70 @@
 pub mod prescan;
 
 mod budgets;
+mod catalogue;
+mod eval;
 mod sink;
 mod syntax;
 
 pub use budgets::Budgets;
+pub use catalogue::CATALOGUE;
 
-use luxel_core::diag::{Diagnostic, SourceId};
+use std::path::Path;
+
+use luxel_core::diag::{Diagnostic, SourceId, Sources, Span};
+use luxel_core::files::Files;
+use luxel_core::registry::Registry;
+use luxel_core::scene::Scene;
+
+/// What a load is told beside the file.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// Values for the parameters that the root file declares, as text: `--set name=value`.
+    pub set: Vec<(String, String)>,
+    /// What the load may cost.
+    pub budgets: Budgets,
+}
+
+/// A `param` that the root file declares.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParamInfo {
+    /// Its name.
+    pub name: String,
+    /// Its type as it is written: `length`.
+    pub ty: String,
+    /// The SI unit of its type; empty for a plain number and for what is no number.
+    pub unit: String,
+    /// Its doc comment, lines joined by newlines.
+    pub doc: String,
+    /// Its default as it is written.
+    pub default: String,
+    /// Its range as it is written, if it has one.
+    pub range: Option<String>,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// What a load gives.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The scene; `None` if there is an error.
+    pub scene: Option<Scene>,
+    /// Every mistake and warning, in the order in which they were found.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The texts that the diagnostics point into; each `--set` is one.
+    pub sources: Sources,
+    /// The parameters that the root file declares.
+    pub params: Vec<ParamInfo>,
+}
+
+/// Reads and evaluates the scene at `path`: everything it names comes from `files`, every class from
+/// `registry`.
+///
+/// Never panics and never runs for ever, whatever the bytes: budgets bound time, memory and stack
+/// (2 MiB suffice at the default budgets).
+pub fn load(path: &Path, files: &dyn Files, registry: &Registry, settings: &Settings) -> Loaded {
+    eval::load(path, files, registry, settings)
+}
 
 /// Reads a text without evaluating it; gives how many statements stand at its top level and what is
 /// wrong with it. For measuring the parser alone.

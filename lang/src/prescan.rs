@@ -103,6 +103,7 @@ pub fn scan(text: &str, range: Range<usize>, depth: usize, limit: usize) -> Scan
         open: Vec::with_capacity(limit.min(256) + 1),
         operand: true,
         newline: true,
+        in_for: false,
         first: depth == 0,
         doc: None,
         out: Scan::default(),
@@ -120,6 +121,8 @@ struct Scanner<'a> {
     /// Whether what stands before could end an expression.
     operand: bool,
     newline: bool,
+    /// Between `for` and `in`, where a comma separates names and not statements.
+    in_for: bool,
     /// Whether no statement has begun in this block.
     first: bool,
     doc: Option<usize>,
@@ -165,6 +168,7 @@ impl Scanner<'_> {
         match byte {
             b'\n' => self.newline = true,
             b' ' | b'\t' | b'\r' | 0xEF | 0xBB | 0xBF => {}
+            b',' if self.in_for => self.operand = false,
             b',' | b';' => (self.operand, self.newline) = (true, true),
             b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'@' => {
                 while self.bytes.get(self.at).is_some_and(word) {
@@ -177,6 +181,7 @@ impl Scanner<'_> {
                     self.word(start);
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
+                self.in_for = name == b"for" || (self.in_for && name != b"in");
             }
             b'0'..=b'9' => {
                 while self.bytes.get(self.at).is_some_and(word) {

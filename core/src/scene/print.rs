@@ -52,7 +52,11 @@ fn print_node(out: &mut String, index: usize, node: &Node) {
         let _ = write!(out, "\n  {} = ", argument.name);
         print_value(out, &argument.value);
     }
-    out.push_str(if node.params.is_empty() { "}\n" } else { "\n}\n" });
+    for (name, material) in &node.overrides {
+        let _ = write!(out, "\n  material {name} = n{}", material.0);
+    }
+    let empty = node.params.is_empty() && node.overrides.is_empty();
+    out.push_str(if empty { "}\n" } else { "\n}\n" });
 }
 
 fn print_group(out: &mut String, group: &Group) {

@@ -355,7 +355,7 @@ fn doc(pair: &Pair<'_, Rule>, span: Span) -> Doc {
 }
 
 /// The unit that a misspelt one stands for: full names, or a slip of the pen.
-pub(crate) fn suggest_unit(text: &str) -> Option<&'static str> {
+fn suggest_unit(text: &str) -> Option<&'static str> {
     const FULL: [(&str, &str); 17] = [
         ("meter", "m"),
         ("metre", "m"),

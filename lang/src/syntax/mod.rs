@@ -10,13 +10,12 @@ mod parse;
 mod tests;
 mod tree;
 
-pub(crate) use build::suggest_unit;
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, parse, parse_expr};
 pub(crate) use tree::{
-    Arg, Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Form, Name, Object, Op, ParamDef,
-    Quoted, Stmt, StmtNode, Ty,
+    Arg, Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Form, Name, Object, Op, ParamDef, Stmt,
+    StmtNode, Ty,
 };
 
 pub(crate) use grammar::{Rule, SceneParser};

@@ -1,0 +1,147 @@
+//! Transforms and views.
+
+use std::rc::Rc;
+
+use glam::{DAffine3, DMat3, DMat4, DVec3};
+use luxel_core::diag::Span;
+use luxel_sdk::params::{Dimension, Look};
+
+use super::{Call, Evaluator, Value};
+
+/// Which function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Transform {
+    Rotate,
+    Move,
+    Scale,
+    Matrix,
+    LookAt,
+}
+
+impl Evaluator<'_> {
+    /// Makes a transform or a view.
+    pub(super) fn make_transform(&mut self, make: Transform, call: &mut Call<'_>) -> Value {
+        let made = match make {
+            Transform::Rotate => self.rotate(call),
+            Transform::Move => {
+                self.vector_of(call, 0, Dimension::LENGTH).map(DAffine3::from_translation)
+            }
+            Transform::Scale => self.scale(call),
+            Transform::Matrix => self.matrix(call),
+            Transform::LookAt => return self.look_at(call).unwrap_or(Value::Poison),
+        };
+        made.map_or(Value::Poison, |made| Value::Transform(Rc::new(made)))
+    }
+
+    fn rotate(&mut self, call: &Call<'_>) -> Option<DAffine3> {
+        let (axis, _, span) = self.vector_arg(call, 0)?;
+        let angle = self.number_arg(call, 1, Dimension::ANGLE)?;
+        match DVec3::from_array(axis).try_normalize() {
+            Some(axis) => Some(DAffine3::from_axis_angle(axis, angle)),
+            None => {
+                self.poison("E0412", span, "the axis of a rotation has no direction");
+                None
+            }
+        }
+    }
+
+    fn scale(&mut self, call: &Call<'_>) -> Option<DAffine3> {
+        let arg = call.arg(0)?;
+        let by = match arg.value {
+            Value::Number(..) => DVec3::splat(self.number_arg(call, 0, Dimension::NONE)?),
+            _ => self.vector_of(call, 0, Dimension::NONE)?,
+        };
+        if by.abs().min_element() > 0.0 {
+            return Some(DAffine3::from_scale(by));
+        }
+        self.poison("E0412", arg.span, "a scale of zero leaves nothing");
+        None
+    }
+
+    /// Sixteen numbers by rows, the last row 0 0 0 1; translations in metres.
+    fn matrix(&mut self, call: &Call<'_>) -> Option<DAffine3> {
+        let arg = call.arg(0)?;
+        let rows = match &arg.value {
+            Value::Numbers(n) if n.dimension.is_none() => <[f64; 16]>::try_from(&*n.data).ok(),
+            _ => None,
+        };
+        let Some(rows) = rows else {
+            let message = "`matrix` wants 16 numbers by rows, without a unit";
+            self.poison("E0207", arg.span, message);
+            return None;
+        };
+        let m = DMat4::from_cols_array(&rows).transpose();
+        if m.row(3).to_array().map(f64::to_bits) != [0.0, 0.0, 0.0, 1.0_f64].map(f64::to_bits) {
+            let message = "the last row of a transform is 0, 0, 0, 1";
+            self.poison("E0412", arg.span, message);
+            return None;
+        }
+        let affine = DAffine3::from_mat3_translation(DMat3::from_mat4(m), m.w_axis.truncate());
+        self.invertible(affine, arg.span)
+    }
+
+    fn look_at(&mut self, call: &Call<'_>) -> Option<Value> {
+        let from = self.vector_of(call, 0, Dimension::LENGTH)?;
+        let to = self.vector_of(call, 1, Dimension::LENGTH)?;
+        let (up, _, _) = self.vector_arg(call, 2)?;
+        let up = DVec3::from_array(up);
+        let view = (to - from).try_normalize();
+        let Some(view) = view else {
+            self.poison("E0412", call.span, "`from` and `to` are the same point: there is no view");
+            return None;
+        };
+        // Parallel to within the rounding of the cross product of unit vectors.
+        let side = up.try_normalize().map(|up| up.cross(view).length());
+        if side.is_none_or(|side| side <= 4.0 * f64::EPSILON) {
+            self.poison("E0412", call.span, "`up` is parallel to the view, or zero");
+            return None;
+        }
+        Some(Value::Look(Rc::new(Look { from, to, up })))
+    }
+
+    /// The transform that a field gives: one, or a list that is applied first to last.
+    pub(in crate::eval) fn transform(&mut self, value: &Value, span: Span) -> Option<DAffine3> {
+        let made = match value {
+            Value::Poison => return None,
+            Value::Transform(one) => **one,
+            Value::Numbers(n) if n.data.is_empty() => DAffine3::IDENTITY,
+            Value::Items(items) => {
+                let mut all = DAffine3::IDENTITY;
+                for item in &items.items {
+                    match item {
+                        Value::Transform(next) => all = **next * all,
+                        Value::Poison => return None,
+                        other => {
+                            let message = format!(
+                                "a transform is a list of rotate, move, scale and matrix, not {}",
+                                other.describe()
+                            );
+                            self.poison("E0214", span, message);
+                            return None;
+                        }
+                    }
+                }
+                all
+            }
+            other => {
+                let message = format!(
+                    "a transform is a list of rotate, move, scale and matrix, not {}",
+                    other.describe()
+                );
+                self.poison("E0214", span, message);
+                return None;
+            }
+        };
+        self.invertible(made, span)
+    }
+
+    fn invertible(&mut self, made: DAffine3, span: Span) -> Option<DAffine3> {
+        let determinant = made.matrix3.determinant();
+        let good = determinant.abs() > 0.0 && made.is_finite() && made.inverse().is_finite();
+        if good {
+            return Some(made);
+        }
+        self.poison("E0412", span, "this transform cannot be undone: it flattens space");
+        None
+    }
+}

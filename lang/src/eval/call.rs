@@ -1,0 +1,127 @@
+//! Calls of functions.
+
+use std::rc::Rc;
+
+use luxel_core::diag::{Diagnostic, Span, nearest};
+
+use super::Evaluator;
+use super::builtins::Given;
+use super::env::Env;
+use super::value::{Function, Value};
+use crate::syntax::{Arg, Expr, FnBody};
+
+impl Evaluator<'_> {
+    /// A call as an expression.
+    pub(super) fn call(&mut self, callee: &Expr, args: &[Arg], span: Span, env: &Env) -> Value {
+        let function = self.eval(callee, env);
+        self.apply(&function, args, span, env)
+    }
+
+    /// Calls a value with arguments that stand in `env`.
+    pub(super) fn apply(&mut self, callee: &Value, args: &[Arg], span: Span, env: &Env) -> Value {
+        match callee {
+            Value::Function(function) => {
+                let FnBody::Value(body) = &function.def.body else {
+                    let name = &function.def.name.text;
+                    let message = format!("`{name}` emits nodes and gives no value");
+                    return self.poison("E0214", span, message);
+                };
+                match self.bind(function, args, span, env) {
+                    Some(inner) => self.eval(body, &inner),
+                    None => Value::Poison,
+                }
+            }
+            Value::Builtin(builtin) => {
+                let mut given = vec![];
+                for arg in args {
+                    let value = self.eval(&arg.value, env);
+                    given.push(Given { name: arg.name.clone(), value, span: arg.value.span });
+                }
+                self.call_builtin(builtin, given, span, env)
+            }
+            Value::Poison => {
+                for arg in args {
+                    self.eval(&arg.value, env);
+                }
+                Value::Poison
+            }
+            other => {
+                let message = format!("{} cannot be called", other.describe());
+                self.poison("E0214", span, message)
+            }
+        }
+    }
+
+    /// The environment of a function's body; `None` after a mistake.
+    pub(super) fn bind(
+        &mut self,
+        function: &Rc<Function>,
+        args: &[Arg],
+        span: Span,
+        env: &Env,
+    ) -> Option<Env> {
+        let def = &function.def;
+        let mut values: Vec<Option<Value>> = vec![None; def.params.len()];
+        let mut positional = 0;
+        for arg in args {
+            let value = self.eval(&arg.value, env);
+            let place = match &arg.name {
+                Some(name) => def.params.iter().position(|p| p.name.text == name.text),
+                None => {
+                    positional += 1;
+                    Some(positional - 1).filter(|i| *i < def.params.len())
+                }
+            };
+            let Some(i) = place else {
+                self.unknown_argument(function, arg);
+                return None;
+            };
+            if values[i].is_some() {
+                let message = format!("`{}` is given twice", def.params[i].name.text);
+                self.poison("E0404", arg.value.span, message);
+                return None;
+            }
+            values[i] = Some(self.fit(&def.params[i].ty, value, arg.value.span, env));
+        }
+        let inner = function.env.inner();
+        for (param, value) in def.params.iter().zip(values) {
+            let value = match (value, &param.default) {
+                (Some(value), _) => value,
+                (None, Some(default)) => {
+                    let value = self.eval(default, &inner);
+                    self.fit(&param.ty, value, default.span, &inner)
+                }
+                (None, None) => {
+                    let message = format!("`{}` wants `{}`", def.name.text, param.name.text);
+                    let diagnostic = Diagnostic::error("E0403", span, message);
+                    self.tell(diagnostic.label(param.name.span, "declared here"));
+                    return None;
+                }
+            };
+            inner.define(&param.name.text, value);
+        }
+        Some(inner)
+    }
+
+    fn unknown_argument(&mut self, function: &Function, arg: &Arg) {
+        let def = &function.def;
+        let known = || def.params.iter().map(|p| &*p.name.text);
+        let diagnostic = match &arg.name {
+            Some(name) => {
+                let message = format!("`{}` has no parameter `{}`", def.name.text, name.text);
+                let found = Diagnostic::error("E0402", name.span, message);
+                match nearest(&name.text, known()) {
+                    Some(near) => {
+                        found.help(format!("did you mean `{near}`?")).fix(name.span, near)
+                    }
+                    None => found,
+                }
+            }
+            None => {
+                let message = format!("`{}` takes {} arguments", def.name.text, def.params.len());
+                Diagnostic::error("E0402", arg.value.span, message)
+            }
+        };
+        self.tell(diagnostic.label(def.name.span, "defined here"));
+    }
+}

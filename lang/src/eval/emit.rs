@@ -1,0 +1,199 @@
+//! What statements put into the scene, and the labels that `set` reaches.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use glam::DAffine3;
+use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::scene::{NodeId, Placed, Target};
+use luxel_sdk::kind::Kind;
+
+use super::Evaluator;
+use super::env::Env;
+use super::exec::{Body, Place};
+use super::value::{FieldValue, ObjectValue, Value, What};
+use crate::syntax::{Block, Expr, Name, Stmt, StmtNode};
+
+/// Labelled objects, and what `set` will change of them.
+#[derive(Debug, Default)]
+pub(super) struct Labels {
+    /// Objects by label; `None` for one with a mistake, or out of the scene by `@off`.
+    pub(super) objects: BTreeMap<Arc<str>, Vec<Option<Rc<ObjectValue>>>>,
+    pub(super) sets: Vec<Set>,
+}
+
+/// `set label.field = value`.
+#[derive(Debug)]
+pub(super) struct Set {
+    pub(super) label: Name,
+    pub(super) field: FieldValue,
+}
+
+impl Labels {
+    /// Notes an emitted object.
+    pub(super) fn add(&mut self, label: Option<&Name>, value: &Value) {
+        let Some(label) = label else { return };
+        let object = match value {
+            Value::Object(object) => Some(object.clone()),
+            _ => None,
+        };
+        self.objects.entry(label.text.clone()).or_default().push(object);
+    }
+
+    /// Notes the labels in a statement that is off: `set` may name them.
+    pub(super) fn off(&mut self, stmt: &Stmt) {
+        match &stmt.node {
+            StmtNode::Object(object) => {
+                self.add(object.label.as_ref(), &Value::Poison);
+                object.body.stmts.iter().for_each(|stmt| self.off(stmt));
+            }
+            StmtNode::For { body, .. } => body.stmts.iter().for_each(|stmt| self.off(stmt)),
+            StmtNode::If { arms, otherwise } => {
+                let blocks = arms.iter().map(|(_, block)| block).chain(otherwise);
+                blocks.flat_map(|block| &block.stmts).for_each(|stmt| self.off(stmt));
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Evaluator<'_> {
+    /// Puts an object into the scene: into the group that is open, or into the scene's slot.
+    pub(super) fn emit(&mut self, value: &Value, span: Span) {
+        let Value::Object(object) = value else {
+            self.damaged = true;
+            return;
+        };
+        if self.quiet > 0 {
+            return;
+        }
+        match object.what {
+            What::Group(id, material) => {
+                self.put(object, Target::Group(id), DAffine3::IDENTITY, material, span);
+            }
+            What::Node(id, kind) => match kind {
+                Kind::Shape | Kind::Light | Kind::Importer => {
+                    self.put(object, Target::Node(id), DAffine3::IDENTITY, None, span);
+                }
+                Kind::Material | Kind::Texture | Kind::Phase => {
+                    let message = format!("a {kind} that stands alone is seen nowhere");
+                    self.tell(
+                        Diagnostic::warning("E0420", span, message)
+                            .help(format!("give it a name: `let name = {kind} …`")),
+                    );
+                }
+                kind => self.fill_slot(kind, id, span),
+            },
+        }
+    }
+
+    fn fill_slot(&mut self, kind: Kind, id: NodeId, span: Span) {
+        if let Some(first) = self.slots.get(&kind) {
+            let code = if kind == Kind::Camera { "E0409" } else { "E0419" };
+            let message = format!("a second {kind}: a scene has one");
+            let diagnostic = Diagnostic::error(code, span, message).label(*first, "the first one");
+            self.tell(diagnostic.help("`@off` before a statement takes it out of the scene"));
+            return;
+        }
+        self.slots.insert(kind, span);
+        let scene = &mut self.scene;
+        let slot = match kind {
+            Kind::Camera => &mut scene.camera,
+            Kind::Film => &mut scene.film,
+            Kind::Integrator => &mut scene.integrator,
+            Kind::Sampler => &mut scene.sampler,
+            Kind::Filter => &mut scene.filter,
+            _ => &mut scene.medium,
+        };
+        *slot = Some(id);
+    }
+
+    /// Puts a target into the open group; `outer` is applied after the object's own transform.
+    fn put(
+        &mut self,
+        object: &ObjectValue,
+        target: Target,
+        outer: DAffine3,
+        material: Option<NodeId>,
+        span: Span,
+    ) {
+        if !self.count_node(span) {
+            return;
+        }
+        if matches!(object.what, What::Node(_, Kind::Importer)) {
+            self.has_asset = true;
+        }
+        let transform = outer * object.transform;
+        let limit = self.budgets.instances;
+        let Some(open) = self.open_groups.last_mut() else { return };
+        open.depth = open.depth.max(object.depth);
+        open.instances = open.instances.saturating_add(object.instances);
+        open.group.items.push(Placed { target, transform, material, span });
+        let (instances, depth) = (open.instances, open.depth);
+        if instances > limit {
+            let message = format!("more than {limit} things stand in the scene");
+            self.over_budget("E0501", span, message);
+        } else if depth >= self.budgets.nesting {
+            let message = format!("groups stand in one another more than {depth} deep");
+            self.over_budget("E0507", span, message);
+        }
+    }
+
+    /// Counts a node or placement; `false` when there may be no more.
+    pub(super) fn count_node(&mut self, span: Span) -> bool {
+        self.placements += 1;
+        if self.placements > self.budgets.nodes && !self.stopped {
+            let message = format!("the scene has more than {} nodes", self.budgets.nodes);
+            self.over_budget("E0501", span, message);
+        }
+        !self.stopped
+    }
+
+    /// `place x "label" { transform = …, material = … }`.
+    pub(super) fn place(
+        &mut self,
+        what: &Expr,
+        label: Option<&Name>,
+        block: Option<&Block>,
+        span: Span,
+        env: &Env,
+    ) {
+        let value = self.eval(what, env);
+        let mut body = Body::new(Place::Object);
+        if let Some(block) = block {
+            self.block(block, env, &mut body);
+        }
+        let (outer, material) = self.group_fields(&body.fields);
+        let object = match &value {
+            Value::Object(object) => object.clone(),
+            Value::Poison => {
+                self.labels.add(label, &Value::Poison);
+                self.damaged = true;
+                return;
+            }
+            other => {
+                let message = format!("only objects can be placed, not {}", other.describe());
+                self.poison("E0408", what.span, message);
+                return;
+            }
+        };
+        self.labels.add(label, &value);
+        if self.quiet > 0 {
+            return;
+        }
+        match object.what {
+            What::Group(id, own) => {
+                self.put(&object, Target::Group(id), outer, material.or(own), span);
+            }
+            What::Node(id, Kind::Shape | Kind::Light | Kind::Importer) => {
+                self.put(&object, Target::Node(id), outer, material, span);
+            }
+            What::Node(_, kind) => {
+                let message =
+                    format!("a {kind} has no place: only shapes, lights, groups and assets");
+                self.poison("E0408", what.span, message);
+            }
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Statements.
+
+use std::rc::Rc;
+
+use luxel_core::diag::Diagnostic;
+use luxel_core::diag::Span;
+
+use super::Evaluator;
+use super::env::Env;
+use super::value::{FieldValue, Function, Value};
+use crate::syntax::{Block, Expr, ExprNode, Name, Op, Stmt, StmtNode};
+
+/// What the statements of a block may say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// A file, or the body of a function: it emits.
+    File,
+    /// A group: it emits and has fields.
+    Group,
+    /// Any other object: it has fields alone.
+    Object,
+}
+
+/// The fields that a block gives, and whether something in it could not be read.
+#[derive(Debug)]
+pub(super) struct Body {
+    pub(super) place: Place,
+    pub(super) fields: Vec<FieldValue>,
+    pub(super) broken: bool,
+}
+
+impl Body {
+    pub(super) fn new(place: Place) -> Self {
+        Self { place, fields: vec![], broken: false }
+    }
+}
+
+impl Evaluator<'_> {
+    /// The statements of a block, in an environment of their own.
+    pub(super) fn block(&mut self, block: &Block, env: &Env, body: &mut Body) {
+        let inner = env.inner();
+        if self.enter(block.span) {
+            self.stmts(&block.stmts, &inner, body);
+        }
+        self.leave();
+    }
+
+    /// Statements one after another.
+    pub(super) fn stmts(&mut self, stmts: &[Stmt], env: &Env, body: &mut Body) {
+        for stmt in stmts {
+            if !self.tick(1, stmt.span) {
+                return;
+            }
+            if stmt.is_off() {
+                self.labels.off(stmt);
+            } else {
+                self.stmt(stmt, env, body);
+            }
+        }
+    }
+
+    fn stmt(&mut self, stmt: &Stmt, env: &Env, body: &mut Body) {
+        match &stmt.node {
+            StmtNode::Let { name, ty, value } => {
+                let mut found = self.eval(value, env);
+                if let Some(ty) = ty {
+                    found = self.fit(ty, found, value.span, env);
+                }
+                env.define(&name.text, found);
+            }
+            StmtNode::Param(def) => {
+                let value = self.param(def, env);
+                env.define(&def.name.text, value);
+            }
+            StmtNode::Fn(def) => {
+                let function = Function { def: def.clone(), env: env.frozen() };
+                env.define(&def.name.text, Value::Function(Rc::new(function)));
+            }
+            StmtNode::For { index, item, over, body: block } => {
+                self.for_loop((index.as_ref(), item), over, block, env, body);
+            }
+            StmtNode::If { arms, otherwise } => self.if_stmt(arms, otherwise.as_ref(), env, body),
+            StmtNode::Include { path, with } => {
+                let with = self.fields(with, env);
+                self.emits(stmt.span, body, "include");
+                self.include(path, with, env);
+            }
+            StmtNode::Import { path, name } => {
+                let module = self.import(path, env);
+                env.define(&name.text, module);
+            }
+            StmtNode::Place { what, label, body: block } => {
+                self.emits(stmt.span, body, "place");
+                self.place(what, label.as_ref(), block.as_ref(), stmt.span, env);
+            }
+            StmtNode::Set { path, value } => {
+                let found = self.eval(value, env);
+                self.set(path, found, value.span, env);
+            }
+            StmtNode::Assert { cond, message } => self.assert(cond, message, env),
+            // The file's units were read before its first statement.
+            StmtNode::Units(_) => {}
+            StmtNode::Field(field) => {
+                let value = self.field(field, env);
+                if body.place == Place::File {
+                    let message = format!("`{}` stands in no object", field.name.text);
+                    let start = Span { end: field.name.span.start, ..field.name.span };
+                    self.tell(
+                        Diagnostic::error("E0113", field.name.span, message)
+                            .help("a name is defined with `let`")
+                            .fix(start, "let "),
+                    );
+                }
+                body.fields.push(value);
+            }
+            StmtNode::Object(object) => {
+                let emits = body.place != Place::Object;
+                let value = self.object(object, env);
+                if emits {
+                    self.labels.add(object.label.as_ref(), &value);
+                    self.emit(&value, object.head());
+                } else {
+                    self.stray_object(object);
+                }
+            }
+            StmtNode::Call(call) => self.call_stmt(call, env, body),
+            StmtNode::Broken { defines } => {
+                self.damaged = true;
+                body.broken = true;
+                if let Some(name) = defines {
+                    env.define(&name.text, Value::Poison);
+                }
+            }
+        }
+    }
+
+    fn stray_object(&mut self, object: &crate::syntax::Object) {
+        let word = &object.category.text;
+        let message = format!("a {word} cannot stand in this object without a name");
+        let start = Span { end: object.category.span.start, ..object.category.span };
+        self.tell(
+            Diagnostic::error("E0026", object.head(), message)
+                .help(format!("give it to a parameter: `{word} = {word} …`"))
+                .fix(start, format!("{word} = ")),
+        );
+    }
+
+    /// Whether things may be emitted here; told if not.
+    fn emits(&mut self, span: Span, body: &Body, what: &str) {
+        if body.place == Place::Object {
+            let message = format!("`{what}` cannot stand in this object: only groups hold others");
+            self.tell(Diagnostic::error("E0026", span, message));
+        }
+    }
+
+    fn for_loop(
+        &mut self,
+        (index, item): (Option<&Name>, &Name),
+        over: &Expr,
+        block: &Block,
+        env: &Env,
+        body: &mut Body,
+    ) {
+        let value = self.eval(over, env);
+        let Some(elements) = self.elements(value, over.span) else { return };
+        self.loops.push(item.span);
+        let mut count = 0.0;
+        while let Some(element) = elements.get(count) {
+            let inner = env.inner();
+            if let Some(index) = index {
+                inner.define(&index.text, Value::plain(count));
+            }
+            inner.define(&item.text, element);
+            count += 1.0;
+            self.block(block, &inner, body);
+            if !self.tick(1, over.span) {
+                break;
+            }
+        }
+        self.loops.pop();
+    }
+
+    fn if_stmt(
+        &mut self,
+        arms: &[(Expr, Block)],
+        otherwise: Option<&Block>,
+        env: &Env,
+        body: &mut Body,
+    ) {
+        for (cond, block) in arms {
+            match self.condition(cond, env) {
+                Some(true) => return self.block(block, env, body),
+                Some(false) => {}
+                None => {
+                    // Which arm would count is unknown: what is missing later may stand in one.
+                    self.damaged = true;
+                    body.broken = true;
+                    return;
+                }
+            }
+        }
+        if let Some(block) = otherwise {
+            self.block(block, env, body);
+        }
+    }
+
+    fn assert(&mut self, cond: &Expr, message: &Name, env: &Env) {
+        if self.condition(cond, env) != Some(false) {
+            return;
+        }
+        let mut diagnostic = Diagnostic::error("E0601", cond.span, message.text.to_string());
+        for (name, value) in self.values_in(cond, env) {
+            diagnostic = diagnostic.help(format!("{name} = {}", value.show()));
+        }
+        self.tell(diagnostic);
+    }
+
+    /// The values of the operands of a condition, as they are written.
+    fn values_in(&mut self, cond: &Expr, env: &Env) -> Vec<(String, Value)> {
+        let mut out = vec![];
+        let ExprNode::Chain { first, rest } = &cond.node else { return out };
+        let logical = rest.iter().any(|(op, ..)| matches!(op, Op::And | Op::Or));
+        for operand in std::iter::once(&**first).chain(rest.iter().map(|(_, _, e)| e)) {
+            if logical {
+                out.extend(self.values_in(operand, env));
+            } else if !matches!(operand.node, ExprNode::Number(..) | ExprNode::Text(_)) {
+                let text = self.sources.text(operand.span.source);
+                let text = text.get(operand.span.range()).unwrap_or("").to_owned();
+                out.push((text, self.eval(operand, env)));
+            }
+        }
+        out
+    }
+
+    fn call_stmt(&mut self, call: &Expr, env: &Env, body: &mut Body) {
+        let ExprNode::Call { callee, args } = &call.node else { return };
+        let function = self.eval(callee, env);
+        if let Value::Function(function) = &function
+            && let crate::syntax::FnBody::Template(block) = &function.def.body
+        {
+            self.emits(call.span, body, &function.def.name.text);
+            let Some(inner) = self.bind(function, args, call.span, env) else { return };
+            self.block(block, &inner, &mut Body::new(Place::File));
+            return;
+        }
+        let value = self.apply(&function, args, call.span, env);
+        match value {
+            Value::Object(_) if body.place != Place::Object => self.emit(&value, call.span),
+            Value::Poison => self.damaged = true,
+            _ => {
+                let message = "this call gives a value that nothing uses";
+                self.tell(
+                    Diagnostic::warning("E0114", call.span, message)
+                        .help("only functions with a `{ … }` body emit something"),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! From values of the language to values that the schema's check knows, and its answers to
+//! diagnostics.
+
+use std::sync::Arc;
+
+use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::scene::{self, Given, Misfit, NodeId};
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::{Dimension, Param, Type};
+
+use super::Evaluator;
+use super::env::File;
+use super::ops::with_zeros;
+use super::value::{FieldValue, Value, What};
+use crate::syntax::Form;
+
+impl Evaluator<'_> {
+    /// Fits a field to its parameter; `None` after a mistake.
+    pub(super) fn conform(&mut self, param: &Param, field: &FieldValue) -> Option<scene::Value> {
+        let given = self.given(param, field)?;
+        let units = |dimension: Dimension| field.file.units.get(&dimension).copied();
+        match scene::conform(param, given, &units) {
+            Ok(value) => Some(value),
+            Err(misfit) => {
+                self.misfit(&misfit, field.span);
+                None
+            }
+        }
+    }
+
+    fn misfit(&mut self, misfit: &Misfit, span: Span) {
+        let mut diagnostic = Diagnostic::error(misfit.code, span, misfit.message.clone());
+        if let Some(word) = misfit.word {
+            diagnostic = diagnostic
+                .help(format!("did you mean \"{word}\"?"))
+                .fix(span, format!("\"{word}\""));
+        }
+        if !misfit.help.is_empty() {
+            diagnostic = diagnostic.help(misfit.help.clone());
+        }
+        let end = Span { start: span.end, ..span };
+        for unit in &misfit.units {
+            diagnostic = diagnostic.fix(end, format!(" {unit}"));
+        }
+        self.tell(diagnostic);
+    }
+
+    fn given(&mut self, param: &Param, field: &FieldValue) -> Option<Given> {
+        match &field.value {
+            Value::Poison => None,
+            Value::Bool(value) => Some(Given::Bool(*value)),
+            Value::Number(x, dimension) => Some(Given::Number(*x, *dimension)),
+            Value::Text(text) if param.ty == Type::File => {
+                Some(Given::Path(field.file.folder.join(&**text)))
+            }
+            Value::Text(text) => Some(Given::Text(text.clone())),
+            Value::Numbers(n) => Some(Given::Numbers(n.data.clone(), n.dimension)),
+            Value::Items(items) => self.given_items(param, &items.items, field),
+            Value::Color(color, dimension) => Some(Given::Color(color.clone(), *dimension)),
+            Value::Look(look) => Some(Given::Look(**look)),
+            Value::Object(object) => match object.what {
+                What::Node(id, kind) => Some(Given::Node(id, kind)),
+                What::Group(..) => {
+                    let message =
+                        format!("`{}` wants {}, not a group", param.name, scene::wanted(param));
+                    self.poison("E0408", field.span, message);
+                    None
+                }
+            },
+            other => {
+                let message = format!(
+                    "`{}` wants {}, not {}",
+                    param.name,
+                    scene::wanted(param),
+                    other.describe()
+                );
+                self.poison("E0214", field.span, message);
+                None
+            }
+        }
+    }
+
+    /// A vector with bare zeros, or a table whose rows are vectors.
+    fn given_items(&mut self, param: &Param, items: &[Value], field: &FieldValue) -> Option<Given> {
+        if let Some((data, dimension)) = with_zeros(items) {
+            return Some(Given::Numbers(data.into(), dimension));
+        }
+        if let Some((data, dimension)) = with_file_units(items, &field.file) {
+            return Some(Given::Numbers(data.into(), dimension));
+        }
+        if param.ty == Type::Table
+            && let Some(given) = self.rows(items, field)
+        {
+            return Some(given);
+        }
+        let message = format!(
+            "`{}` wants {}, not {} values of different kinds",
+            param.name,
+            scene::wanted(param),
+            items.len()
+        );
+        self.poison("E0214", field.span, message);
+        None
+    }
+
+    /// Rows of numbers, one after another.
+    fn rows(&mut self, items: &[Value], field: &FieldValue) -> Option<Given> {
+        let mut data = vec![];
+        let mut dimension = None;
+        for item in items {
+            let (row, found): (Arc<[f64]>, Dimension) = match item {
+                Value::Numbers(n) => (n.data.clone(), n.dimension),
+                Value::Number(x, d) => (Arc::new([*x]), *d),
+                Value::Items(row) if row.form == Form::Tuple => {
+                    let (row, d) = with_zeros(&row.items)?;
+                    (row.into(), d)
+                }
+                _ => return None,
+            };
+            let zero = found.is_none() && row.iter().all(|x| x.abs() <= 0.0);
+            if *dimension.get_or_insert(found) != found && !zero {
+                return None;
+            }
+            if !self.tick(row.len() as u64, field.span) || data.len() > self.budgets.list {
+                return None;
+            }
+            data.extend_from_slice(&row);
+        }
+        Some(Given::Numbers(data.into(), dimension.unwrap_or_default()))
+    }
+
+    /// The node of a value that must be an object of a kind; `None` after a mistake.
+    pub(super) fn node_of(&mut self, field: &FieldValue, wanted: Kind) -> Option<NodeId> {
+        match &field.value {
+            Value::Poison => None,
+            Value::Object(object) => match object.what {
+                What::Node(id, kind) if kind == wanted => Some(id),
+                _ => {
+                    let message =
+                        format!("`{}` wants a {wanted}, not a {}", field.name.text, object.word());
+                    self.poison("E0408", field.span, message);
+                    None
+                }
+            },
+            other => {
+                let message =
+                    format!("`{}` wants a {wanted}, not {}", field.name.text, other.describe());
+                self.poison("E0408", field.span, message);
+                None
+            }
+        }
+    }
+}
+
+/// A vector in which bare numbers stand beside numbers of one dimension, in the file's units.
+fn with_file_units(items: &[Value], file: &File) -> Option<(Vec<f64>, Dimension)> {
+    let dimension = items.iter().find_map(|item| match item {
+        Value::Number(_, d) if !d.is_none() => Some(*d),
+        _ => None,
+    })?;
+    let scale = file.units.get(&dimension)?;
+    let number = |item: &Value| match item {
+        Value::Number(x, d) if *d == dimension => Some(*x),
+        Value::Number(x, Dimension::NONE) => Some(x * scale),
+        _ => None,
+    };
+    Some((items.iter().map(number).collect::<Option<_>>()?, dimension))
+}

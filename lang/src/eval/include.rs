@@ -1,0 +1,262 @@
+//! Scene files: reading, including and importing them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::files::FileError;
+use luxel_sdk::params::{Dimension, Unit};
+
+use super::env::{Env, File, Override};
+use super::exec::{Body, Place};
+use super::resolve;
+use super::value::{FieldValue, Module, Value};
+use super::{Evaluator, OpenGroup};
+use crate::syntax::{self, ExprNode, Name, Stmt, StmtNode, Tree};
+
+/// A file, read once.
+#[derive(Debug)]
+pub(super) struct ReadFile {
+    tree: Tree,
+    units: BTreeMap<Dimension, f64>,
+}
+
+impl Evaluator<'_> {
+    /// Evaluates the file that was asked for, with `--set`.
+    pub(super) fn root(&mut self, path: &Path, set: &[(String, String)]) {
+        self.open_groups.push(OpenGroup::default());
+        let canonical = self.files.canonical(path);
+        let read = match self.files.read(path) {
+            Ok(bytes) => self.read_bytes(path, &bytes, None),
+            Err(error) => {
+                let code = if error == FileError::Outside { "E0108" } else { "E0107" };
+                let code = if matches!(error, FileError::TooLarge(_)) { "E0504" } else { code };
+                let message = format!("{}: {error}", path.display());
+                self.tell(Diagnostic::unplaced(code, message));
+                None
+            }
+        };
+        let Some(read) = read else {
+            self.damaged = true;
+            return;
+        };
+        self.chain.push((canonical, None));
+        let overrides = self.settings(&read.tree, set);
+        self.run(&read, path, overrides, true);
+        self.chain.pop();
+        self.apply_sets();
+    }
+
+    fn read_bytes(
+        &mut self,
+        path: &Path,
+        bytes: &[u8],
+        from: Option<Span>,
+    ) -> Option<Rc<ReadFile>> {
+        let name = path.to_string_lossy();
+        let limit = self.budgets.file_bytes;
+        let total = self.bytes_read.saturating_add(bytes.len());
+        if bytes.len() > limit || total > self.budgets.total_bytes {
+            let message = if bytes.len() > limit {
+                format!("{name} has {} bytes; the limit is {limit}", bytes.len())
+            } else {
+                format!("all scene files have more than {} bytes", self.budgets.total_bytes)
+            };
+            self.tell(placed("E0504", from, message));
+            return None;
+        }
+        self.bytes_read = total;
+        let text = match str::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(error) => {
+                let at = error.valid_up_to();
+                let text = String::from_utf8_lossy(&bytes[..at]).into_owned();
+                let source = self.sources.add(name, text);
+                let span = Span::new(source, at, at);
+                let message = format!("byte {at} of the file is not UTF-8");
+                self.tell(Diagnostic::error("E0003", span, message));
+                return None;
+            }
+        };
+        let text: std::sync::Arc<str> = text.into();
+        let source = self.sources.add(name, text.clone());
+        let tree = syntax::parse(&text, source, &self.budgets, &mut self.sink);
+        self.stopped |= self.sink.is_full();
+        resolve::resolve(&tree, &mut self.sink);
+        let units = self.units(&tree.stmts);
+        Some(Rc::new(ReadFile { tree, units }))
+    }
+
+    /// What bare numbers count in a file.
+    fn units(&mut self, stmts: &[Stmt]) -> BTreeMap<Dimension, f64> {
+        let mut out = BTreeMap::new();
+        let blocks = stmts.iter().filter(|stmt| !stmt.is_off());
+        let fields = blocks.filter_map(|stmt| match &stmt.node {
+            StmtNode::Units(fields) => Some(fields),
+            _ => None,
+        });
+        for field in fields.flatten() {
+            let Some(wanted) = super::types::dimension(&field.name.text).filter(|d| !d.is_none())
+            else {
+                let message = format!("`{}` is not something that has a unit", field.name.text);
+                self.poison("E0215", field.name.span, message);
+                continue;
+            };
+            let unit = match &field.value.node {
+                ExprNode::Path(path) if path.len() == 1 => Unit::named(&path[0].text),
+                _ => None,
+            };
+            match unit {
+                Some(unit) if unit.dimension == wanted => {
+                    out.insert(wanted, unit.scale);
+                }
+                Some(unit) => {
+                    let message =
+                        format!("{} is wanted, this is {}", wanted.name(), unit.dimension.name());
+                    self.poison("E0202", field.value.span, message);
+                }
+                None => {
+                    self.poison("E0204", field.value.span, "a unit's name is wanted, as `mm`");
+                }
+            }
+        }
+        out
+    }
+
+    /// Evaluates a file that was read; gives its names.
+    fn run(
+        &mut self,
+        read: &ReadFile,
+        path: &Path,
+        overrides: BTreeMap<std::sync::Arc<str>, Override>,
+        is_root: bool,
+    ) -> Env {
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        let file = File { folder, units: read.units.clone(), overrides, is_root };
+        let env = Env::new(Rc::new(file));
+        self.stmts(&read.tree.stmts, &env, &mut Body::new(Place::File));
+        env
+    }
+
+    /// The file that a statement names: its path and text. `None` after a mistake.
+    fn open(&mut self, name: &Name, env: &Env) -> Option<(PathBuf, PathBuf, Rc<ReadFile>)> {
+        let path = env.file.folder.join(&*name.text);
+        let canonical = self.files.canonical(&path);
+        if let Some(at) = self.chain.iter().position(|(open, _)| *open == canonical) {
+            self.cycle(at, name, &canonical);
+            return None;
+        }
+        if self.chain.len() > self.budgets.include_depth {
+            let message =
+                format!("files include one another more than {} deep", self.budgets.include_depth);
+            self.poison("E0505", name.span, message);
+            return None;
+        }
+        if let Some(read) = self.read.get(&canonical) {
+            return Some((path, canonical, read.clone()));
+        }
+        let bytes = match self.files.read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                let code = match error {
+                    FileError::Outside => "E0108",
+                    FileError::TooLarge(_) => "E0504",
+                    _ => "E0107",
+                };
+                let message = format!("\"{}\": {error}", name.text);
+                let found = Diagnostic::error(code, name.span, message);
+                self.tell(found.help(format!("looked for {}", path.display())));
+                return None;
+            }
+        };
+        let read = self.read_bytes(&path, &bytes, Some(name.span))?;
+        self.read.insert(canonical.clone(), read.clone());
+        Some((path, canonical, read))
+    }
+
+    fn cycle(&mut self, at: usize, name: &Name, canonical: &Path) {
+        let names: Vec<String> = self.chain[at..]
+            .iter()
+            .map(|(path, _)| path)
+            .chain([&canonical.to_path_buf()])
+            .map(|path| path.display().to_string())
+            .collect();
+        let message = format!("files include one another in a circle: {}", names.join(" → "));
+        let mut found = Diagnostic::error("E0106", name.span, message);
+        let asked: Vec<Span> = self.chain[at..].iter().filter_map(|(_, span)| *span).collect();
+        for span in asked {
+            found = found.label(span, "which is included here");
+        }
+        self.tell(found);
+    }
+
+    /// `include "f" with { … }`: what the file emits, here.
+    pub(super) fn include(&mut self, name: &Name, with: Vec<FieldValue>, env: &Env) {
+        let Some((path, canonical, read)) = self.open(name, env) else {
+            self.damaged = true;
+            return;
+        };
+        let params: Vec<&Name> = params(&read.tree).collect();
+        let mut overrides = BTreeMap::new();
+        for field in with {
+            if !params.iter().any(|p| p.text == field.name.text) {
+                self.no_param(&field.name, &params);
+                continue;
+            }
+            let given = Override { value: field.value, span: field.span };
+            overrides.insert(field.name.text, given);
+        }
+        if self.enter(name.span) {
+            self.chain.push((canonical, Some(name.span)));
+            self.run(&read, &path, overrides, false);
+            self.chain.pop();
+        }
+        self.leave();
+    }
+
+    fn no_param(&mut self, name: &Name, params: &[&Name]) {
+        let message = format!("the file declares no parameter `{}`", name.text);
+        let mut found = Diagnostic::error("E0111", name.span, message);
+        let known = || params.iter().map(|p| &*p.text);
+        if let Some(near) = nearest(&name.text, known()) {
+            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.tell(found);
+    }
+
+    /// `import "f" as n`: the file's names, and nothing that it emits.
+    pub(super) fn import(&mut self, name: &Name, env: &Env) -> Value {
+        let Some((path, canonical, read)) = self.open(name, env) else { return Value::Poison };
+        if let Some(module) = self.imported.get(&canonical) {
+            return Value::Module(module.clone());
+        }
+        let mut names = BTreeMap::new();
+        if self.enter(name.span) {
+            self.quiet += 1;
+            self.chain.push((canonical.clone(), Some(name.span)));
+            names = self.run(&read, &path, BTreeMap::new(), false).names();
+            self.chain.pop();
+            self.quiet -= 1;
+        }
+        self.leave();
+        let module = Rc::new(Module { names, path: name.text.to_string() });
+        self.imported.insert(canonical, module.clone());
+        Value::Module(module)
+    }
+}
+
+/// The names of the parameters that a file declares.
+pub(super) fn params(tree: &Tree) -> impl Iterator<Item = &Name> {
+    tree.stmts.iter().filter_map(|stmt| match &stmt.node {
+        StmtNode::Param(def) => Some(&def.name),
+        _ => None,
+    })
+}
+
+fn placed(code: &'static str, span: Option<Span>, message: String) -> Diagnostic {
+    match span {
+        Some(span) => Diagnostic::error(code, span, message),
+        None => Diagnostic::unplaced(code, message),
+    }
+}

@@ -1,0 +1,167 @@
+//! Tree to scene graph, through the registry.
+//!
+//! Every mistake is told at its place and leaves `Value::Poison`, which no later step speaks of
+//! again. Evaluation is total: functions see only what stands before them, loops run over finite
+//! lists, and budgets bound steps, lists, nodes, files and nesting.
+
+mod builtins;
+mod call;
+mod emit;
+mod env;
+mod exec;
+mod expr;
+mod finish;
+mod given;
+mod include;
+mod object;
+mod ops;
+mod params;
+mod resolve;
+mod types;
+mod value;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use luxel_core::diag::{Diagnostic, Sources, Span};
+use luxel_core::files::Files;
+use luxel_core::registry::Registry;
+use luxel_core::scene::{Group, Scene};
+
+use self::emit::Labels;
+use self::include::ReadFile;
+use self::value::{Module, Value};
+use crate::budgets::Budgets;
+use crate::sink::Sink;
+use crate::{Loaded, ParamInfo, Settings};
+
+/// Evaluates the scene at `path`.
+pub(crate) fn load(
+    path: &Path,
+    files: &dyn Files,
+    registry: &Registry,
+    settings: &Settings,
+) -> Loaded {
+    let mut evaluator = Evaluator {
+        files,
+        registry,
+        budgets: settings.budgets,
+        sources: Sources::default(),
+        sink: Sink::new(settings.budgets.diagnostics),
+        scene: Scene::default(),
+        open_groups: vec![],
+        quiet: 0,
+        steps: 0,
+        depth: 0,
+        placements: 0,
+        stopped: false,
+        bytes_read: 0,
+        read: BTreeMap::new(),
+        imported: BTreeMap::new(),
+        chain: vec![],
+        loops: vec![],
+        labels: Labels::default(),
+        slots: BTreeMap::new(),
+        has_asset: false,
+        damaged: false,
+        params: vec![],
+    };
+    evaluator.root(path, &settings.set);
+    evaluator.finish()
+}
+
+/// The state of one load.
+struct Evaluator<'a> {
+    files: &'a dyn Files,
+    registry: &'a Registry,
+    budgets: Budgets,
+    sources: Sources,
+    sink: Sink,
+    scene: Scene,
+    /// Groups that are being filled, the world first, each with its depth and instances.
+    open_groups: Vec<OpenGroup>,
+    /// Above zero while a file is imported: nothing is emitted.
+    quiet: usize,
+    steps: u64,
+    depth: usize,
+    placements: usize,
+    /// A budget is spent: everything winds up.
+    stopped: bool,
+    bytes_read: usize,
+    /// Files that were read, by canonical path.
+    read: BTreeMap<PathBuf, Rc<ReadFile>>,
+    imported: BTreeMap<PathBuf, Rc<Module>>,
+    /// The files that are being evaluated, and where each was asked for.
+    chain: Vec<(PathBuf, Option<Span>)>,
+    /// The loops that are running.
+    loops: Vec<Span>,
+    labels: Labels,
+    /// Where the camera, film, … were given.
+    slots: BTreeMap<luxel_sdk::kind::Kind, Span>,
+    has_asset: bool,
+    /// Some statement could not be read: what is missing may stand there.
+    damaged: bool,
+    params: Vec<ParamInfo>,
+}
+
+/// A group that is being filled.
+#[derive(Default)]
+struct OpenGroup {
+    group: Group,
+    depth: usize,
+    instances: u64,
+}
+
+impl Evaluator<'_> {
+    /// Keeps a diagnostic; too many end the evaluation.
+    fn tell(&mut self, diagnostic: Diagnostic) {
+        self.sink.push(diagnostic);
+        self.stopped |= self.sink.is_full();
+    }
+
+    /// Tells an error and gives poison.
+    fn poison(&mut self, code: &'static str, span: Span, message: impl Into<String>) -> Value {
+        self.tell(Diagnostic::error(code, span, message));
+        Value::Poison
+    }
+
+    /// Counts work; `false` when there may be no more.
+    fn tick(&mut self, work: u64, span: Span) -> bool {
+        self.steps = self.steps.saturating_add(work);
+        if self.steps > self.budgets.steps && !self.stopped {
+            let message = format!("evaluation takes more than {} steps", self.budgets.steps);
+            self.over_budget("E0502", span, message);
+        }
+        !self.stopped
+    }
+
+    /// Tells that a budget is spent, with the loops that are running, and stops.
+    fn over_budget(&mut self, code: &'static str, span: Span, message: String) {
+        let place = self.loops.last().copied().unwrap_or(span);
+        let mut diagnostic = Diagnostic::error(code, place, message);
+        for outer in self.loops.iter().rev().skip(1).take(4) {
+            diagnostic = diagnostic.label(*outer, "inside this loop");
+        }
+        self.tell(diagnostic);
+        self.stopped = true;
+    }
+
+    /// Goes one level deeper; `false` when that is too deep, which is told.
+    fn enter(&mut self, span: Span) -> bool {
+        self.depth += 1;
+        if self.depth <= self.budgets.nesting {
+            return true;
+        }
+        if !self.stopped {
+            let message = format!("evaluation nests more than {} deep", self.budgets.nesting);
+            self.tell(Diagnostic::error("E0507", span, message));
+            self.stopped = true;
+        }
+        false
+    }
+
+    fn leave(&mut self) {
+        self.depth -= 1;
+    }
+}

@@ -1,0 +1,337 @@
+//! Objects: fields against the schema of their class, and what becomes of them in the scene.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use glam::DAffine3;
+use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::registry::Registry;
+use luxel_core::scene::{Argument, GroupId, Node, NodeId};
+use luxel_sdk::abi::Class;
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::Param;
+
+use super::env::Env;
+use super::exec::{Body, Place};
+use super::value::{FieldValue, Head, ObjectValue, Value, What};
+use super::{Evaluator, OpenGroup};
+use crate::syntax::{Name, Object};
+
+impl Evaluator<'_> {
+    /// The object that an expression or statement describes.
+    pub(super) fn object(&mut self, object: &Object, env: &Env) -> Value {
+        let span = object.category.span.to(object.body.span);
+        if &*object.category.text == "group" && object.kind.is_none() {
+            return self.group(object, span, env);
+        }
+        let head = self.head(object, span);
+        let mut body = Body::new(Place::Object);
+        self.block(&object.body, env, &mut body);
+        match head {
+            Some(head) if !body.broken => self.build(&head, body.fields),
+            _ => {
+                self.damaged = true;
+                Value::Poison
+            }
+        }
+    }
+
+    fn head(&mut self, object: &Object, span: Span) -> Option<Head> {
+        let category = &object.category;
+        let Some(kind) = Kind::of_word(&category.text) else {
+            let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
+            let message = format!("there is no kind of object `{}`", category.text);
+            let mut found = Diagnostic::error("E0401", category.span, message);
+            if let Some(near) = nearest(&category.text, words()) {
+                found = found.help(format!("did you mean `{near}`?")).fix(category.span, near);
+            }
+            let known: Vec<_> = words().collect();
+            self.tell(found.help(format!("known are {}", known.join(", "))));
+            return None;
+        };
+        let names: Vec<&'static str> = self.registry.of_kind(kind).map(|e| e.class.name).collect();
+        let Some(class) = &object.kind else {
+            let message = format!("which {kind}? its name is missing after `{kind}`");
+            let found = Diagnostic::error("E0401", category.span, message);
+            self.tell(found.help(format!("known are {}", names.join(", "))));
+            return None;
+        };
+        if self.registry.class(kind, &class.text).is_none() {
+            let message = format!("there is no {kind} `{}`", class.text);
+            let mut found = Diagnostic::error("E0401", class.span, message);
+            if let Some(near) = nearest(&class.text, names.iter().copied()) {
+                found = found.help(format!("did you mean `{near}`?")).fix(class.span, near);
+            }
+            self.tell(found.help(format!("known are {}", names.join(", "))));
+            return None;
+        }
+        Some(Head { kind: Some(kind), class: class.clone(), label: object.label.clone(), span })
+    }
+
+    fn group(&mut self, object: &Object, span: Span, env: &Env) -> Value {
+        self.open_groups.push(OpenGroup::default());
+        let mut body = Body::new(Place::Group);
+        self.block(&object.body, env, &mut body);
+        let open = self.open_groups.pop().unwrap_or_default();
+        let mut group = open.group;
+        group.label = object.label.as_ref().map(|label| label.text.clone());
+        let (transform, material) = self.group_fields(&body.fields);
+        let id = GroupId(u32::try_from(self.scene.groups.len()).unwrap_or(u32::MAX));
+        self.scene.groups.push(group);
+        let head =
+            Head { kind: None, class: object.category.clone(), label: object.label.clone(), span };
+        Value::Object(Rc::new(ObjectValue {
+            what: What::Group(id, material),
+            fields: body.fields,
+            transform,
+            head,
+            depth: open.depth + 1,
+            instances: open.instances.max(1),
+        }))
+    }
+
+    /// The transform and material of a group or a placement.
+    pub(super) fn group_fields(&mut self, fields: &[FieldValue]) -> (DAffine3, Option<NodeId>) {
+        let (mut transform, mut material) = (DAffine3::IDENTITY, None);
+        for (i, field) in fields.iter().enumerate() {
+            self.given_twice(&fields[..i], field);
+            match &*field.name.text {
+                "transform" => {
+                    transform = self.transform(&field.value, field.span).unwrap_or_default();
+                }
+                "material" => material = self.node_of(field, Kind::Material),
+                _ => self.unknown(field, "a group or placement", &["transform", "material"]),
+            }
+        }
+        (transform, material)
+    }
+
+    /// `object with { … }`: the same object with some fields given anew.
+    pub(super) fn amend(&mut self, value: Value, fields: Vec<FieldValue>, span: Span) -> Value {
+        match value {
+            Value::Object(object) if object.head.kind.is_some() => {
+                let all = merged(&object.fields, fields);
+                self.build(&object.head, all)
+            }
+            Value::Object(object) => {
+                let mut all: Vec<FieldValue> = merged(&object.fields, fields);
+                let (transform, material) = self.group_fields(&all);
+                let What::Group(id, _) = object.what else { return Value::Poison };
+                let fields = std::mem::take(&mut all);
+                let what = What::Group(id, material);
+                Value::Object(Rc::new(ObjectValue { what, fields, transform, ..(*object).clone() }))
+            }
+            Value::Record(old) => Value::Record(Rc::new(merged(&old, fields))),
+            Value::Poison => Value::Poison,
+            other => {
+                let message =
+                    format!("`with` changes objects and records, not {}", other.describe());
+                self.poison("E0214", span, message)
+            }
+        }
+    }
+
+    /// Makes a node of fields that are checked against the schema.
+    pub(super) fn build(&mut self, head: &Head, fields: Vec<FieldValue>) -> Value {
+        let Some(class) = head.kind.and_then(|kind| self.registry.class(kind, &head.class.text))
+        else {
+            return Value::Poison;
+        };
+        let class = *class;
+        let before = self.sink.errors();
+        let (mut params, mut overrides) = (vec![], vec![]);
+        let mut transform = DAffine3::IDENTITY;
+        let (mut poisoned, mut depth) = (false, 0);
+        for (i, field) in fields.iter().enumerate() {
+            self.given_twice(&fields[..i], field);
+            let Some(param) = Registry::params(&class).find(|p| p.name == &*field.name.text) else {
+                match &*field.name.text {
+                    "transform" if stands_somewhere(class.kind) => {
+                        let found = self.transform(&field.value, field.span);
+                        transform = found.unwrap_or_default() * transform;
+                        poisoned |= found.is_none();
+                    }
+                    "materials" if class.kind == Kind::Importer => {
+                        overrides = self.materials(field, &mut poisoned);
+                    }
+                    _ => self.unknown_param(&class, field),
+                }
+                continue;
+            };
+            self.deprecated(param, field);
+            if let Value::Object(inner) = &field.value {
+                depth = depth.max(inner.depth);
+                transform = self.lifted(&class, inner, field.span, transform);
+            }
+            match self.conform(param, field) {
+                Some(value) => {
+                    params.push(Argument { name: param.name, value, span: field.span });
+                }
+                None => poisoned = true,
+            }
+        }
+        self.complete(&class, head, &fields);
+        if depth >= self.budgets.nesting {
+            let message = format!("objects stand in one another more than {depth} deep");
+            return self.poison("E0507", head.span, message);
+        }
+        if poisoned || self.sink.errors() > before || !self.count_node(head.span) {
+            return Value::Poison;
+        }
+        let node = Node {
+            kind: class.kind,
+            class: Arc::from(class.name),
+            label: head.label.as_ref().map(|label| label.text.clone()),
+            params,
+            overrides,
+            span: head.span,
+            hash: [0; 32],
+        };
+        let what = What::Node(self.scene.add(node), class.kind);
+        let head = head.clone();
+        let depth = depth + 1;
+        Value::Object(Rc::new(ObjectValue { what, fields, transform, head, depth, instances: 1 }))
+    }
+
+    /// `materials = { name = material, … }`: what takes the place of an asset's own.
+    fn materials(&mut self, field: &FieldValue, poisoned: &mut bool) -> Vec<(Arc<str>, NodeId)> {
+        let Value::Record(record) = &field.value else {
+            let message = "`materials` is a record: `{ name_in_the_file = material, … }`";
+            self.poison("E0214", field.span, message);
+            return vec![];
+        };
+        let mut out = vec![];
+        for entry in record.iter() {
+            match self.node_of(entry, Kind::Material) {
+                Some(id) => out.push((entry.name.text.clone(), id)),
+                None => *poisoned = true,
+            }
+        }
+        out
+    }
+
+    /// A shape that shines stands where its light does: the shape's transform becomes the light's.
+    fn lifted(
+        &mut self,
+        class: &Class,
+        inner: &ObjectValue,
+        span: Span,
+        transform: DAffine3,
+    ) -> DAffine3 {
+        if inner.transform == DAffine3::IDENTITY {
+            return transform;
+        }
+        if class.kind == Kind::Light {
+            return transform * inner.transform;
+        }
+        let message = format!("a {} inside a {} has no place of its own", inner.word(), class.kind);
+        let diagnostic = Diagnostic::error("E0418", span, message);
+        self.tell(diagnostic.help("leave its `transform` out"));
+        transform
+    }
+
+    fn given_twice(&mut self, before: &[FieldValue], field: &FieldValue) {
+        if let Some(first) = before.iter().find(|f| f.name.text == field.name.text) {
+            let message = format!("`{}` is given twice", field.name.text);
+            let diagnostic = Diagnostic::error("E0404", field.name.span, message);
+            self.tell(diagnostic.label(first.name.span, "first given here"));
+        }
+    }
+
+    fn deprecated(&mut self, param: &Param, field: &FieldValue) {
+        if param.deprecated.is_empty() {
+            return;
+        }
+        let message = format!("`{}` is now called `{}`", param.name, param.deprecated);
+        self.tell(
+            Diagnostic::warning("E0410", field.name.span, message)
+                .fix(field.name.span, param.deprecated),
+        );
+    }
+
+    fn unknown_param(&mut self, class: &Class, field: &FieldValue) {
+        let mut known: Vec<&str> =
+            Registry::params(class).filter(|p| p.deprecated.is_empty()).map(|p| p.name).collect();
+        if stands_somewhere(class.kind) {
+            known.push("transform");
+        }
+        if class.kind == Kind::Importer {
+            known.push("materials");
+        }
+        self.unknown(field, &format!("{} {}", class.kind, class.name), &known);
+    }
+
+    fn unknown(&mut self, field: &FieldValue, what: &str, known: &[&str]) {
+        let name = &field.name;
+        let message = format!("`{what}` has no parameter `{}`", name.text);
+        let mut found = Diagnostic::error("E0402", name.span, message);
+        if let Some(near) = nearest(&name.text, known.iter().copied()) {
+            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        }
+        self.tell(found.help(format!("known are {}", known.join(", "))));
+    }
+
+    /// Checks that what must be given is given, and groups exactly once.
+    fn complete(&mut self, class: &Class, head: &Head, fields: &[FieldValue]) {
+        let given = |name: &str| fields.iter().find(|f| &*f.name.text == name);
+        let missing = |params: &[&str]| params.join("`, `");
+        let mut absent = vec![];
+        let mut groups: Vec<&'static str> = vec![];
+        for param in Registry::params(class) {
+            if param.required && param.group.is_empty() && given(param.name).is_none() {
+                absent.push(param.name);
+            }
+            if !param.group.is_empty() && !groups.contains(&param.group) {
+                groups.push(param.group);
+            }
+        }
+        for name in absent {
+            let unit = name == "unit" && class.kind == Kind::Importer;
+            let what = format!("{} {}", class.kind, class.name);
+            let found = if unit {
+                let message = format!("`{what}` does not say how long its unit is");
+                Diagnostic::error("E0415", head.class.span, message)
+                    .help("give `unit = 1 m`, `1 cm` or `1 mm`, as the file was made")
+            } else {
+                let message = format!("`{what}` wants `{name}`");
+                let found = Diagnostic::error("E0403", head.class.span, message);
+                let param = Registry::params(class).find(|p| p.name == name);
+                match param {
+                    Some(param) => {
+                        found.help(format!("`{name}` is {}", luxel_core::scene::wanted(param)))
+                    }
+                    None => found,
+                }
+            };
+            self.tell(found);
+        }
+        for group in groups {
+            let members: Vec<&str> =
+                Registry::params(class).filter(|p| p.group == group).map(|p| p.name).collect();
+            let chosen: Vec<&Name> =
+                members.iter().filter_map(|m| given(m)).map(|f| &f.name).collect();
+            if let [first, second, ..] = chosen[..] {
+                let (a, b) = (&first.text, &second.text);
+                let message = format!("`{a}` and `{b}` are both given; only one can be");
+                let found = Diagnostic::error("E0406", second.span, message);
+                self.tell(found.label(first.span, "first given here"));
+            } else if chosen.is_empty() && !members.contains(&"scale") {
+                let message = format!("one of `{}` is wanted", missing(&members));
+                self.tell(Diagnostic::error("E0403", head.class.span, message));
+            }
+        }
+    }
+}
+
+/// Whether objects of a kind stand in the scene and so take a `transform`.
+fn stands_somewhere(kind: Kind) -> bool {
+    matches!(kind, Kind::Shape | Kind::Light | Kind::Importer)
+}
+
+/// Fields with some given anew, which take the place of old ones.
+pub(super) fn merged(old: &[FieldValue], new: Vec<FieldValue>) -> Vec<FieldValue> {
+    let kept = old.iter().filter(|f| !new.iter().any(|n| n.name.text == f.name.text));
+    let mut out: Vec<FieldValue> = kept.cloned().collect();
+    out.extend(new);
+    out
+}

@@ -1,0 +1,247 @@
+//! Operators, with checked dimensions.
+
+use luxel_core::diag::{Diagnostic, Span};
+use luxel_sdk::params::Dimension;
+
+use super::Evaluator;
+use super::env::Env;
+use super::value::{Range, Value};
+use crate::syntax::{Expr, Form, Op};
+
+impl Evaluator<'_> {
+    /// Operands of one precedence, from left to right; powers from right to left.
+    pub(super) fn chain(&mut self, first: &Expr, rest: &[(Op, Span, Expr)], env: &Env) -> Value {
+        if rest.first().is_some_and(|(op, ..)| *op == Op::Pow) {
+            return self.powers(first, rest, env);
+        }
+        let mut value = self.eval(first, env);
+        for (op, _, operand) in rest {
+            let decided = match (op, &value) {
+                (Op::And, Value::Bool(false)) => Some(Value::Bool(false)),
+                (Op::Or, Value::Bool(true)) => Some(Value::Bool(true)),
+                _ => None,
+            };
+            value = match decided {
+                Some(decided) => decided,
+                None => {
+                    let right = self.eval(operand, env);
+                    self.binary(*op, value, right, first.span.to(operand.span))
+                }
+            };
+        }
+        value
+    }
+
+    fn powers(&mut self, first: &Expr, rest: &[(Op, Span, Expr)], env: &Env) -> Value {
+        let mut values = vec![self.eval(first, env)];
+        values.extend(rest.iter().map(|(_, _, operand)| self.eval(operand, env)));
+        let end = rest.last().map_or(first.span, |(_, _, last)| last.span);
+        let span = first.span.to(end);
+        let mut exponent = values.pop().unwrap_or(Value::Poison);
+        while let Some(base) = values.pop() {
+            exponent = self.binary(Op::Pow, base, exponent, span);
+        }
+        exponent
+    }
+
+    /// `-x` and `!x`.
+    pub(super) fn unary(&mut self, op: Op, value: Value, span: Span) -> Value {
+        match (op, value) {
+            (_, Value::Poison) => Value::Poison,
+            (Op::Not, Value::Bool(value)) => Value::Bool(!value),
+            (Op::Sub, Value::Number(x, dimension)) => Value::Number(-x, dimension),
+            (Op::Sub, value @ (Value::Numbers(_) | Value::Items(_))) => {
+                self.binary(Op::Mul, Value::plain(-1.0), value, span)
+            }
+            (op, value) => {
+                let message = format!("`{}` does not apply to {}", op.token(), value.describe());
+                self.poison("E0214", span, message)
+            }
+        }
+    }
+
+    /// One operator between two values.
+    pub(super) fn binary(&mut self, op: Op, a: Value, b: Value, span: Span) -> Value {
+        let (a, b) = (flat_vector(a), flat_vector(b));
+        match (op, &a, &b) {
+            (_, Value::Poison, _) | (_, _, Value::Poison) => Value::Poison,
+            (Op::And, Value::Bool(a), Value::Bool(b)) => Value::Bool(*a && *b),
+            (Op::Or, Value::Bool(a), Value::Bool(b)) => Value::Bool(*a || *b),
+            (_, Value::Number(x, dx), Value::Number(y, dy)) => {
+                self.numbers(op, (*x, *dx), (*y, *dy), span)
+            }
+            (Op::Eq | Op::Ne, ..) => self.equality(op, &a, &b, span),
+            (Op::Mul, Value::Number(..), Value::Numbers(v)) if v.form == Form::Tuple => {
+                self.vector_scaled(op, &b, &a, span)
+            }
+            (Op::Mul | Op::Div, Value::Numbers(v), Value::Number(..)) if v.form == Form::Tuple => {
+                self.vector_scaled(op, &a, &b, span)
+            }
+            (Op::Add | Op::Sub, Value::Numbers(v), Value::Numbers(w))
+                if v.form == Form::Tuple && w.form == Form::Tuple =>
+            {
+                self.vector_sum(op, &a, &b, span)
+            }
+            (Op::Mul, Value::Number(x, d), Value::Color(c, dc))
+            | (Op::Mul, Value::Color(c, dc), Value::Number(x, d)) => {
+                Value::Color(c.scaled(*x), *dc * *d)
+            }
+            (Op::Div, Value::Color(c, dc), Value::Number(x, d)) => {
+                let factor = 1.0 / x;
+                if !factor.is_finite() {
+                    return self.poison("E0209", span, "division by zero");
+                }
+                Value::Color(c.scaled(factor), *dc / *d)
+            }
+            _ => self.no_operator(op, &a, &b, span),
+        }
+    }
+
+    fn no_operator(&mut self, op: Op, a: &Value, b: &Value, span: Span) -> Value {
+        let (a, b) = (a.describe(), b.describe());
+        self.poison("E0214", span, format!("`{}` does not join {a} and {b}", op.token()))
+    }
+
+    fn equality(&mut self, op: Op, a: &Value, b: &Value, span: Span) -> Value {
+        let equal = match (a, b) {
+            (Value::Bool(a), Value::Bool(b)) => a == b,
+            (Value::Text(a), Value::Text(b)) => a == b,
+            (Value::Numbers(a), Value::Numbers(b)) if a.dimension == b.dimension => {
+                a.data == b.data
+            }
+            _ => return self.no_operator(op, a, b, span),
+        };
+        Value::Bool(equal == (op == Op::Eq))
+    }
+
+    fn numbers(
+        &mut self,
+        op: Op,
+        (x, dx): (f64, Dimension),
+        (y, dy): (f64, Dimension),
+        span: Span,
+    ) -> Value {
+        let alike = !matches!(op, Op::Mul | Op::Div | Op::Pow | Op::And | Op::Or);
+        if alike && dx != dy {
+            return self.mismatch(op, dx, dy, span);
+        }
+        let (value, dimension) = match op {
+            Op::Add => (x + y, dx),
+            Op::Sub => (x - y, dx),
+            Op::Mul => (x * y, dx * dy),
+            Op::Div | Op::Rem if y.abs() <= 0.0 => {
+                return self.poison("E0209", span, "division by zero");
+            }
+            Op::Div => (x / y, dx / dy),
+            Op::Rem => (x.rem_euclid(y), dx),
+            Op::Pow => match power_dimension(dx, y, dy) {
+                Some(dimension) => (x.powf(y), dimension),
+                None => {
+                    let message = "an exponent is a plain number, whole where the base has a unit";
+                    return self.poison("E0203", span, message);
+                }
+            },
+            Op::Range | Op::RangeTo => {
+                let inclusive = op == Op::RangeTo;
+                return Value::Range(Range { start: x, end: y, inclusive, dimension: dx });
+            }
+            Op::Lt => return Value::Bool(x < y),
+            Op::Le => return Value::Bool(x <= y),
+            Op::Gt => return Value::Bool(x > y),
+            Op::Ge => return Value::Bool(x >= y),
+            Op::Eq => return Value::Bool(x.total_cmp(&y).is_eq() || (x <= y && y <= x)),
+            Op::Ne => return Value::Bool(x < y || y < x),
+            _ => return self.no_operator(op, &Value::Number(x, dx), &Value::Number(y, dy), span),
+        };
+        self.finite(value, dimension, span)
+    }
+
+    /// A number, or a told mistake where it is none.
+    pub(super) fn finite(&mut self, x: f64, dimension: Dimension, span: Span) -> Value {
+        if x.is_finite() {
+            return Value::Number(x, dimension);
+        }
+        self.poison("E0209", span, "the result is not a finite number")
+    }
+
+    fn mismatch(&mut self, op: Op, a: Dimension, b: Dimension, span: Span) -> Value {
+        let message = format!("`{}` joins {} and {}", op.token(), a.name(), b.name());
+        let mut diagnostic = Diagnostic::error("E0203", span, message);
+        if a.is_none() || b.is_none() {
+            diagnostic = diagnostic.help("give the bare number a unit");
+        }
+        self.tell(diagnostic);
+        Value::Poison
+    }
+
+    fn vector_scaled(&mut self, op: Op, vector: &Value, by: &Value, span: Span) -> Value {
+        let (Value::Numbers(v), Value::Number(x, d)) = (vector, by) else { return Value::Poison };
+        if !self.tick(v.data.len() as u64, span) {
+            return Value::Poison;
+        }
+        let divide = op == Op::Div;
+        let dimension = if divide { v.dimension / *d } else { v.dimension * *d };
+        let data: Vec<f64> = v.data.iter().map(|y| if divide { y / x } else { y * x }).collect();
+        self.finite_vector(data, dimension, span)
+    }
+
+    fn vector_sum(&mut self, op: Op, a: &Value, b: &Value, span: Span) -> Value {
+        let (Value::Numbers(v), Value::Numbers(w)) = (a, b) else { return Value::Poison };
+        if v.data.len() != w.data.len() {
+            return self.poison("E0207", span, "vectors of different lengths");
+        }
+        if v.dimension != w.dimension {
+            return self.mismatch(op, v.dimension, w.dimension, span);
+        }
+        if !self.tick(v.data.len() as u64, span) {
+            return Value::Poison;
+        }
+        let sum = |(x, y): (&f64, &f64)| if op == Op::Add { x + y } else { x - y };
+        let data: Vec<f64> = v.data.iter().zip(w.data.iter()).map(sum).collect();
+        self.finite_vector(data, v.dimension, span)
+    }
+
+    fn finite_vector(&mut self, data: Vec<f64>, dimension: Dimension, span: Span) -> Value {
+        if data.iter().all(|x| x.is_finite()) {
+            return Value::numbers(data, dimension, Form::Tuple);
+        }
+        self.poison("E0209", span, "the result is not finite")
+    }
+}
+
+/// A vector in which bare zeros stand beside numbers of one dimension, made one of that dimension.
+fn flat_vector(value: Value) -> Value {
+    let Value::Items(items) = &value else { return value };
+    if items.form != Form::Tuple {
+        return value;
+    }
+    match with_zeros(&items.items) {
+        Some((data, dimension)) => Value::numbers(data, dimension, Form::Tuple),
+        None => value,
+    }
+}
+
+/// Numbers of one dimension among which bare zeros may stand.
+pub(super) fn with_zeros(items: &[Value]) -> Option<(Vec<f64>, Dimension)> {
+    let dimension = items.iter().find_map(|item| match item {
+        Value::Number(_, d) if !d.is_none() => Some(*d),
+        _ => None,
+    })?;
+    let number = |item: &Value| match item {
+        Value::Number(x, d) if *d == dimension || (d.is_none() && x.abs() <= 0.0) => Some(*x),
+        _ => None,
+    };
+    Some((items.iter().map(number).collect::<Option<_>>()?, dimension))
+}
+
+fn power_dimension(base: Dimension, exponent: f64, of_exponent: Dimension) -> Option<Dimension> {
+    if !of_exponent.is_none() {
+        return None;
+    }
+    if base.is_none() {
+        return Some(base);
+    }
+    let whole = exponent.fract().abs() <= 0.0 && exponent.abs() <= 9.0;
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number up to 9")]
+    whole.then(|| base.powi(exponent as i8)).flatten()
+}

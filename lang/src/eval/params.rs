@@ -1,0 +1,268 @@
+//! `param`, `--set` and `set`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+use std::sync::Arc;
+
+use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::scene::NodeId;
+
+use super::Evaluator;
+use super::emit::Set;
+use super::env::{Env, File, Override};
+use super::finish::children;
+use super::include;
+use super::object::merged;
+use super::value::{FieldValue, ObjectValue, Value, What, show_number};
+use crate::ParamInfo;
+use crate::syntax::{self, Name, ParamDef, StmtNode, Tree};
+
+impl Evaluator<'_> {
+    /// The value of a declared parameter: from outside, or its default.
+    pub(super) fn param(&mut self, def: &ParamDef, env: &Env) -> Value {
+        let range = def.range.as_ref().map(|range| (self.eval(range, env), range.span));
+        let own = self.eval(&def.value, env);
+        let own = self.fit(&def.ty, own, def.value.span, env);
+        self.in_range(def, &own, range.as_ref(), def.value.span, "E0405");
+        if env.file.is_root {
+            self.declare(def);
+        }
+        let Some(given) = env.file.overrides.get(&def.name.text).cloned() else { return own };
+        let before = self.sink.errors();
+        let code = if env.file.is_root { Some("E0112") } else { None };
+        let value = self.fit_setting(def, &given, env, code);
+        self.in_range(def, &value, range.as_ref(), given.span, code.unwrap_or("E0405"));
+        if self.sink.errors() > before { Value::Poison } else { value }
+    }
+
+    /// Fits a value from outside; from the command line every misfit is an E0112.
+    fn fit_setting(
+        &mut self,
+        def: &ParamDef,
+        given: &Override,
+        env: &Env,
+        code: Option<&'static str>,
+    ) -> Value {
+        let Some(code) = code else {
+            return self.fit(&def.ty, given.value.clone(), given.span, env);
+        };
+        let mut trial = crate::sink::Sink::new(usize::MAX);
+        std::mem::swap(&mut self.sink, &mut trial);
+        let value = self.fit(&def.ty, given.value.clone(), given.span, env);
+        std::mem::swap(&mut self.sink, &mut trial);
+        for mut diagnostic in trial.finish() {
+            diagnostic.code = code;
+            let text = self.sources.text(def.ty.name.span.source);
+            let ty = text.get(def.ty.name.span.range()).unwrap_or_default();
+            let help = format!("`{}` is declared as {ty}", def.name.text);
+            self.tell(diagnostic.label(def.name.span, "declared here").help(help));
+        }
+        value
+    }
+
+    fn in_range(
+        &mut self,
+        def: &ParamDef,
+        value: &Value,
+        range: Option<&(Value, Span)>,
+        span: Span,
+        code: &'static str,
+    ) {
+        let Some((range, range_span)) = range else { return };
+        let Value::Range(range) = range else {
+            if !range.is_poison() {
+                self.poison("E0214", *range_span, "a range is wanted, as `1..=200`");
+            }
+            return;
+        };
+        let Value::Number(x, dimension) = value else { return };
+        if *dimension != range.dimension {
+            let message = format!(
+                "the range is of {}, the parameter {}",
+                range.dimension.name(),
+                dimension.name()
+            );
+            self.poison("E0203", *range_span, message);
+        } else if !range.contains(*x) {
+            let message = format!(
+                "`{}` is {}; it must be from {} to {}",
+                def.name.text,
+                show_number(*x, *dimension),
+                show_number(range.start, range.dimension),
+                show_number(range.end, range.dimension),
+            );
+            self.tell(Diagnostic::error(code, span, message).label(*range_span, "declared here"));
+        }
+    }
+
+    fn declare(&mut self, def: &ParamDef) {
+        let text = |span: Span| {
+            let text = self.sources.text(span.source);
+            text.get(span.range()).unwrap_or_default().to_owned()
+        };
+        let dimension = super::types::dimension(&def.ty.name.text).unwrap_or_default();
+        let info = ParamInfo {
+            name: def.name.text.to_string(),
+            ty: def.ty.name.text.to_string(),
+            unit: if dimension.is_none() { String::new() } else { dimension.to_string() },
+            doc: def.doc.clone(),
+            default: text(def.value.span),
+            range: def.range.as_ref().map(|range| text(range.span)),
+            span: def.name.span,
+        };
+        self.params.push(info);
+    }
+
+    /// Reads `--set name=value` against the parameters that the root file declares.
+    pub(super) fn settings(
+        &mut self,
+        tree: &Tree,
+        set: &[(String, String)],
+    ) -> BTreeMap<Arc<str>, Override> {
+        let mut out = BTreeMap::new();
+        for (name, value) in set {
+            let text: Arc<str> = format!("{name}={value}").into();
+            let source = self.sources.add("--set", text.clone());
+            let span = Span::new(source, name.len() + 1, text.len());
+            let def = tree.stmts.iter().find_map(|stmt| match &stmt.node {
+                StmtNode::Param(def) if *def.name.text == **name => Some(def.clone()),
+                _ => None,
+            });
+            let Some(def) = def else {
+                self.no_setting(tree, name, Span::new(source, 0, name.len()));
+                continue;
+            };
+            let is_text = &*def.ty.name.text == "string" && !value.trim_start().starts_with('"');
+            let value = if is_text {
+                Value::Text(value.as_str().into())
+            } else {
+                self.setting(&def, &text, span)
+            };
+            out.insert(def.name.text.clone(), Override { value, span });
+        }
+        out
+    }
+
+    /// The value of an expression on the command line, which may name constants alone.
+    fn setting(&mut self, def: &ParamDef, text: &str, span: Span) -> Value {
+        let mut trial = crate::sink::Sink::new(usize::MAX);
+        let expr =
+            syntax::parse_expr(text, span.range().start, span.source, &self.budgets, &mut trial);
+        let mut value = Value::Poison;
+        if let Some(expr) = expr.filter(|expr| super::resolve::is_constant(expr)) {
+            std::mem::swap(&mut self.sink, &mut trial);
+            let file = File {
+                folder: std::path::PathBuf::new(),
+                units: BTreeMap::new(),
+                overrides: BTreeMap::new(),
+                is_root: false,
+            };
+            value = self.eval(&expr, &Env::new(Rc::new(file)));
+            std::mem::swap(&mut self.sink, &mut trial);
+        }
+        if value.is_poison() {
+            let shown = text.get(span.range()).unwrap_or_default();
+            let message = format!("`{shown}` is not a value for `{}`", def.name.text);
+            let declared = self.sources.text(def.ty.name.span.source);
+            let ty = declared.get(def.ty.name.span.range()).unwrap_or_default();
+            let mut found = Diagnostic::error("E0112", span, message);
+            found = found.label(def.name.span, "declared here");
+            found = found.help(format!("`{}` is declared as {ty}", def.name.text));
+            if let Some(range) = &def.range {
+                let range = declared.get(range.span.range()).unwrap_or_default();
+                found = found.help(format!("it must be in {range}"));
+            }
+            self.tell(found);
+        }
+        value
+    }
+
+    fn no_setting(&mut self, tree: &Tree, name: &str, span: Span) {
+        let message = format!("the scene declares no parameter `{name}`");
+        let mut found = Diagnostic::error("E0111", span, message);
+        let known: Vec<&str> = include::params(tree).map(|p| &*p.text).collect();
+        if let Some(near) = nearest(name, known.iter().copied()) {
+            found = found.help(format!("did you mean `{near}`?")).fix(span, near);
+        }
+        let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        self.tell(found.help(format!("declared are {list}")));
+    }
+
+    /// `set label.field = value`: kept until the scene is complete.
+    pub(super) fn set(&mut self, path: &[Name], value: Value, span: Span, env: &Env) {
+        let [label, field] = path else {
+            let place = path[0].span.to(path[path.len() - 1].span);
+            let message = "`set` changes a field of a labelled object: `set label.field = value`";
+            self.poison("E0109", place, message);
+            return;
+        };
+        let field = FieldValue { name: field.clone(), value, span, file: env.file.clone() };
+        self.labels.sets.push(Set { label: label.clone(), field });
+    }
+
+    /// Changes what `set` names; each object is checked against its schema again.
+    pub(super) fn apply_sets(&mut self) {
+        for set in std::mem::take(&mut self.labels.sets) {
+            let Some(objects) = self.labels.objects.get(&set.label.text).cloned() else {
+                if !self.damaged {
+                    self.no_label(&set.label);
+                }
+                continue;
+            };
+            let changed: Vec<Option<Rc<ObjectValue>>> = objects
+                .into_iter()
+                .map(|object| object.and_then(|object| self.changed(&object, &set)))
+                .collect();
+            self.labels.objects.insert(set.label.text.clone(), changed);
+        }
+    }
+
+    fn changed(&mut self, object: &ObjectValue, set: &Set) -> Option<Rc<ObjectValue>> {
+        let placed = &*set.field.name.text == "transform";
+        let What::Node(old, _) = object.what else {
+            let message = "a group's own fields cannot be changed by `set`";
+            self.poison("E0109", set.label.span, message);
+            return None;
+        };
+        if placed {
+            let message = "`set` does not move things: wrap them in a group or use a `param`";
+            self.poison("E0109", set.field.name.span, message);
+            return None;
+        }
+        let fields = merged(&object.fields, vec![set.field.clone()]);
+        let Value::Object(changed) = self.build(&object.head, fields) else { return None };
+        let What::Node(new, kind) = changed.what else { return None };
+        if self.holds(new, old) {
+            let message = format!("\"{}\" would stand in itself", set.label.text);
+            self.poison("E0109", set.field.span, message);
+            return None;
+        }
+        // The new node takes the place of the old one: they swap numbers.
+        self.scene.nodes.swap(old.0 as usize, new.0 as usize);
+        let what = What::Node(old, kind);
+        Some(Rc::new(ObjectValue { what, ..(*changed).clone() }))
+    }
+
+    /// Whether a node holds another one, at any depth.
+    fn holds(&self, outer: NodeId, inner: NodeId) -> bool {
+        let (mut open, mut seen) = (vec![outer], BTreeSet::new());
+        while let Some(id) = open.pop() {
+            if id == inner {
+                return true;
+            }
+            if seen.insert(id) {
+                open.extend(children(self.scene.node(id)));
+            }
+        }
+        false
+    }
+
+    fn no_label(&mut self, label: &Name) {
+        let message = format!("nothing in the scene is labelled \"{}\"", label.text);
+        let mut found = Diagnostic::error("E0109", label.span, message);
+        if let Some(near) = nearest(&label.text, self.labels.objects.keys().map(|l| &**l)) {
+            found = found.help(format!("did you mean `{near}`?")).fix(label.span, near);
+        }
+        self.tell(found.help("a label is the text after the kind: `shape sphere \"ball\" { … }`"));
+    }
+}

@@ -1,0 +1,407 @@
+//! Names before evaluation: every use has a definition before it, in the branches not taken too.
+//!
+//! After this, an unknown name is poison that says nothing more.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_sdk::params::Unit;
+
+use super::{builtins, types};
+use crate::sink::Sink;
+use crate::syntax::{
+    Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
+};
+
+/// Tells every name that is unknown, used too early or defined twice.
+pub(super) fn resolve(tree: &Tree, sink: &mut Sink) {
+    let mut resolver = Resolver { sink, scopes: vec![], functions: vec![] };
+    resolver.block(&tree.stmts, &[]);
+}
+
+/// Whether an expression names nothing but what every scene has, and makes no object.
+pub(super) fn is_constant(expr: &Expr) -> bool {
+    let mut sink = Sink::new(usize::MAX);
+    let mut resolver = Resolver { sink: &mut sink, scopes: vec![], functions: vec![] };
+    resolver.scopes.push(Scope::default());
+    resolver.expr(expr);
+    sink.errors() == 0
+}
+
+/// The names of one block.
+#[derive(Default)]
+struct Scope {
+    names: BTreeMap<Arc<str>, Span>,
+    /// Every name that the block defines anywhere.
+    later: BTreeMap<Arc<str>, Span>,
+    /// What the functions of the block mention.
+    mentions: BTreeMap<Arc<str>, BTreeSet<Arc<str>>>,
+    labels: BTreeMap<Arc<str>, Span>,
+}
+
+struct Resolver<'a> {
+    sink: &'a mut Sink,
+    scopes: Vec<Scope>,
+    /// The functions whose bodies are being read.
+    functions: Vec<Name>,
+}
+
+/// The name that a statement defines.
+fn defines(stmt: &Stmt) -> Option<&Name> {
+    match &stmt.node {
+        StmtNode::Let { name, .. } | StmtNode::Import { name, .. } => Some(name),
+        StmtNode::Param(def) => Some(&def.name),
+        StmtNode::Fn(def) => Some(&def.name),
+        StmtNode::Broken { defines } => defines.as_ref(),
+        _ => None,
+    }
+}
+
+impl Resolver<'_> {
+    fn block(&mut self, stmts: &[Stmt], names: &[&Name]) {
+        let mut scope = Scope::default();
+        for stmt in stmts.iter().filter(|stmt| !stmt.is_off()) {
+            if let Some(name) = defines(stmt) {
+                scope.later.entry(name.text.clone()).or_insert(name.span);
+            }
+            if let StmtNode::Fn(def) = &stmt.node {
+                let mut mentions = BTreeSet::new();
+                mention_body(def, &mut mentions);
+                scope.mentions.insert(def.name.text.clone(), mentions);
+            }
+        }
+        self.scopes.push(scope);
+        for name in names {
+            self.define(name);
+        }
+        for stmt in stmts {
+            self.stmt(stmt);
+        }
+        self.scopes.pop();
+    }
+
+    fn define(&mut self, name: &Name) {
+        if let Some(unit) = Unit::named(&name.text) {
+            let message = format!(
+                "`{}` is a unit ({}) and cannot be a name",
+                name.text,
+                unit.dimension.name()
+            );
+            self.sink.push(
+                Diagnostic::error("E0104", name.span, message)
+                    .help(format!("choose a longer name, as `{}_`", name.text)),
+            );
+        }
+        let Some(scope) = self.scopes.last_mut() else { return };
+        if let Some(first) = scope.names.get(&name.text) {
+            let message = format!("`{}` is defined twice", name.text);
+            self.sink.push(
+                Diagnostic::error("E0103", name.span, message).label(*first, "first defined here"),
+            );
+            return;
+        }
+        scope.names.insert(name.text.clone(), name.span);
+    }
+
+    fn stmt(&mut self, stmt: &Stmt) {
+        match &stmt.node {
+            StmtNode::Let { name, ty, value } => {
+                self.expr(value);
+                ty.iter().for_each(|ty| self.ty(ty));
+                self.define_on(stmt, name);
+            }
+            StmtNode::Param(def) => {
+                self.ty(&def.ty);
+                self.expr(&def.value);
+                def.range.iter().for_each(|range| self.expr(range));
+                self.define_on(stmt, &def.name);
+            }
+            StmtNode::Fn(def) => {
+                self.function(def);
+                self.define_on(stmt, &def.name);
+            }
+            StmtNode::For { index, item, over, body } => {
+                self.expr(over);
+                let names: Vec<&Name> = index.iter().chain([item]).collect();
+                self.scoped(&names, |this| this.block(&body.stmts, &[]));
+            }
+            StmtNode::If { arms, otherwise } => {
+                for (cond, block) in arms {
+                    self.expr(cond);
+                    self.block(&block.stmts, &[]);
+                }
+                otherwise.iter().for_each(|block| self.block(&block.stmts, &[]));
+            }
+            StmtNode::Include { with, .. } => self.fields(with),
+            StmtNode::Import { name, .. } => self.define_on(stmt, name),
+            StmtNode::Place { what, label, body } => {
+                self.expr(what);
+                self.label(stmt, label.as_ref());
+                body.iter().for_each(|block: &Block| self.block(&block.stmts, &[]));
+            }
+            StmtNode::Set { value, .. } => self.expr(value),
+            StmtNode::Assert { cond, .. } => self.expr(cond),
+            StmtNode::Units(_) => {}
+            StmtNode::Field(field) => self.expr(&field.value),
+            StmtNode::Object(object) => {
+                self.label(stmt, object.label.as_ref());
+                self.object(object);
+            }
+            StmtNode::Call(call) => self.expr(call),
+            StmtNode::Broken { defines } => {
+                if let (Some(name), Some(scope)) = (defines, self.scopes.last_mut()) {
+                    scope.names.entry(name.text.clone()).or_insert(name.span);
+                }
+            }
+        }
+    }
+
+    /// Defines a name, unless the statement is off.
+    fn define_on(&mut self, stmt: &Stmt, name: &Name) {
+        if !stmt.is_off() {
+            self.define(name);
+        }
+    }
+
+    /// Two objects of a block must not share a label.
+    fn label(&mut self, stmt: &Stmt, label: Option<&Name>) {
+        let (Some(label), Some(scope)) = (label, self.scopes.last_mut()) else { return };
+        if stmt.is_off() {
+            return;
+        }
+        if let Some(first) = scope.labels.insert(label.text.clone(), label.span) {
+            let message = format!("the label \"{}\" is used twice", label.text);
+            self.sink.push(
+                Diagnostic::error("E0110", label.span, message).label(first, "first used here"),
+            );
+        }
+    }
+
+    fn scoped(&mut self, names: &[&Name], inside: impl FnOnce(&mut Self)) {
+        self.scopes.push(Scope::default());
+        for name in names {
+            self.define(name);
+        }
+        inside(self);
+        self.scopes.pop();
+    }
+
+    fn function(&mut self, def: &FnDef) {
+        let names: Vec<&Name> = def.params.iter().map(|p| &p.name).collect();
+        for param in &def.params {
+            self.ty(&param.ty);
+        }
+        self.functions.push(def.name.clone());
+        self.scopes.push(Scope::default());
+        for (i, param) in def.params.iter().enumerate() {
+            param.default.iter().for_each(|value| self.expr(value));
+            self.define(names[i]);
+        }
+        match &def.body {
+            FnBody::Value(value) => self.expr(value),
+            FnBody::Template(block) => self.block(&block.stmts, &[]),
+        }
+        self.scopes.pop();
+        self.functions.pop();
+    }
+
+    fn object(&mut self, object: &Object) {
+        self.block(&object.body.stmts, &[]);
+    }
+
+    fn fields(&mut self, fields: &[Field]) {
+        fields.iter().for_each(|field| self.expr(&field.value));
+    }
+
+    fn ty(&mut self, ty: &Ty) {
+        if types::names().any(|known| known == &*ty.name.text) {
+            return;
+        }
+        let message = format!("there is no type `{}`", ty.name.text);
+        let mut found = Diagnostic::error("E0215", ty.name.span, message);
+        if let Some(near) = types::nearest_type(&ty.name.text) {
+            found = found.help(format!("did you mean `{near}`?")).fix(ty.name.span, near);
+        }
+        let known: Vec<_> = types::names().collect();
+        self.sink.push(found.help(format!("known are {}", known.join(", "))));
+    }
+
+    fn expr(&mut self, expr: &Expr) {
+        match &expr.node {
+            ExprNode::Path(path) => self.path(path, expr.span),
+            ExprNode::Object(object) => self.object(object),
+            ExprNode::Comp(comp) => self.comp(comp),
+            _ => {
+                let mut inner = vec![];
+                children(expr, &mut |child| inner.push(child));
+                inner.into_iter().for_each(|child| self.expr(child));
+            }
+        }
+    }
+
+    fn comp(&mut self, comp: &Comp) {
+        self.expr(&comp.over);
+        let names: Vec<&Name> = comp.index.iter().chain([&comp.item]).collect();
+        self.scoped(&names, |this| {
+            comp.filter.iter().for_each(|filter| this.expr(filter));
+            this.expr(&comp.value);
+        });
+    }
+
+    fn path(&mut self, path: &[Name], span: Span) {
+        let Some(first) = path.first() else { return };
+        if self.scopes.iter().any(|scope| scope.names.contains_key(&first.text)) {
+            return;
+        }
+        let words: Vec<&str> = path.iter().map(|name| &*name.text).collect();
+        let joined = words.join(".");
+        if builtins::value(&joined).is_some() {
+            return;
+        }
+        let diagnostic = match self.later(first) {
+            Some(found) => found,
+            None => self.unknown(first, &joined, span),
+        };
+        self.sink.push(diagnostic);
+    }
+
+    /// A name that is defined later in a block around the place.
+    fn later(&self, name: &Name) -> Option<Diagnostic> {
+        let scope = self.scopes.iter().rev().find(|s| s.later.contains_key(&name.text))?;
+        let place = scope.later.get(&name.text)?;
+        if let Some(cycle) = self.functions.iter().find_map(|f| circle(scope, f, name)) {
+            let message = format!("a function may not call itself: {}", cycle.join(" → "));
+            let found = Diagnostic::error("E0105", name.span, message);
+            return Some(
+                found
+                    .label(*place, "defined here")
+                    .help("use a loop over a range; a function sees only what stands before it"),
+            );
+        }
+        let message = format!("`{}` is used before it is defined", name.text);
+        let found = Diagnostic::error("E0102", name.span, message);
+        Some(found.label(*place, "defined here"))
+    }
+
+    fn unknown(&self, name: &Name, joined: &str, span: Span) -> Diagnostic {
+        let dotted = builtins::names()
+            .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
+        let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };
+        let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
+        let mut known: Vec<&str> = builtins::names().collect();
+        known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
+        if let Some(near) = nearest(shown, known.iter().copied()) {
+            found = found.help(format!("did you mean `{near}`?")).fix(place, near);
+        } else {
+            found = found.help("text is written in quotes: \"…\"");
+        }
+        found
+    }
+}
+
+/// The chain of functions from `from` over `name` back to `from`, if there is one.
+fn circle(scope: &Scope, from: &Name, name: &Name) -> Option<Vec<String>> {
+    let mut seen = BTreeSet::new();
+    let mut open = vec![vec![name.text.clone()]];
+    while let Some(chain) = open.pop() {
+        let last = chain.last()?;
+        if *last == from.text {
+            let start = format!("`{}`", from.text);
+            return Some(
+                std::iter::once(start).chain(chain.iter().map(|n| format!("`{n}`"))).collect(),
+            );
+        }
+        if seen.insert(last.clone()) {
+            let next = scope.mentions.get(last).into_iter().flatten();
+            open.extend(next.filter(|n| scope.mentions.contains_key(*n)).map(|n| {
+                let mut longer = chain.clone();
+                longer.push(n.clone());
+                longer
+            }));
+        }
+    }
+    None
+}
+
+/// Calls `each` on the expressions inside an expression, but not on those in objects.
+fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
+    match &expr.node {
+        ExprNode::Items { items, .. } => items.iter().for_each(each),
+        ExprNode::Paren { inner, .. } | ExprNode::Unary { inner, .. } => each(inner),
+        ExprNode::Comp(comp) => {
+            each(&comp.over);
+            comp.filter.iter().for_each(&mut *each);
+            each(&comp.value);
+        }
+        ExprNode::If { arms, otherwise } => {
+            for (cond, value) in arms {
+                each(cond);
+                each(value);
+            }
+            each(otherwise);
+        }
+        ExprNode::Record(fields) => fields.iter().for_each(|field| each(&field.value)),
+        ExprNode::Chain { first, rest } => {
+            each(first);
+            rest.iter().for_each(|(_, _, operand)| each(operand));
+        }
+        ExprNode::Call { callee, args } => {
+            each(callee);
+            args.iter().for_each(|arg| each(&arg.value));
+        }
+        ExprNode::Index { of, at } => {
+            each(of);
+            each(at);
+        }
+        ExprNode::Member { of, .. } => each(of),
+        ExprNode::With { of, fields } => {
+            each(of);
+            fields.iter().for_each(|field| each(&field.value));
+        }
+        _ => {}
+    }
+}
+
+fn mention_body(def: &FnDef, out: &mut BTreeSet<Arc<str>>) {
+    match &def.body {
+        FnBody::Value(value) => mention(value, out),
+        FnBody::Template(block) => mention_stmts(&block.stmts, out),
+    }
+}
+
+fn mention(expr: &Expr, out: &mut BTreeSet<Arc<str>>) {
+    match &expr.node {
+        ExprNode::Path(path) => out.extend(path.first().map(|name| name.text.clone())),
+        ExprNode::Object(object) => mention_stmts(&object.body.stmts, out),
+        _ => children(expr, &mut |child| mention(child, out)),
+    }
+}
+
+fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
+    for stmt in stmts {
+        match &stmt.node {
+            StmtNode::Let { value, .. } | StmtNode::Set { value, .. } => mention(value, out),
+            StmtNode::Fn(def) => mention_body(def, out),
+            StmtNode::For { over, body, .. } => {
+                mention(over, out);
+                mention_stmts(&body.stmts, out);
+            }
+            StmtNode::If { arms, otherwise } => {
+                for (cond, block) in arms {
+                    mention(cond, out);
+                    mention_stmts(&block.stmts, out);
+                }
+                otherwise.iter().for_each(|block| mention_stmts(&block.stmts, out));
+            }
+            StmtNode::Place { what, body, .. } => {
+                mention(what, out);
+                body.iter().for_each(|block| mention_stmts(&block.stmts, out));
+            }
+            StmtNode::Assert { cond: value, .. } | StmtNode::Call(value) => mention(value, out),
+            StmtNode::Field(field) => mention(&field.value, out),
+            StmtNode::Object(object) => mention_stmts(&object.body.stmts, out),
+            _ => {}
+        }
+    }
+}

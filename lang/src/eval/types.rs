@@ -1,0 +1,186 @@
+//! Types that a scene file writes, and whether values fit them.
+
+use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::Dimension;
+
+use super::Evaluator;
+use super::env::Env;
+use super::value::Value;
+use crate::syntax::{Form, Ty};
+
+/// Types of numbers with what they measure.
+const NUMBERS: [(&str, Dimension); 14] = [
+    ("float", Dimension::NONE),
+    ("number", Dimension::NONE),
+    ("int", Dimension::NONE),
+    ("length", Dimension::LENGTH),
+    ("angle", Dimension::ANGLE),
+    ("time", Dimension::TIME),
+    ("temperature", Dimension::TEMPERATURE),
+    ("power", Dimension::POWER),
+    ("energy", Dimension::ENERGY),
+    ("mass", Dimension::MASS),
+    ("solid_angle", Dimension::SOLID_ANGLE),
+    ("area", Dimension([2, 0, 0, 0, 0, 0, 0])),
+    ("volume", Dimension([3, 0, 0, 0, 0, 0, 0])),
+    ("intensity", Dimension::LUMINOUS),
+];
+
+const OTHERS: [&str; 12] = [
+    "bool",
+    "string",
+    "vec2",
+    "vec3",
+    "color",
+    "spectrum",
+    "transform",
+    "view",
+    "record",
+    "group",
+    "object",
+    "any",
+];
+
+/// Every type's name.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    let kinds = Kind::ALL.iter().map(|(_, word)| *word);
+    NUMBERS.iter().map(|(name, _)| *name).chain(OTHERS).chain(kinds)
+}
+
+/// The type that is nearest to an unknown one.
+pub(super) fn nearest_type(name: &str) -> Option<&'static str> {
+    nearest(name, names())
+}
+
+/// What a type of numbers measures.
+pub(super) fn dimension(name: &str) -> Option<Dimension> {
+    NUMBERS.iter().find(|(known, _)| *known == name).map(|(_, dimension)| *dimension)
+}
+
+impl Evaluator<'_> {
+    /// The value if it fits the type; a bare number takes the file's unit. Else poison, and told.
+    pub(super) fn fit(&mut self, ty: &Ty, value: Value, span: Span, env: &Env) -> Value {
+        if value.is_poison() {
+            return value;
+        }
+        let Some(length) = ty.list else { return self.fit_one(&ty.name.text, value, span, env) };
+        let found = match &value {
+            Value::Numbers(n) if n.form == Form::List => n.data.len(),
+            Value::Items(i) if i.form == Form::List => i.items.len(),
+            _ => return self.unfit(&format!("a list of {}", ty.name.text), &value, span),
+        };
+        if let Some(wanted) = length.filter(|wanted| *wanted != found) {
+            let message = format!("a list of {wanted} is wanted, {found} are given");
+            return self.poison("E0207", span, message);
+        }
+        match &value {
+            Value::Numbers(n) => {
+                let wanted = dimension(&ty.name.text);
+                let fits = wanted.is_some_and(|d| d == n.dimension) || &*ty.name.text == "any";
+                if fits || n.data.is_empty() {
+                    return value;
+                }
+                self.unfit(&format!("a list of {}", ty.name.text), &value, span)
+            }
+            Value::Items(items) => {
+                for item in &items.items {
+                    if self.fit_one(&ty.name.text, item.clone(), span, env).is_poison() {
+                        return Value::Poison;
+                    }
+                }
+                value
+            }
+            _ => value,
+        }
+    }
+
+    fn fit_one(&mut self, ty: &str, value: Value, span: Span, env: &Env) -> Value {
+        if let Some(wanted) = dimension(ty) {
+            return self.fit_number(ty, wanted, value, span, env);
+        }
+        let kind = Kind::of_word(ty);
+        let fits = match (&value, ty) {
+            (_, "any") | (Value::Bool(_), "bool") | (Value::Text(_), "string") => true,
+            (Value::Color(..) | Value::Number(..), "color" | "spectrum") => true,
+            (Value::Transform(_), "transform") | (Value::Look(_), "view") => true,
+            (Value::Record(_), "record") | (Value::Object(_), "object") => true,
+            (Value::Object(object), _) => object.word() == ty,
+            (Value::Numbers(n), "vec2" | "vec3") => {
+                let length = if ty == "vec2" { 2 } else { 3 };
+                if n.data.len() != length {
+                    let message =
+                        format!("a vector of {length} is wanted, {} are given", n.data.len());
+                    return self.poison("E0207", span, message);
+                }
+                true
+            }
+            (Value::Items(i), "vec2") => i.items.len() == 2,
+            (Value::Items(i), "vec3") => i.items.len() == 3,
+            _ => false,
+        };
+        match (fits, &value, kind) {
+            (true, ..) => value,
+            (false, Value::Object(_), Some(_)) => {
+                let message = format!("a {ty} is wanted, {} is given", value.describe());
+                self.poison("E0408", span, message)
+            }
+            // A type that does not exist was told when names were resolved.
+            _ if !names().any(|known| known == ty) => value,
+            _ => self.unfit(&format!("a {ty}"), &value, span),
+        }
+    }
+
+    fn unfit(&mut self, wanted: &str, value: &Value, span: Span) -> Value {
+        let message = format!("{wanted} is wanted, {} is given", value.describe());
+        self.poison("E0214", span, message)
+    }
+
+    fn fit_number(
+        &mut self,
+        ty: &str,
+        wanted: Dimension,
+        value: Value,
+        span: Span,
+        env: &Env,
+    ) -> Value {
+        let Value::Number(x, found) = value else {
+            return self.unfit(&wanted.name(), &value, span);
+        };
+        if found == wanted {
+            if ty == "int" && x.fract().abs() > 0.0 {
+                return self.poison("E0208", span, format!("a whole number is wanted, not {x}"));
+            }
+            return value;
+        }
+        if let (true, Some(scale)) = (found.is_none(), env.file.units.get(&wanted)) {
+            return Value::Number(x * scale, wanted);
+        }
+        if !found.is_none() {
+            let message = format!("{} is wanted, {} is given", wanted.name(), found.name());
+            return self.poison("E0202", span, message);
+        }
+        let message = format!("{} is wanted, the number has no unit", wanted.name());
+        let end = Span { start: span.end, ..span };
+        let mut diagnostic = Diagnostic::error("E0201", span, message).help(
+            "give the number a unit, or state the file's units once: `units { length = mm }`",
+        );
+        for unit in likely_units(wanted) {
+            diagnostic = diagnostic.fix(end, format!(" {unit}"));
+        }
+        self.tell(diagnostic);
+        Value::Poison
+    }
+}
+
+/// The units that people use for a dimension.
+pub(super) fn likely_units(dimension: Dimension) -> &'static [&'static str] {
+    match dimension {
+        Dimension::LENGTH => &["m", "cm", "mm"],
+        Dimension::ANGLE => &["deg", "rad"],
+        Dimension::TIME => &["s", "ms"],
+        Dimension::TEMPERATURE => &["K"],
+        Dimension::POWER => &["W"],
+        _ => &[],
+    }
+}

@@ -1,0 +1,217 @@
+//! What expressions give.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use glam::DAffine3;
+use luxel_core::diag::Span;
+use luxel_core::scene::{Color, GroupId, NodeId};
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::{Dimension, Look};
+
+use super::builtins::Builtin;
+use super::env::{Env, File};
+use crate::syntax::{FnDef, Form, Name};
+
+/// A value. Large ones are shared.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    /// What a mistake leaves; it was told, and whatever uses it says nothing more.
+    Poison,
+    Bool(bool),
+    /// In SI units.
+    Number(f64, Dimension),
+    Text(Arc<str>),
+    /// A vector or list of numbers of one dimension.
+    Numbers(Rc<Numbers>),
+    /// Any other vector or list.
+    Items(Rc<Items>),
+    Record(Rc<Vec<FieldValue>>),
+    Range(Range),
+    Color(Color, Dimension),
+    Transform(Rc<DAffine3>),
+    Look(Rc<Look>),
+    Object(Rc<ObjectValue>),
+    Module(Rc<Module>),
+    Function(Rc<Function>),
+    Builtin(&'static Builtin),
+}
+
+/// Numbers of one dimension, in SI units.
+#[derive(Clone, Debug)]
+pub(crate) struct Numbers {
+    pub(crate) data: Arc<[f64]>,
+    pub(crate) dimension: Dimension,
+    pub(crate) form: Form,
+}
+
+/// Values of any kind.
+#[derive(Clone, Debug)]
+pub(crate) struct Items {
+    pub(crate) items: Vec<Value>,
+    pub(crate) form: Form,
+}
+
+/// `start..end` or `start..=end`, in SI units.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range {
+    pub(crate) start: f64,
+    pub(crate) end: f64,
+    pub(crate) inclusive: bool,
+    pub(crate) dimension: Dimension,
+}
+
+impl Range {
+    /// Whether a value lies in it.
+    pub(crate) fn contains(&self, x: f64) -> bool {
+        self.start <= x && if self.inclusive { x <= self.end } else { x < self.end }
+    }
+}
+
+/// `name = value` with its places and the file that says it.
+#[derive(Clone, Debug)]
+pub(crate) struct FieldValue {
+    pub(crate) name: Name,
+    pub(crate) value: Value,
+    pub(crate) span: Span,
+    pub(crate) file: Rc<File>,
+}
+
+/// What an object is in the scene.
+#[derive(Clone, Debug)]
+pub(crate) enum What {
+    Node(NodeId, Kind),
+    /// A group and the material of shapes in it that have none.
+    Group(GroupId, Option<NodeId>),
+}
+
+/// An object: a node or group of the scene, with what was said of it, so that it can be changed.
+#[derive(Clone, Debug)]
+pub(crate) struct ObjectValue {
+    pub(crate) what: What,
+    pub(crate) fields: Vec<FieldValue>,
+    pub(crate) transform: DAffine3,
+    pub(crate) head: Head,
+    /// How deep other objects stand in it.
+    pub(crate) depth: usize,
+    /// How many placements it stands for.
+    pub(crate) instances: u64,
+}
+
+impl ObjectValue {
+    /// Its kind's word, or `group`.
+    pub(crate) fn word(&self) -> &'static str {
+        match self.what {
+            What::Node(_, kind) => kind.word(),
+            What::Group(..) => "group",
+        }
+    }
+}
+
+/// The head of an object: `category kind "label"`.
+#[derive(Clone, Debug)]
+pub(crate) struct Head {
+    pub(crate) kind: Option<Kind>,
+    /// The class's name and where it is written; of a group, the word `group`.
+    pub(crate) class: Name,
+    pub(crate) label: Option<Name>,
+    pub(crate) span: Span,
+}
+
+/// The names of an imported file.
+#[derive(Debug)]
+pub(crate) struct Module {
+    pub(crate) names: BTreeMap<Arc<str>, Value>,
+    pub(crate) path: String,
+}
+
+/// A function of a scene file with the names that it sees.
+#[derive(Debug)]
+pub(crate) struct Function {
+    pub(crate) def: Arc<FnDef>,
+    pub(crate) env: Env,
+}
+
+impl Value {
+    /// A plain number.
+    pub(crate) fn plain(x: f64) -> Self {
+        Self::Number(x, Dimension::NONE)
+    }
+
+    /// Values between brackets; numbers of one dimension are packed.
+    pub(crate) fn list(items: Vec<Self>, form: Form) -> Self {
+        let dimension = match items.first() {
+            Some(Self::Number(_, dimension)) => *dimension,
+            _ => return Self::Items(Rc::new(Items { items, form })),
+        };
+        let packed: Option<Vec<f64>> = items
+            .iter()
+            .map(|item| match item {
+                Self::Number(x, d) if *d == dimension => Some(*x),
+                _ => None,
+            })
+            .collect();
+        match packed {
+            Some(data) => Self::numbers(data, dimension, form),
+            None => Self::Items(Rc::new(Items { items, form })),
+        }
+    }
+
+    /// Numbers of one dimension.
+    pub(crate) fn numbers(data: impl Into<Arc<[f64]>>, dimension: Dimension, form: Form) -> Self {
+        Self::Numbers(Rc::new(Numbers { data: data.into(), dimension, form }))
+    }
+
+    /// Whether a mistake left it.
+    pub(crate) fn is_poison(&self) -> bool {
+        matches!(self, Self::Poison)
+    }
+
+    /// What it is, in words, for messages.
+    pub(crate) fn describe(&self) -> String {
+        match self {
+            Self::Poison => "a mistake".to_owned(),
+            Self::Bool(value) => format!("`{value}`"),
+            Self::Number(_, dimension) => dimension.name(),
+            Self::Text(_) => "text".to_owned(),
+            Self::Numbers(n) if n.form == Form::Tuple => {
+                format!("a vector of {} numbers", n.data.len())
+            }
+            Self::Numbers(n) => format!("a list of {} numbers", n.data.len()),
+            Self::Items(i) if i.form == Form::Tuple => format!("a vector of {}", i.items.len()),
+            Self::Items(i) => format!("a list of {}", i.items.len()),
+            Self::Record(_) => "a record".to_owned(),
+            Self::Range(_) => "a range".to_owned(),
+            Self::Color(..) => "a colour".to_owned(),
+            Self::Transform(_) => "a transform".to_owned(),
+            Self::Look(_) => "a view".to_owned(),
+            Self::Object(object) => format!("a {}", object.word()),
+            Self::Module(_) => "an imported file".to_owned(),
+            Self::Function(_) | Self::Builtin(_) => "a function".to_owned(),
+        }
+    }
+
+    /// The value as a person would write it, shortened.
+    pub(crate) fn show(&self) -> String {
+        match self {
+            Self::Number(x, dimension) => show_number(*x, *dimension),
+            Self::Text(text) => format!("{text:?}"),
+            Self::Numbers(n) if n.data.len() <= 4 => {
+                let parts: Vec<String> = n.data.iter().map(ToString::to_string).collect();
+                let unit = unit_text(n.dimension);
+                format!("({}){unit}", parts.join(", "))
+            }
+            other => other.describe().replace('`', ""),
+        }
+    }
+}
+
+fn unit_text(dimension: Dimension) -> String {
+    if dimension.is_none() { String::new() } else { format!(" {dimension}") }
+}
+
+/// A number in SI units with their names.
+pub(crate) fn show_number(x: f64, dimension: Dimension) -> String {
+    format!("{x}{}", unit_text(dimension))
+}

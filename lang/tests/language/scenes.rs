@@ -1,0 +1,208 @@
+//! Whole scenes: what they become.
+
+use std::path::Path;
+
+use luxel_core::files::MemoryFiles;
+use luxel_core::scene::{Color, Scene, Value, print};
+use luxel_lang::{Loaded, Settings, load};
+
+use crate::registry::registry;
+
+const HEAD: &str = "scene 1
+camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)) }
+";
+
+fn files() -> MemoryFiles {
+    MemoryFiles::default()
+        .with("cornell.scene", &include_bytes!("../scenes/cornell.scene")[..])
+        .with("cornell/white.spd", &b"400 0.3\n700 0.7\n"[..])
+        .with("parametric.scene", &include_bytes!("../scenes/parametric.scene")[..])
+        .with("glass_fog.scene", &include_bytes!("../scenes/glass_fog.scene")[..])
+        .with("lib/metals.scene", &include_bytes!("../scenes/lib/metals.scene")[..])
+        .with("lib/studio.scene", &include_bytes!("../scenes/lib/studio.scene")[..])
+}
+
+fn load_text(text: &str, set: &[(&str, &str)]) -> Loaded {
+    let files = files().with("test.scene", text.as_bytes());
+    load_file(&files, "test.scene", set)
+}
+
+fn load_file(files: &MemoryFiles, path: &str, set: &[(&str, &str)]) -> Loaded {
+    let set = set.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
+    load(Path::new(path), files, &registry(), &Settings { set, ..Settings::default() })
+}
+
+/// The scene of a text that must be right.
+fn scene(text: &str, set: &[(&str, &str)]) -> Scene {
+    let loaded = load_text(&format!("{HEAD}{text}"), set);
+    assert_eq!(loaded.diagnostics, []);
+    loaded.scene.unwrap()
+}
+
+/// The values of a parameter in the scene's nodes, in order.
+fn values(scene: &Scene, name: &str) -> Vec<Value> {
+    let found = scene.nodes.iter().filter_map(|node| node.get(name));
+    found.map(|argument| argument.value.clone()).collect()
+}
+
+fn numbers(scene: &Scene, name: &str) -> Vec<f64> {
+    let number = |value| match value {
+        Value::Number(x, _) => x,
+        other => panic!("{other:?}"),
+    };
+    values(scene, name).into_iter().map(number).collect()
+}
+
+#[test]
+fn the_examples_are_scenes_without_a_mistake() {
+    for (path, shapes) in [("cornell.scene", 8), ("parametric.scene", 3), ("glass_fog.scene", 4)] {
+        let loaded = load_file(&files(), path, &[]);
+        assert_eq!(loaded.diagnostics, [], "{path}");
+        let scene = loaded.scene.unwrap();
+        let found = scene.nodes.iter().filter(|n| n.kind.word() == "shape").count();
+        assert!(found >= shapes, "{path}: {found}");
+        assert!(scene.camera.is_some() && scene.film.is_some());
+    }
+}
+
+#[test]
+fn a_scene_prints_the_same_whenever_it_is_read() {
+    let dump = || print(&load_file(&files(), "parametric.scene", &[]).scene.unwrap());
+    let text = dump();
+    assert_eq!(text, dump());
+    assert!(text.contains("camera = n") && text.contains("shape box \"tread\""), "{text}");
+}
+
+#[test]
+fn units_become_si_and_bare_numbers_take_the_files_unit() {
+    let scene = scene(
+        "units { length = mm }\nshape sphere { radius = 5 cm }\nshape sphere { radius = 5 }",
+        &[],
+    );
+    // 5·0.01 and 5·0.001, each rounded once.
+    assert_eq!(numbers(&scene, "radius"), [5.0 * 0.01, 5.0 * 0.001]);
+}
+
+#[test]
+fn transforms_apply_first_to_last() {
+    let text = "shape sphere { radius = 1 m, transform = [move((1, 0, 0) m), scale(2)] }
+group { transform = [move((0, 1, 0) m)]
+  shape sphere { radius = 2 m, transform = [rotate((0, 0, 1), 90 deg)] } }";
+    let scene = scene(text, &[]);
+    let place = scene.root.items[0].transform.transform_point3(glam::DVec3::ZERO);
+    assert_eq!(place, glam::DVec3::new(2.0, 0.0, 0.0));
+    assert_eq!(scene.root.items[1].transform.translation, glam::DVec3::Y);
+    let turned = scene.groups[0].items[0].transform.transform_point3(glam::DVec3::X);
+    // One rounding of cos 90° and one of the product.
+    assert!((turned - glam::DVec3::Y).length() < 2.0 * f64::EPSILON, "{turned}");
+}
+
+#[test]
+fn set_changes_labelled_objects_and_off_takes_them_out() {
+    let text = "shape sphere \"a\" { radius = 1 m }\n@off shape sphere \"b\" { radius = 2 m }
+set a.radius = 3 m\nset b.radius = 4 m\nset a.radius = 5 m";
+    assert_eq!(numbers(&scene(text, &[]), "radius"), [5.0]);
+}
+
+#[test]
+fn functions_loops_conditions_and_lists_do_what_they_say() {
+    let text = "fn twice(x: length, by: float = 2) = x * by
+fn ball(r: length) { if r > 2 m { shape sphere { radius = r } } else { shape sphere { radius = twice(r, by = 10) } } }
+let radii = [for i in 1..=3 if i != 2 => i * 1 m]
+for r in radii { ball(r) }
+for i, r in [7 m, 8 m] { shape sphere { radius = r + i * 1 cm } }";
+    assert_eq!(numbers(&scene(text, &[]), "radius"), [10.0, 3.0, 7.0, 8.0 + 0.01]);
+}
+
+#[test]
+fn with_makes_a_changed_copy_and_equal_objects_have_equal_hashes() {
+    let text = "let a = material dielectric { roughness = 0.1 }\nlet b = a with { roughness = 0.3 }
+shape sphere { radius = 1 m, material = a }\nshape sphere { radius = 1 m, material = b }
+shape sphere \"other label\" { radius = 100 cm, material = material dielectric { roughness = 0.1 } }";
+    let scene = scene(text, &[]);
+    let spheres: Vec<_> = scene.nodes.iter().filter(|n| &*n.class == "sphere").collect();
+    assert_eq!(spheres[0].hash, spheres[2].hash);
+    assert_ne!(spheres[0].hash, spheres[1].hash);
+}
+
+#[test]
+fn unused_objects_are_left_out_and_shared_ones_are_shared() {
+    let text = "let unused = material diffuse {}\nlet grey = material diffuse {}
+let ball = group { shape sphere { radius = 1 m, material = grey } }
+for i in 0..5 { place ball { transform = [move(i * (1, 0, 0) m)] } }";
+    let scene = scene(text, &[]);
+    assert_eq!((scene.nodes.len(), scene.groups.len(), scene.root.items.len()), (3, 1, 5));
+}
+
+#[test]
+fn settings_reach_declared_parameters() {
+    let text = "/// How wide.\nparam r: length = 1 m in 0.5 m..=20 m\nparam q: string = \"draft\"
+shape sphere { radius = if q == \"final\" { 2 * r } else { r } }";
+    let with = |set: &[(&str, &str)]| numbers(&scene(text, set), "radius");
+    assert_eq!(with(&[]), [1.0]);
+    assert_eq!(with(&[("r", "2 m"), ("q", "final")]), [4.0]);
+    let loaded = load_text(&format!("{HEAD}{text}"), &[]);
+    let info = &loaded.params[0];
+    assert_eq!(
+        (&*info.name, &*info.ty, &*info.unit, &*info.doc),
+        ("r", "length", "m", "How wide.")
+    );
+    assert_eq!((&*info.default, info.range.as_deref()), ("1 m", Some("0.5 m..=20 m")));
+}
+
+#[test]
+fn imports_give_names_and_includes_emit() {
+    let files = MemoryFiles::default()
+        .with(
+            "a/main.scene",
+            format!("{HEAD}import \"lib.scene\" as lib\ninclude \"lib.scene\" with {{ r = 3 m }}\nshape sphere {{ radius = lib.r }}\nplace lib.ball")
+                .into_bytes(),
+        )
+        .with("a/lib.scene", &b"scene 1\nparam r: length = 1 m\nlet ball = shape sphere { radius = 9 m }\nshape sphere { radius = r }"[..]);
+    let loaded = load_file(&files, "a/main.scene", &[]);
+    assert_eq!(loaded.diagnostics, []);
+    assert_eq!(numbers(&loaded.scene.unwrap(), "radius"), [3.0, 1.0, 9.0]);
+}
+
+#[test]
+fn colours_carry_their_dimension_and_rows_become_a_table() {
+    let text =
+        "let fog = medium homogeneous { sigma_t = spectrum([(400 nm, 0.5), (700 nm, 1)]) / (2 m) }
+medium homogeneous { sigma_s = 1 / (4 m), albedo = rgb.srgb(1, 0, 1) }
+shape mesh { points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)] m, indices = #[0 1 2], interior = fog }";
+    let loaded = load_text(&format!("{HEAD}{}", text.replace("] m, indices", "], indices")), &[]);
+    assert_eq!(loaded.diagnostics.len(), 1);
+    assert_eq!(loaded.diagnostics[0].code, "E0201");
+    let text = text
+        .replace("] m, indices", "], indices")
+        .replace("(0, 0, 0), (1, 0, 0), (0, 1, 0)", "(0, 0, 0) m, (1, 0, 0) m, (0, 1, 0) m");
+    let scene = scene(&text, &[]);
+    let table = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    assert_eq!(values(&scene, "points"), [Value::Table(table.into())]);
+    let Value::Color(Color::Curve(points), dimension) = &values(&scene, "sigma_t")[0] else {
+        panic!("a curve")
+    };
+    assert_eq!(
+        (&**points, dimension.to_string()),
+        (&[(400.0, 0.25), (700.0, 0.5)][..], "m^-1".into())
+    );
+}
+
+#[test]
+fn a_shining_shape_keeps_its_place() {
+    let text = "light area { shape = shape sphere { radius = 1 m, transform = [move((0, 3, 0) m)] }, spectrum = blackbody(3000 K), power = 60 W }";
+    let scene = scene(text, &[]);
+    assert_eq!(scene.root.items[0].transform.translation, glam::DVec3::new(0.0, 3.0, 0.0));
+}
+
+#[test]
+fn materials_of_an_asset_are_replaced_by_name() {
+    let text =
+        "asset gltf { file = \"a.glb\", unit = 1 m, materials = { steel = material diffuse {} } }";
+    let scene = scene(text, &[]);
+    let asset = scene.nodes.iter().find(|n| &*n.class == "gltf").unwrap();
+    assert_eq!(
+        (&*asset.overrides[0].0, scene.node(asset.overrides[0].1).kind.word()),
+        ("steel", "material")
+    );
+}

@@ -60,17 +60,24 @@ fn excerpt<'a>(group: Group<'a>, labels: &[&'a Label], sources: &Sources, main: 
     let span = labels[0].span;
     let at = sources.line_column(span.source, span.start as usize);
     let name = clean(sources.name(span.source));
-    // The column is that of the file, which the cut line does not know.
-    let group = group.element(Origin::path(name).line(at.line).char_column(at.column));
+    let origin = || Origin::path(name.clone()).line(at.line).char_column(at.column);
     let spans: Vec<_> = labels.iter().map(|label| label.span.range()).collect();
-    let Some(window) = Window::new(sources.text(span.source), &spans) else { return group };
+    let Some(window) = Window::new(sources.text(span.source), &spans) else {
+        return group.element(origin());
+    };
     let line = line_of(sources, span.source, window.start);
     let annotations = labels.iter().zip(window.spans).enumerate().map(|(i, (label, span))| {
         let kind = if main && i == 0 { AnnotationKind::Primary } else { AnnotationKind::Context };
         let text = (!label.text.is_empty()).then(|| clean(&label.text));
         kind.span(span).label(text)
     });
-    group.element(Snippet::source(window.text).line_start(line).annotations(annotations))
+    let snippet = Snippet::source(window.text).line_start(line).annotations(annotations);
+    if window.cut {
+        // The column is that of the file, which the cut line does not know.
+        group.element(origin()).element(snippet)
+    } else {
+        group.element(snippet.path(name))
+    }
 }
 
 fn line_of(sources: &Sources, id: luxel_core::diag::SourceId, byte: usize) -> usize {
@@ -98,7 +105,7 @@ mod tests {
         let shown = render(&found, &sources, false);
         for part in [
             "error[E0402]: a sphere has no `radus`",
-            "a.scene:3:3",
+            "--> a.scene:3:3",
             "3 |   radus = 5 m",
             "^^^^^ not a parameter",
             "this sphere",
@@ -107,7 +114,7 @@ mod tests {
         ] {
             assert!(shown.contains(part), "{part} in\n{shown}");
         }
-        assert!(!shown.contains('\x1b'));
+        assert!(!shown.contains('\x1b') && !shown.contains(":::"), "{shown}");
         assert!(render(&found, &sources, true).contains('\x1b'));
     }
 

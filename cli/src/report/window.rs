@@ -20,6 +20,8 @@ pub(super) struct Window {
     pub(super) text: String,
     /// Where its first line starts in the whole text.
     pub(super) start: usize,
+    /// Whether the front of a line is missing, so that its columns are not those of the file.
+    pub(super) cut: bool,
     /// The places, as bytes of `text`.
     pub(super) spans: Vec<Range<usize>>,
 }
@@ -43,7 +45,7 @@ impl Window {
         if lines.len() > TOGETHER {
             return None;
         }
-        let mut window = Self { text: String::new(), start, spans: vec![] };
+        let mut window = Self { text: String::new(), start, cut: false, spans: vec![] };
         let mut pieces = vec![];
         let mut at = start;
         for line in lines {
@@ -71,6 +73,7 @@ impl Window {
             kept.start = boundary(line, middle.saturating_sub(AROUND));
             kept.end = boundary(line, (middle + AROUND).min(line.len()));
         }
+        self.cut |= kept.start > 0;
         self.text.push_str(if kept.start > 0 { CUT } else { "" });
         let to = self.text.len();
         self.text.push_str(&line[kept.clone()]);

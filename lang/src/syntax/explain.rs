@@ -90,7 +90,8 @@ pub(super) fn explain(text: &str, chunk: Range<usize>, at: usize, source: Source
         .iter()
         .filter(|i| around.tokens[**i].text == "{")
         .map(|i| around.tokens[*i].start);
-    let resume = around.swallowed().and_then(|back| around.before(back));
+    let swallowed = around.swallowed().and_then(|back| around.before(back));
+    let resume = swallowed.or_else(|| around.next_keyword());
     Explained {
         diagnostic,
         at: around.current().map_or(chunk.end, |t| t.start),
@@ -197,6 +198,19 @@ impl<'a> Around<'a> {
         (0..=3).find(|back| {
             let word = self.before(*back).filter(|t| t.first_on_line && t.kind == TokenKind::Word);
             word.is_some() && self.before(back + 1).is_some_and(Token::is_operator)
+        })
+    }
+
+    /// The next word of the language that begins a line outside brackets.
+    fn next_keyword(&self) -> Option<&Token<'a>> {
+        let mut depth = 0_usize;
+        self.tokens[self.at..].iter().skip(1).find(|token| {
+            match token.text {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            depth == 0 && token.first_on_line && RESERVED[..12].contains(&token.text)
         })
     }
 

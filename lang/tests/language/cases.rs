@@ -20,6 +20,10 @@ const CASES: [&str; 4] = [
     include_str!("../cases/schema.txt"),
 ];
 
+/// What `CAMERA` in a case stands for.
+const CAMERA: &str =
+    "camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)) }";
+
 /// Where a diagnostic stands, as the cases write it.
 fn place(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let Some(span) = diagnostic.span() else { return "-".to_owned() };
@@ -60,7 +64,8 @@ fn parse(name: &'static str, body: &'static str) -> Case<'static> {
         }
     }
     let memory = files.into_iter().fold(MemoryFiles::default(), |memory, (path, text)| {
-        memory.with(path, text.replace("\\0", "\0").trim_end_matches('\n').as_bytes())
+        let text = text.replace("\\0", "\0").replace("CAMERA", CAMERA);
+        memory.with(path, text.trim_end_matches('\n').as_bytes())
     });
     Case { name, files: memory, set, expected }
 }

@@ -1,1 +1,219 @@
-//! later
+//! Inputs that are meant to hurt: each gets its mistake, in bounded time, memory and stack.
+
+use std::path::Path;
+use std::time::Duration;
+
+use luxel_core::files::MemoryFiles;
+use luxel_lang::{Budgets, Loaded, Settings, load};
+
+use crate::registry::registry;
+
+/// Loads a text on a thread with the stack that `load` promises to do with; fails after 20 s.
+fn load_bytes(bytes: Vec<u8>, budgets: Budgets) -> Loaded {
+    let files = MemoryFiles::default().with("a.scene", bytes);
+    load_files(files, budgets)
+}
+
+fn load_files(files: MemoryFiles, budgets: Budgets) -> Loaded {
+    let (send, receive) = std::sync::mpsc::channel();
+    let loading = move || {
+        let settings = Settings { budgets, ..Settings::default() };
+        let loaded = load(Path::new("a.scene"), &files, &registry(), &settings);
+        send.send(loaded).expect("the test waits");
+    };
+    std::thread::Builder::new().stack_size(2 << 20).spawn(loading).unwrap();
+    receive.recv_timeout(Duration::from_secs(20)).expect("it ends, and soon")
+}
+
+fn codes(text: &str) -> Vec<&'static str> {
+    codes_within(text, Budgets::default())
+}
+
+fn codes_within(text: &str, budgets: Budgets) -> Vec<&'static str> {
+    let loaded = load_bytes(format!("scene 1\n{text}").into_bytes(), budgets);
+    loaded.diagnostics.iter().map(|d| d.code).collect()
+}
+
+#[test]
+fn brackets_nest_up_to_the_limit_and_no_further() {
+    let nested = |open: &str, close: &str, n: usize| {
+        format!("let deep = {}1{}", open.repeat(n), close.repeat(n))
+    };
+    for (open, close) in [("(", ")"), ("[", "]"), ("(1 + 2 * -", ")"), ("{ x = ", " }")] {
+        assert_eq!(codes(&nested(open, close, 128)), ["E0409"], "{open}");
+        assert_eq!(codes(&nested(open, close, 129)), ["E0011"], "{open}");
+    }
+    let worst = nested("(1 == 1..2 + 3 * -2 ^ -", ")", 128);
+    assert!(!codes(&worst).is_empty());
+    let objects = nested("material coated { base = ", " }", 128);
+    assert_eq!(codes(&objects), ["E0214"]);
+    let groups = format!("{} {}", "group { ".repeat(128), "}".repeat(128));
+    assert_eq!(codes(&groups), ["E0409"]);
+    let ifs = nested("if true { ", " } else { 2 }", 128);
+    assert_eq!(codes(&ifs), ["E0409"]);
+}
+
+#[test]
+fn a_line_of_ten_megabytes_is_read_or_told_of() {
+    let list = format!("let long = [{}1]", "0.25, ".repeat(1_700_000));
+    assert_eq!(codes(&list), ["E0409"]);
+    let chain = format!("let long = 1{}", " + 1".repeat(100_000));
+    assert_eq!(codes(&chain), ["E0506"]);
+    let calls = format!("let long = sin{}", "(1)".repeat(100_000));
+    assert_eq!(codes(&calls), ["E0506"]);
+    let signs = format!("let long = {}1", "-!".repeat(100_000));
+    assert_eq!(codes(&signs), ["E0506"]);
+    let string = format!("let long = \"{}\"", "x".repeat(10_000_000));
+    assert_eq!(codes(&string), ["E0509"]);
+    let unclosed = format!("let long = ({}", "a ".repeat(1_000_000));
+    assert!(!codes(&unclosed).is_empty());
+}
+
+#[test]
+fn loops_lists_and_nodes_end_at_their_budgets() {
+    let small = Budgets { steps: 100_000, nodes: 1000, list: 1000, ..Budgets::default() };
+    let check = |text: &str, code: &str| assert_eq!(codes_within(text, small), [code], "{text}");
+    check("for i in 0..1000000000 { let a = i }", "E0502");
+    check("for i in 0..1000000 { for j in 0..1000000 { } }", "E0502");
+    check("let list = [for i in 0..100000 => i]", "E0503");
+    check("let list = [for i in 0..100000 if true => i]", "E0503");
+    check("for i in 0..100000 { shape sphere { radius = 1 m } }", "E0501");
+    let list = format!("let list = [{}]", "1, ".repeat(1001));
+    check(&list, "E0503");
+}
+
+#[test]
+fn shared_groups_count_as_often_as_they_stand() {
+    let mut text = "let g0 = group { shape sphere { radius = 1 m } }\n".to_owned();
+    for i in 1..40 {
+        text += &format!("let g{i} = group {{ for j in 0..10 {{ place g{} }} }}\n", i - 1);
+    }
+    assert_eq!(codes(&format!("{text}place g39")), ["E0501"]);
+}
+
+#[test]
+fn chains_of_functions_objects_and_groups_are_bounded() {
+    let chain = |first: &str, next: &dyn Fn(usize) -> String| {
+        let mut text = first.to_owned();
+        (1..2000).for_each(|i| text += &next(i));
+        codes(&text)
+    };
+    let calls = chain("fn f0(x: int) = x\n", &|i| {
+        format!("fn f{i}(x: int) = f{}(x)\nlet x{i} = f{i}(1)\n", i - 1)
+    });
+    assert_eq!(calls, ["E0507"]);
+    let objects = chain("let o0 = material diffuse {}\n", &|i| {
+        format!("let o{i} = material coated {{ base = o{} }}\n", i - 1)
+    });
+    assert_eq!(objects, ["E0507"]);
+    let groups =
+        chain("let g0 = group {}\n", &|i| format!("let g{i} = group {{ place g{} }}\n", i - 1));
+    assert_eq!(groups, ["E0507"]);
+}
+
+#[test]
+fn files_are_bounded_in_size_and_depth() {
+    let small = Budgets { file_bytes: 1000, ..Budgets::default() };
+    assert_eq!(codes_within(&" ".repeat(2000), small), ["E0504"]);
+    let mut files = MemoryFiles::default().with("a.scene", &b"scene 1\ninclude \"0\""[..]);
+    for i in 0..60 {
+        files = files.with(format!("{i}"), format!("scene 1\ninclude \"{}\"", i + 1).into_bytes());
+    }
+    let loaded = load_files(files, Budgets::default());
+    assert_eq!(loaded.diagnostics.iter().map(|d| d.code).collect::<Vec<_>>(), ["E0505"]);
+}
+
+#[test]
+fn bytes_that_are_no_text_are_told_of() {
+    let loaded = load_bytes(b"scene 1\nlet a = \xff".to_vec(), Budgets::default());
+    assert_eq!(loaded.diagnostics[0].code, "E0003");
+    assert_eq!(loaded.diagnostics[0].span().unwrap().range(), 16..16);
+    let marked = b"\xEF\xBB\xBFscene 1\nlet abc = def".to_vec();
+    let found: Vec<_> =
+        load_bytes(marked, Budgets::default()).diagnostics.iter().map(|d| d.code).collect();
+    assert_eq!(found, ["E0004", "E0101"]);
+}
+
+#[test]
+fn a_hundred_mistakes_are_shown_and_the_rest_counted() {
+    let text: String = (0..1000).map(|i| format!("let a{i} = nope\n")).collect();
+    let found = codes(&text);
+    assert_eq!((found.len(), found[99], found[100]), (101, "E0101", "E0508"));
+}
+
+/// A small generator, so that the damage is the same in every run (`SplitMix64`).
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        usize::try_from((x ^ (x >> 31)) % n as u64).expect("below n")
+    }
+}
+
+/// The words, numbers and marks of a text, with the blanks between them.
+fn pieces(text: &str) -> Vec<String> {
+    let kind = |c: char| match c {
+        c if c.is_alphanumeric() || c == '_' => 0,
+        c if c.is_whitespace() => 1,
+        _ => 2,
+    };
+    let mut out: Vec<String> = vec![];
+    let mut last = 3;
+    for c in text.chars() {
+        if kind(c) == last && last != 2 {
+            out.last_mut().expect("a piece before").push(c);
+        } else {
+            out.push(c.to_string());
+        }
+        last = kind(c);
+    }
+    out
+}
+
+#[test]
+fn damaged_scenes_never_crash_and_point_into_their_text() {
+    let seeds = [
+        include_str!("../scenes/parametric.scene"),
+        include_str!("../scenes/glass_fog.scene"),
+        include_str!("../scenes/bad_multi.scene"),
+    ];
+    let budgets = Budgets { steps: 20_000, ..Budgets::default() };
+    let registry = registry();
+    let mut dice = Dice(7);
+    for round in 0..150 {
+        let mut parts = pieces(seeds[round % seeds.len()]);
+        for _ in 0..=dice.below(4) {
+            let at = dice.below(parts.len());
+            match dice.below(4) {
+                0 => drop(parts.remove(at)),
+                1 => parts.insert(at, parts[dice.below(parts.len())].clone()),
+                2 => {
+                    let other = dice.below(parts.len());
+                    parts.swap(at, other);
+                }
+                _ => {
+                    parts[at] =
+                        ["{", "}", "(", "\"", "é", "/*", "#[", "1e999"][dice.below(8)].into()
+                }
+            }
+        }
+        let files = MemoryFiles::default().with("a.scene", parts.concat().into_bytes());
+        let settings = Settings { budgets, ..Settings::default() };
+        let loaded = load(Path::new("a.scene"), &files, &registry, &settings);
+        for diagnostic in &loaded.diagnostics {
+            for span in diagnostic
+                .labels
+                .iter()
+                .map(|l| l.span)
+                .chain(diagnostic.fixes.iter().map(|f| f.span))
+            {
+                let text = loaded.sources.text(span.source);
+                assert!(text.get(span.range()).is_some(), "round {round}: {diagnostic:?}");
+            }
+        }
+        assert_eq!(loaded.scene.is_some(), !loaded.diagnostics.iter().any(|d| d.is_error()));
+    }
+}

@@ -9,11 +9,11 @@ use crate::shape::up::Up;
 
 /// An OBJ or PLY file, to be placed any number of times as one mesh.
 ///
-/// Its material is that of the asset or of the place; materials of the file are not read.
+/// Its material is that of the place or of the group around it; materials of the file are not read.
 ///
 /// ```scene
-/// let bust = asset obj { file = "assets/bust.obj", unit = 1 mm, up = "z", material = white }
-/// place bust { transform = move((0, 1, 0) m) }
+/// let bust = asset obj { file = "assets/bust.obj", unit = 1 mm, up = "z" }
+/// place bust { material = white, transform = [move((0, 1, 0) m)] }
 /// ```
 #[derive(Params, Clone, Copy)]
 #[repr(C)]

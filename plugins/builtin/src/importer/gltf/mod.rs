@@ -30,12 +30,13 @@ use crate::shape::up::Up;
 /// A glTF file (`.gltf` or `.glb`), to be placed any number of times.
 ///
 /// Brings meshes, metallic-roughness materials with their textures, cameras and punctual lights;
-/// what shines becomes an area light. Materials keep their names. Skins and morphs stay in their
+/// what shines becomes an area light. Materials keep their names, by which
+/// `materials` of the asset replaces them. Skins and morphs stay in their
 /// bind pose; normal maps are left out, with a warning.
 ///
 /// ```scene
 /// let tree = asset gltf { file = "assets/tree.glb", unit = 1 m }
-/// place tree { transform = move((2, 0, 0) m) }
+/// place tree { transform = [move((2, 0, 0) m)] }
 /// ```
 #[derive(Params, Clone, Copy)]
 #[repr(C)]

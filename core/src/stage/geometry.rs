@@ -1,5 +1,8 @@
 //! Geometry in its own frame: analytic shapes, and meshes with their tree.
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -27,12 +30,15 @@ pub struct Mesh {
     bvh: MeshBvh,
     /// Whether every edge joins exactly two triangles that run along it in opposite directions.
     closed: bool,
+    /// Diagonal of the tree's box, metres of the mesh's frame.
+    diagonal: f64,
 }
 
 impl Mesh {
     /// Takes over the triangles of a shape and its finished tree.
     pub fn new(object: Arc<Object>, bvh: MeshBvh, closed: bool) -> Self {
-        Self { object, bvh, closed }
+        let diagonal = bvh.bounds().map_or(0.0, |(min, max)| (max - min).as_dvec3().length());
+        Self { object, bvh, closed, diagonal }
     }
 
     /// The triangles.
@@ -53,26 +59,28 @@ impl Mesh {
         self.bvh.bytes()
     }
 
-    /// The local ray in single precision about the mesh's centre, its origin moved to where it
-    /// enters the mesh's box so that nothing is lost by rounding.
-    fn narrow(&self, ray: &Ray, t_enter: f64) -> (glam::Vec3, glam::Vec3, f32) {
-        let o = ray.at(t_enter) - self.triangles().centre;
-        let t_max = narrow(ray.t_max - t_enter).next_up();
-        (o.as_vec3(), ray.d.as_vec3(), t_max)
+    /// The local ray in single precision about the mesh's centre, and where on the ray it starts:
+    /// a diagonal before the mesh's box, so that little is lost by rounding, and triangles on the
+    /// box's faces stay ahead however their distance is rounded.
+    fn narrow(&self, ray: &Ray, t_enter: f64) -> (glam::Vec3, glam::Vec3, f32, f64) {
+        let start = (t_enter - self.diagonal / ray.d.abs().max_element()).max(0.0);
+        let o = ray.at(start) - self.triangles().centre;
+        let t_max = narrow(ray.t_max - start).next_up();
+        (o.as_vec3(), ray.d.as_vec3(), t_max, start)
     }
 
     fn intersect(&self, ray: &Ray, t_enter: f64, steps: &mut u32) -> Option<Hit> {
-        let (o, d, t_max) = self.narrow(ray, t_enter);
+        let (o, d, t_max, start) = self.narrow(ray, t_enter);
         let (hit, n) = self.bvh.intersect_counted(o, d, t_max);
         *steps += n;
         let hit = hit?;
-        let t = t_enter + f64::from(hit.t);
+        let t = start + f64::from(hit.t);
         let at = DVec2::new(f64::from(hit.b1), f64::from(hit.b2));
         (t <= ray.t_max).then_some(Hit { t, at, face: hit.triangle })
     }
 
     fn occluded(&self, ray: &Ray, t_enter: f64) -> bool {
-        let (o, d, t_max) = self.narrow(ray, t_enter);
+        let (o, d, t_max, _) = self.narrow(ray, t_enter);
         self.bvh.occluded(o, d, t_max)
     }
 
@@ -84,11 +92,15 @@ impl Mesh {
         let weights = [1.0 - at.x - at.y, at.x, at.y];
         let about = a * weights[0] + b * weights[1] + c * weights[2];
         // The next ray's origin is rounded to single precision about the centre: γ(7) covers the
-        // sum of three products and that rounding (PBR4 §6.8.5).
+        // sum of three products and that rounding (PBR4 §6.8.5), in every direction, since the
+        // plane of a triangle along an axis has no error of its own. What the edge tests of a
+        // triangle add to t depends on the size of the triangle as seen from a point on it.
         let spread =
             a.abs() * weights[0].abs() + b.abs() * weights[1].abs() + c.abs() * weights[2].abs();
+        let edge = (b - a).abs().max((c - a).abs());
+        let single = gamma32(7) * narrow((spread + edge).max_element());
         let p = about + mesh.centre;
-        let p_err = spread * f64::from(gamma32(7)) + p.abs() * f64::EPSILON;
+        let p_err = DVec3::splat(f64::from(single)) + p.abs() * f64::EPSILON;
         let ng = (b - a).cross(c - a).normalize_or(DVec3::Z);
         let ns = shading_normal(mesh, corners, weights, ng);
         let (uv, dp_du, dp_dv) = parametrisation(mesh, corners, [a, b, c], weights);

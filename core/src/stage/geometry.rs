@@ -92,15 +92,14 @@ impl Mesh {
         let weights = [1.0 - at.x - at.y, at.x, at.y];
         let about = a * weights[0] + b * weights[1] + c * weights[2];
         // The next ray's origin is rounded to single precision about the centre: γ(7) covers the
-        // sum of three products and that rounding (PBR4 §6.8.5), in every direction, since the
-        // plane of a triangle along an axis has no error of its own. What the edge tests of a
-        // triangle add to t depends on the size of the triangle as seen from a point on it.
+        // sum of three products and that rounding (PBR4 §6.8.5). The triangle test shears all axes
+        // into each other, so each axis takes the error of the largest: a plane through the centre
+        // has none of its own, and rays would meet the triangle that they leave.
         let spread =
             a.abs() * weights[0].abs() + b.abs() * weights[1].abs() + c.abs() * weights[2].abs();
-        let edge = (b - a).abs().max((c - a).abs());
-        let single = gamma32(7) * narrow((spread + edge).max_element());
         let p = about + mesh.centre;
-        let p_err = DVec3::splat(f64::from(single)) + p.abs() * f64::EPSILON;
+        let sheared = spread.max_element() * f64::from(gamma32(7));
+        let p_err = sheared + p.abs() * f64::EPSILON;
         let ng = (b - a).cross(c - a).normalize_or(DVec3::Z);
         let ns = shading_normal(mesh, corners, weights, ng);
         let (uv, dp_du, dp_dv) = parametrisation(mesh, corners, [a, b, c], weights);

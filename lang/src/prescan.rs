@@ -112,6 +112,7 @@ pub fn scan(text: &str, range: Range<usize>, depth: usize, limit: usize) -> Scan
     scanner.out
 }
 
+#[expect(clippy::struct_excessive_bools, reason = "four independent facts about the place")]
 struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -278,12 +279,11 @@ impl Scanner<'_> {
 
     fn table(&mut self) {
         let rest = &self.bytes[self.at..];
-        match memchr(b']', rest) {
-            Some(end) => self.at += end + 1,
-            None => {
-                self.out.faults.push(Fault::Unclosed { open: self.at + 1 });
-                self.at = self.bytes.len();
-            }
+        if let Some(end) = memchr(b']', rest) {
+            self.at += end + 1;
+        } else {
+            self.out.faults.push(Fault::Unclosed { open: self.at + 1 });
+            self.at = self.bytes.len();
         }
         (self.operand, self.newline, self.doc) = (true, false, None);
     }

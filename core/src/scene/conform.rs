@@ -127,14 +127,13 @@ pub fn wanted(param: &Param) -> String {
         _ => format!("{what} in {unit}"),
     };
     match param.ty {
-        Type::Float | Type::Double | Type::MaybeFloat => with_unit("a number"),
         Type::Int => "a whole number".to_owned(),
         Type::Bool => "`true` or `false`".to_owned(),
         Type::Vec2 => with_unit("a vector (x, y)"),
         Type::Vec3 | Type::DVec3 => with_unit("a vector (x, y, z)"),
         Type::Spectrum | Type::ComplexIor => with_unit("a colour or spectrum"),
         Type::Emission if param.group.is_empty() => "a colour or spectrum".to_owned(),
-        Type::Emission => with_unit("a number"),
+        Type::Float | Type::Double | Type::MaybeFloat | Type::Emission => with_unit("a number"),
         Type::Choice => format!("one of \"{}\"", param.choices.join("\", \"")),
         Type::Text => "text".to_owned(),
         Type::File => "a file's path".to_owned(),

@@ -65,12 +65,11 @@ impl Evaluator<'_> {
         let mut positional = 0;
         for arg in args {
             let value = self.eval(&arg.value, env);
-            let place = match &arg.name {
-                Some(name) => def.params.iter().position(|p| p.name.text == name.text),
-                None => {
-                    positional += 1;
-                    Some(positional - 1).filter(|i| *i < def.params.len())
-                }
+            let place = if let Some(name) = &arg.name {
+                def.params.iter().position(|p| p.name.text == name.text)
+            } else {
+                positional += 1;
+                Some(positional - 1).filter(|i| *i < def.params.len())
             };
             let Some(i) = place else {
                 self.unknown_argument(function, arg);
@@ -106,21 +105,16 @@ impl Evaluator<'_> {
     fn unknown_argument(&mut self, function: &Function, arg: &Arg) {
         let def = &function.def;
         let known = || def.params.iter().map(|p| &*p.name.text);
-        let diagnostic = match &arg.name {
-            Some(name) => {
-                let message = format!("`{}` has no parameter `{}`", def.name.text, name.text);
-                let found = Diagnostic::error("E0402", name.span, message);
-                match nearest(&name.text, known()) {
-                    Some(near) => {
-                        found.help(format!("did you mean `{near}`?")).fix(name.span, near)
-                    }
-                    None => found,
-                }
+        let diagnostic = if let Some(name) = &arg.name {
+            let message = format!("`{}` has no parameter `{}`", def.name.text, name.text);
+            let found = Diagnostic::error("E0402", name.span, message);
+            match nearest(&name.text, known()) {
+                Some(near) => found.help(format!("did you mean `{near}`?")).fix(name.span, near),
+                None => found,
             }
-            None => {
-                let message = format!("`{}` takes {} arguments", def.name.text, def.params.len());
-                Diagnostic::error("E0402", arg.value.span, message)
-            }
+        } else {
+            let message = format!("`{}` takes {} arguments", def.name.text, def.params.len());
+            Diagnostic::error("E0402", arg.value.span, message)
         };
         self.tell(diagnostic.label(def.name.span, "defined here"));
     }

@@ -65,9 +65,6 @@ impl Evaluator<'_> {
             self.damaged = true;
             return;
         };
-        if self.quiet > 0 {
-            return;
-        }
         match object.what {
             What::Group(id, material) => {
                 self.put(object, Target::Group(id), DAffine3::IDENTITY, material, span);
@@ -89,6 +86,9 @@ impl Evaluator<'_> {
     }
 
     fn fill_slot(&mut self, kind: Kind, id: NodeId, span: Span) {
+        if self.quiet > 0 {
+            return;
+        }
         if let Some(first) = self.slots.get(&kind) {
             let code = if kind == Kind::Camera { "E0409" } else { "E0419" };
             let message = format!("a second {kind}: a scene has one");
@@ -179,9 +179,6 @@ impl Evaluator<'_> {
             }
         };
         self.labels.add(label, &value);
-        if self.quiet > 0 {
-            return;
-        }
         match object.what {
             What::Group(id, own) => {
                 self.put(&object, Target::Group(id), outer, material.or(own), span);

@@ -80,18 +80,9 @@ impl Evaluator<'_> {
                 self.for_loop((index.as_ref(), item), over, block, env, body);
             }
             StmtNode::If { arms, otherwise } => self.if_stmt(arms, otherwise.as_ref(), env, body),
-            StmtNode::Include { path, with } => {
-                let with = self.fields(with, env);
-                self.emits(stmt.span, body, "include");
-                self.include(path, with, env);
-            }
             StmtNode::Import { path, name } => {
                 let module = self.import(path, env);
                 env.define(&name.text, module);
-            }
-            StmtNode::Place { what, label, body: block } => {
-                self.emits(stmt.span, body, "place");
-                self.place(what, label.as_ref(), block.as_ref(), stmt.span, env);
             }
             StmtNode::Set { path, value } => {
                 let found = self.eval(value, env);
@@ -100,30 +91,6 @@ impl Evaluator<'_> {
             StmtNode::Assert { cond, message } => self.assert(cond, message, env),
             // The file's units were read before its first statement.
             StmtNode::Units(_) => {}
-            StmtNode::Field(field) => {
-                let value = self.field(field, env);
-                if body.place == Place::File {
-                    let message = format!("`{}` stands in no object", field.name.text);
-                    let start = Span { end: field.name.span.start, ..field.name.span };
-                    self.tell(
-                        Diagnostic::error("E0113", field.name.span, message)
-                            .help("a name is defined with `let`")
-                            .fix(start, "let "),
-                    );
-                }
-                body.fields.push(value);
-            }
-            StmtNode::Object(object) => {
-                let emits = body.place != Place::Object;
-                let value = self.object(object, env);
-                if emits {
-                    self.labels.add(object.label.as_ref(), &value);
-                    self.emit(&value, object.head());
-                } else {
-                    self.stray_object(object);
-                }
-            }
-            StmtNode::Call(call) => self.call_stmt(call, env, body),
             StmtNode::Broken { defines } => {
                 self.damaged = true;
                 body.broken = true;
@@ -131,7 +98,51 @@ impl Evaluator<'_> {
                     env.define(&name.text, Value::Poison);
                 }
             }
+            _ => self.content(stmt, env, body),
         }
+    }
+
+    /// A statement that gives a field or emits something.
+    fn content(&mut self, stmt: &Stmt, env: &Env, body: &mut Body) {
+        match &stmt.node {
+            StmtNode::Include { path, with } => {
+                let with = self.fields(with, env);
+                self.emits(stmt.span, body, "include");
+                self.include(path, with, env);
+            }
+            StmtNode::Place { what, label, body: block } => {
+                self.emits(stmt.span, body, "place");
+                self.place(what, label.as_ref(), block.as_ref(), stmt.span, env);
+            }
+            StmtNode::Field(field) => {
+                let value = self.field(field, env);
+                if body.place == Place::File {
+                    self.stray_field(&field.name);
+                }
+                body.fields.push(value);
+            }
+            StmtNode::Object(object) => {
+                let value = self.object(object, env);
+                if body.place == Place::Object {
+                    self.stray_object(object);
+                } else {
+                    self.labels.add(object.label.as_ref(), &value);
+                    self.emit(&value, object.head());
+                }
+            }
+            StmtNode::Call(call) => self.call_stmt(call, env, body),
+            _ => {}
+        }
+    }
+
+    fn stray_field(&mut self, name: &Name) {
+        let message = format!("`{}` stands in no object", name.text);
+        let start = Span { end: name.span.start, ..name.span };
+        self.tell(
+            Diagnostic::error("E0113", name.span, message)
+                .help("a name is defined with `let`")
+                .fix(start, "let "),
+        );
     }
 
     fn stray_object(&mut self, object: &crate::syntax::Object) {

@@ -21,7 +21,7 @@ impl Evaluator<'_> {
         let errors = self.sink.errors();
         let scene = (errors == 0 && !self.damaged).then(|| {
             self.scene.root = self.open_groups.pop().unwrap_or_default().group;
-            compact(self.scene)
+            compact(&self.scene)
         });
         let mut diagnostics = self.sink.finish();
         if scene.is_none() && errors == 0 {
@@ -45,11 +45,11 @@ pub(super) fn children(node: &Node) -> impl Iterator<Item = NodeId> {
 /// refer to them, in the order in which they are met from the world on.
 ///
 /// Objects and groups nest no deeper than the budget allows, so that the recursion is bounded.
-fn compact(old: Scene) -> Scene {
+fn compact(old: &Scene) -> Scene {
     let mut compactor = Compactor {
         nodes: vec![None; old.nodes.len()],
         groups: vec![None; old.groups.len()],
-        old: &old,
+        old,
         new: Scene::default(),
     };
     let root = compactor.items(&old.root);

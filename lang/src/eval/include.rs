@@ -233,11 +233,17 @@ impl Evaluator<'_> {
         }
         let mut names = BTreeMap::new();
         if self.enter(name.span) {
+            // What it emits goes into a group that is dropped, and fills no slot.
+            let labels = std::mem::take(&mut self.labels);
+            let has_asset = self.has_asset;
             self.quiet += 1;
+            self.open_groups.push(OpenGroup::default());
             self.chain.push((canonical.clone(), Some(name.span)));
             names = self.run(&read, &path, BTreeMap::new(), false).names();
             self.chain.pop();
+            self.open_groups.pop();
             self.quiet -= 1;
+            (self.labels, self.has_asset) = (labels, has_asset);
         }
         self.leave();
         let module = Rc::new(Module { names, path: name.text.to_string() });

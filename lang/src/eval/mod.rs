@@ -81,7 +81,7 @@ struct Evaluator<'a> {
     scene: Scene,
     /// Groups that are being filled, the world first, each with its depth and instances.
     open_groups: Vec<OpenGroup>,
-    /// Above zero while a file is imported: nothing is emitted.
+    /// Above zero while a file is imported: its camera, film, … are not the scene's.
     quiet: usize,
     steps: u64,
     depth: usize,

@@ -21,12 +21,11 @@ impl Evaluator<'_> {
                 (Op::Or, Value::Bool(true)) => Some(Value::Bool(true)),
                 _ => None,
             };
-            value = match decided {
-                Some(decided) => decided,
-                None => {
-                    let right = self.eval(operand, env);
-                    self.binary(*op, value, right, first.span.to(operand.span))
-                }
+            value = if let Some(decided) = decided {
+                decided
+            } else {
+                let right = self.eval(operand, env);
+                self.binary(*op, value, right, first.span.to(operand.span))
             };
         }
         value
@@ -134,13 +133,14 @@ impl Evaluator<'_> {
             }
             Op::Div => (x / y, dx / dy),
             Op::Rem => (x.rem_euclid(y), dx),
-            Op::Pow => match power_dimension(dx, y, dy) {
-                Some(dimension) => (x.powf(y), dimension),
-                None => {
+            Op::Pow => {
+                if let Some(dimension) = power_dimension(dx, y, dy) {
+                    (x.powf(y), dimension)
+                } else {
                     let message = "an exponent is a plain number, whole where the base has a unit";
                     return self.poison("E0203", span, message);
                 }
-            },
+            }
             Op::Range | Op::RangeTo => {
                 let inclusive = op == Op::RangeTo;
                 return Value::Range(Range { start: x, end: y, inclusive, dimension: dx });

@@ -149,7 +149,7 @@ impl Evaluator<'_> {
         let expr =
             syntax::parse_expr(text, span.range().start, span.source, &self.budgets, &mut trial);
         let mut value = Value::Poison;
-        if let Some(expr) = expr.filter(|expr| super::resolve::is_constant(expr)) {
+        if let Some(expr) = expr.filter(super::resolve::is_constant) {
             std::mem::swap(&mut self.sink, &mut trial);
             let file = File {
                 folder: std::path::PathBuf::new(),

@@ -11,7 +11,7 @@ use luxel_sdk::params::Unit;
 use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
-    Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
+    Comp, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
 };
 
 /// Tells every name that is unknown, used too early or defined twice.
@@ -108,7 +108,9 @@ impl Resolver<'_> {
         match &stmt.node {
             StmtNode::Let { name, ty, value } => {
                 self.expr(value);
-                ty.iter().for_each(|ty| self.ty(ty));
+                if let Some(ty) = ty {
+                    self.ty(ty);
+                }
                 self.define_on(stmt, name);
             }
             StmtNode::Param(def) => {
@@ -131,14 +133,18 @@ impl Resolver<'_> {
                     self.expr(cond);
                     self.block(&block.stmts, &[]);
                 }
-                otherwise.iter().for_each(|block| self.block(&block.stmts, &[]));
+                if let Some(block) = otherwise {
+                    self.block(&block.stmts, &[]);
+                }
             }
             StmtNode::Include { with, .. } => self.fields(with),
             StmtNode::Import { name, .. } => self.define_on(stmt, name),
             StmtNode::Place { what, label, body } => {
                 self.expr(what);
                 self.label(stmt, label.as_ref());
-                body.iter().for_each(|block: &Block| self.block(&block.stmts, &[]));
+                if let Some(block) = body {
+                    self.block(&block.stmts, &[]);
+                }
             }
             StmtNode::Set { value, .. } => self.expr(value),
             StmtNode::Assert { cond, .. } => self.expr(cond),
@@ -211,7 +217,9 @@ impl Resolver<'_> {
     }
 
     fn fields(&mut self, fields: &[Field]) {
-        fields.iter().for_each(|field| self.expr(&field.value));
+        for field in fields {
+            self.expr(&field.value);
+        }
     }
 
     fn ty(&mut self, ty: &Ty) {
@@ -235,7 +243,9 @@ impl Resolver<'_> {
             _ => {
                 let mut inner = vec![];
                 children(expr, &mut |child| inner.push(child));
-                inner.into_iter().for_each(|child| self.expr(child));
+                for child in inner {
+                    self.expr(child);
+                }
             }
         }
     }
@@ -341,14 +351,22 @@ fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
             }
             each(otherwise);
         }
-        ExprNode::Record(fields) => fields.iter().for_each(|field| each(&field.value)),
+        ExprNode::Record(fields) => {
+            for field in fields {
+                each(&field.value);
+            }
+        }
         ExprNode::Chain { first, rest } => {
             each(first);
-            rest.iter().for_each(|(_, _, operand)| each(operand));
+            for (_, _, operand) in rest {
+                each(operand);
+            }
         }
         ExprNode::Call { callee, args } => {
             each(callee);
-            args.iter().for_each(|arg| each(&arg.value));
+            for arg in args {
+                each(&arg.value);
+            }
         }
         ExprNode::Index { of, at } => {
             each(of);
@@ -357,7 +375,9 @@ fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
         ExprNode::Member { of, .. } => each(of),
         ExprNode::With { of, fields } => {
             each(of);
-            fields.iter().for_each(|field| each(&field.value));
+            for field in fields {
+                each(&field.value);
+            }
         }
         _ => {}
     }
@@ -381,7 +401,10 @@ fn mention(expr: &Expr, out: &mut BTreeSet<Arc<str>>) {
 fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
     for stmt in stmts {
         match &stmt.node {
-            StmtNode::Let { value, .. } | StmtNode::Set { value, .. } => mention(value, out),
+            StmtNode::Let { value, .. }
+            | StmtNode::Set { value, .. }
+            | StmtNode::Assert { cond: value, .. }
+            | StmtNode::Call(value) => mention(value, out),
             StmtNode::Fn(def) => mention_body(def, out),
             StmtNode::For { over, body, .. } => {
                 mention(over, out);
@@ -392,13 +415,16 @@ fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
                     mention(cond, out);
                     mention_stmts(&block.stmts, out);
                 }
-                otherwise.iter().for_each(|block| mention_stmts(&block.stmts, out));
+                if let Some(block) = otherwise {
+                    mention_stmts(&block.stmts, out);
+                }
             }
             StmtNode::Place { what, body, .. } => {
                 mention(what, out);
-                body.iter().for_each(|block| mention_stmts(&block.stmts, out));
+                if let Some(block) = body {
+                    mention_stmts(&block.stmts, out);
+                }
             }
-            StmtNode::Assert { cond: value, .. } | StmtNode::Call(value) => mention(value, out),
             StmtNode::Field(field) => mention(&field.value, out),
             StmtNode::Object(object) => mention_stmts(&object.body.stmts, out),
             _ => {}

@@ -7,7 +7,7 @@ use luxel_sdk::params::Dimension;
 use super::Evaluator;
 use super::env::Env;
 use super::value::Value;
-use crate::syntax::{Form, Ty};
+use crate::syntax::{Form, ListTy, Ty};
 
 /// Types of numbers with what they measure.
 const NUMBERS: [(&str, Dimension); 14] = [
@@ -64,7 +64,11 @@ impl Evaluator<'_> {
         if value.is_poison() {
             return value;
         }
-        let Some(length) = ty.list else { return self.fit_one(&ty.name.text, value, span, env) };
+        let length = match ty.list {
+            ListTy::One => return self.fit_one(&ty.name.text, value, span, env),
+            ListTy::Any => None,
+            ListTy::Exactly(length) => Some(length),
+        };
         let found = match &value {
             Value::Numbers(n) if n.form == Form::List => n.data.len(),
             Value::Items(i) if i.form == Form::List => i.items.len(),
@@ -101,10 +105,14 @@ impl Evaluator<'_> {
         }
         let kind = Kind::of_word(ty);
         let fits = match (&value, ty) {
-            (_, "any") | (Value::Bool(_), "bool") | (Value::Text(_), "string") => true,
-            (Value::Color(..) | Value::Number(..), "color" | "spectrum") => true,
-            (Value::Transform(_), "transform") | (Value::Look(_), "view") => true,
-            (Value::Record(_), "record") | (Value::Object(_), "object") => true,
+            (_, "any")
+            | (Value::Bool(_), "bool")
+            | (Value::Text(_), "string")
+            | (Value::Color(..) | Value::Number(..), "color" | "spectrum")
+            | (Value::Transform(_), "transform")
+            | (Value::Look(_), "view")
+            | (Value::Record(_), "record")
+            | (Value::Object(_), "object") => true,
             (Value::Object(object), _) => object.word() == ty,
             (Value::Numbers(n), "vec2" | "vec3") => {
                 let length = if ty == "vec2" { 2 } else { 3 };

@@ -8,8 +8,8 @@ use pest::iterators::Pair;
 
 use super::Rule;
 use super::tree::{
-    Block, Doc, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef, Quoted,
-    Stmt, StmtNode, Ty,
+    Block, Doc, Expr, ExprNode, Field, FnBody, FnDef, FnParam, ListTy, Name, Object, ParamDef,
+    Quoted, Stmt, StmtNode, Ty,
 };
 use crate::budgets::Budgets;
 use crate::sink::Sink;
@@ -255,11 +255,12 @@ impl Builder<'_> {
         let span = self.span(pair);
         let text = pair.as_str();
         let Some((name, list)) = text.split_once('[') else {
-            return Ty { name: Name { text: text.into(), span }, list: None };
+            return Ty { name: Name { text: text.into(), span }, list: ListTy::One };
         };
-        let length = list.trim_end_matches(']').parse().ok();
-        let span = Span { end: span.start + name.len() as u32, ..span };
-        Ty { name: Name { text: name.into(), span }, list: Some(length) }
+        let list = list.trim_end_matches(']').parse().map_or(ListTy::Any, ListTy::Exactly);
+        let start = span.range().start;
+        let span = Span::new(self.source, start, start + name.len());
+        Ty { name: Name { text: name.into(), span }, list }
     }
 
     pub(super) fn block(&mut self, pair: Pair<'_, Rule>) -> Block {

@@ -14,8 +14,8 @@ mod tree;
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, parse, parse_expr};
 pub(crate) use tree::{
-    Arg, Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Form, Name, Object, Op, ParamDef, Stmt,
-    StmtNode, Ty,
+    Arg, Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
+    ParamDef, Stmt, StmtNode, Ty,
 };
 
 pub(crate) use grammar::{Rule, SceneParser};

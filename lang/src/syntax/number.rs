@@ -108,7 +108,6 @@ fn skip_comment(text: &str, at: &mut usize) -> bool {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "reading is correctly rounded, as the standard library's is")]
 mod tests {
     use super::*;
 

@@ -136,8 +136,17 @@ pub(crate) enum FnBody {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ty {
     pub(crate) name: Name,
-    /// `[]` is a list of any length, `[3]` of that length.
-    pub(crate) list: Option<Option<usize>>,
+    pub(crate) list: ListTy,
+}
+
+/// How many of a type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ListTy {
+    One,
+    /// `[]`
+    Any,
+    /// `[3]`
+    Exactly(usize),
 }
 
 /// `name = value`.

@@ -49,7 +49,7 @@ fn parse(name: &'static str, body: &'static str) -> Case<'static> {
     let mut files = vec![("case.scene".to_owned(), String::new())];
     for line in body.lines() {
         if let Some(setting) = line.strip_prefix("// set: ") {
-            let (name, value) = setting.split_once('=').unwrap();
+            let (name, value) = setting.split_once('=').expect("`name=value`");
             set.push((name.to_owned(), value.to_owned()));
         } else if let Some(file) = line.strip_prefix("// file: ") {
             files.push((file.to_owned(), String::new()));
@@ -58,7 +58,7 @@ fn parse(name: &'static str, body: &'static str) -> Case<'static> {
             let head: Vec<&str> = words.by_ref().take(3).collect();
             expected.push((head.join(" "), words.next().unwrap_or("")));
         } else {
-            let text = &mut files.last_mut().unwrap().1;
+            let text = &mut files.last_mut().expect("there is always one").1;
             text.push_str(line);
             text.push('\n');
         }
@@ -94,9 +94,11 @@ fn check(case: &Case<'_>) -> String {
         return String::new();
     }
     let show = |list: &[(String, &str)]| -> String {
-        list.iter().map(|(head, message)| format!("  // {head} {message}\n")).collect()
+        let lines: Vec<String> =
+            list.iter().map(|(head, message)| format!("  // {head} {message}")).collect();
+        lines.join("\n")
     };
-    format!("--- {} ---\n told:\n{} expected:\n{}", case.name, show(&told), show(&expected))
+    format!("--- {} ---\n told:\n{}\n expected:\n{}\n", case.name, show(&told), show(&expected))
 }
 
 #[test]

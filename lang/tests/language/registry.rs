@@ -257,7 +257,7 @@ struct Perspective<'a> {
     #[param(required)]
     look: Look,
     /// Vertical field of view.
-    #[param(optional, unit = "rad", min = 0, max = 3.14)]
+    #[param(optional, unit = "rad", min = 0, max = 3.1)]
     fov: Maybe<f32>,
     /// Focal length.
     #[param(optional, unit = "m")]

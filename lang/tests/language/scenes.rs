@@ -36,7 +36,7 @@ fn load_file(files: &MemoryFiles, path: &str, set: &[(&str, &str)]) -> Loaded {
 fn scene(text: &str, set: &[(&str, &str)]) -> Scene {
     let loaded = load_text(&format!("{HEAD}{text}"), set);
     assert_eq!(loaded.diagnostics, []);
-    loaded.scene.unwrap()
+    loaded.scene.expect("there is no mistake")
 }
 
 /// The values of a parameter in the scene's nodes, in order.
@@ -155,10 +155,12 @@ fn imports_give_names_and_includes_emit() {
     let files = MemoryFiles::default()
         .with(
             "a/main.scene",
-            format!("{HEAD}import \"lib.scene\" as lib\ninclude \"lib.scene\" with {{ r = 3 m }}\nshape sphere {{ radius = lib.r }}\nplace lib.ball")
+            format!("{HEAD}import \"lib.scene\" as lib\ninclude \"part.scene\" with {{ r = 3 m }}\nshape sphere {{ radius = lib.r }}\nplace lib.ball")
                 .into_bytes(),
         )
-        .with("a/lib.scene", &b"scene 1\nparam r: length = 1 m\nlet ball = shape sphere { radius = 9 m }\nshape sphere { radius = r }"[..]);
+        .with("a/lib.scene", &b"scene 1\nparam r: length = 1 m\nlet ball = group { shape sphere { radius = 9 m } }\ncamera perspective { look = look_at(from = (0, 0, 9) m, to = (0, 0, 0) m, up = (0, 1, 0)) }\nshape sphere { radius = r }"[..]);
+    let files = files
+        .with("a/part.scene", &b"scene 1\nparam r: length = 1 m\nshape sphere { radius = r }"[..]);
     let loaded = load_file(&files, "a/main.scene", &[]);
     assert_eq!(loaded.diagnostics, []);
     assert_eq!(numbers(&loaded.scene.unwrap(), "radius"), [3.0, 1.0, 9.0]);

@@ -160,7 +160,7 @@ impl Evaluator<'_> {
                 self.poison("E0214", arg.span, shape);
                 return None;
             };
-            let scale = self.to_unit(call, found, Dimension::LENGTH, arg.span)?;
+            let scale = self.unit_scale(call, found, Dimension::LENGTH, arg.span)?;
             points.push((nanometres(metres * scale), y));
         }
         self.curve(points, arg.span)

@@ -40,8 +40,9 @@ impl Evaluator<'_> {
         let result = match math {
             Math::Sin | Math::Cos | Math::Tan => self.trigonometry(math, call),
             Math::Asin | Math::Acos | Math::Atan => self.inverse(math, call),
-            Math::Exp | Math::Log => self.plain(math, call),
-            Math::Floor | Math::Ceil | Math::Round => self.plain(math, call),
+            Math::Exp | Math::Log | Math::Floor | Math::Ceil | Math::Round => {
+                self.plain(math, call)
+            }
             Math::Abs | Math::Sqrt => self.one(math, call),
             Math::Pow => {
                 let (base, exponent) = (call.arg(0), call.arg(1));
@@ -110,12 +111,11 @@ impl Evaluator<'_> {
         if math == Math::Abs {
             return Some(Value::Number(x.abs(), dimension));
         }
-        match dimension.sqrt() {
-            Some(root) => Some(Value::Number(x.sqrt(), root)),
-            None => {
-                let message = format!("{} has no square root", dimension.name());
-                Some(self.poison("E0205", call.span, message))
-            }
+        if let Some(root) = dimension.sqrt() {
+            Some(Value::Number(x.sqrt(), root))
+        } else {
+            let message = format!("{} has no square root", dimension.name());
+            Some(self.poison("E0205", call.span, message))
         }
     }
 

@@ -163,17 +163,13 @@ impl Evaluator<'_> {
             let Some(place) = place else {
                 let at = given.name.as_ref().map_or(given.span, |name| name.span);
                 let args: Vec<&str> = builtin.args.iter().map(|arg| bare(arg)).collect();
-                let mut found = match &given.name {
-                    Some(name) => {
-                        let message =
-                            format!("`{}` has no parameter `{}`", builtin.name, name.text);
-                        Diagnostic::error("E0402", at, message)
-                    }
-                    None => {
-                        let count = args.len();
-                        let message = format!("`{}` takes {count} arguments", builtin.name);
-                        Diagnostic::error("E0402", at, message)
-                    }
+                let mut found = if let Some(name) = &given.name {
+                    let message = format!("`{}` has no parameter `{}`", builtin.name, name.text);
+                    Diagnostic::error("E0402", at, message)
+                } else {
+                    let count = args.len();
+                    let message = format!("`{}` takes {count} arguments", builtin.name);
+                    Diagnostic::error("E0402", at, message)
                 };
                 let near = given.name.and_then(|n| nearest(&n.text, args.iter().copied()));
                 if let Some(near) = near {
@@ -208,7 +204,7 @@ impl Evaluator<'_> {
         match arg.value {
             Value::Number(x, d) if d == wanted => Some(x),
             Value::Number(x, d) => {
-                let scale = self.to_unit(call, d, wanted, arg.span)?;
+                let scale = self.unit_scale(call, d, wanted, arg.span)?;
                 Some(x * scale)
             }
             other => {
@@ -221,7 +217,7 @@ impl Evaluator<'_> {
     }
 
     /// How many units of the wanted dimension a number of dimension `found` counts.
-    fn to_unit(
+    fn unit_scale(
         &mut self,
         call: &Call<'_>,
         found: Dimension,
@@ -285,7 +281,7 @@ impl Evaluator<'_> {
     /// A vector of a dimension; a bare one takes the file's unit.
     fn vector_of(&mut self, call: &Call<'_>, i: usize, wanted: Dimension) -> Option<glam::DVec3> {
         let (v, found, span) = self.vector_arg(call, i)?;
-        let scale = self.to_unit(call, found, wanted, span)?;
+        let scale = self.unit_scale(call, found, wanted, span)?;
         Some(glam::DVec3::from_array(v) * scale)
     }
 

@@ -36,12 +36,11 @@ impl Evaluator<'_> {
     fn rotate(&mut self, call: &Call<'_>) -> Option<DAffine3> {
         let (axis, _, span) = self.vector_arg(call, 0)?;
         let angle = self.number_arg(call, 1, Dimension::ANGLE)?;
-        match DVec3::from_array(axis).try_normalize() {
-            Some(axis) => Some(DAffine3::from_axis_angle(axis, angle)),
-            None => {
-                self.poison("E0412", span, "the axis of a rotation has no direction");
-                None
-            }
+        if let Some(axis) = DVec3::from_array(axis).try_normalize() {
+            Some(DAffine3::from_axis_angle(axis, angle))
+        } else {
+            self.poison("E0412", span, "the axis of a rotation has no direction");
+            None
         }
     }
 

@@ -40,9 +40,9 @@ fn text(entry: &Entry) -> String {
     let class = &entry.class;
     let mut page = format!("{} {} ({})\n\n", class.kind, class.name, entry.origin);
     for line in class.doc.trim().lines() {
-        let line = line.strip_prefix(' ').unwrap_or(line);
-        page.push_str(if line.trim_start().starts_with("```") { "" } else { line });
-        page.push('\n');
+        if !line.trim_start().starts_with("```") {
+            page.extend([line, "\n"]);
+        }
     }
     section(&mut page, "Parameters", class.params);
     section(&mut page, "Of every object of this kind", common_params(class.kind));
@@ -76,13 +76,14 @@ fn facts(param: &Param) -> Vec<String> {
         facts.push("may be a texture".into());
     }
     if !param.group.is_empty() {
-        facts.push(format!("exactly one of the group `{}`", param.group));
+        facts.push(format!("exactly one `{}` is given", param.group));
     }
-    facts.push(match default(param) {
-        _ if param.required => "required".into(),
-        Some(default) => format!("default {default}"),
-        None => "optional".into(),
-    });
+    match default(param) {
+        _ if param.required => facts.push("required".into()),
+        Some(default) => facts.push(format!("default {default}")),
+        None if param.group.is_empty() => facts.push("optional".into()),
+        None => {}
+    }
     if !param.deprecated.is_empty() {
         facts.push(format!("old name, now `{}`", param.deprecated));
     }
@@ -103,7 +104,9 @@ fn what(param: &Param) -> String {
         Type::File => "file".into(),
         Type::Table => "list of numbers".into(),
         Type::Look => "look_at(from, to, up)".into(),
-        Type::Emission => "spectrum with one amount".into(),
+        // The spectrum itself stands in no group; its amounts do.
+        Type::Emission if param.group.is_empty() => "spectrum".into(),
+        Type::Emission => "number".into(),
         Type::Object(kind) => kind.word().into(),
     }
 }

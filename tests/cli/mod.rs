@@ -1,0 +1,196 @@
+//! The program as a person runs it: exit codes, files, interrupts.
+
+mod program;
+mod watch;
+
+use std::time::{Duration, Instant};
+
+use program::{Folder, SCENE};
+
+#[test]
+fn a_scene_becomes_two_pictures_named_after_it_in_the_current_folder() {
+    let folder = Folder::new("two-pictures").with("scenes/ball.scene", SCENE);
+    let done = folder.luxel(&["render", "scenes/ball.scene"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    assert!(done.out.contains("wrote ball.exr and ball.png"), "{done:?}");
+    assert_eq!(folder.names(), ["ball.exr", "ball.png", "scenes"]);
+    assert!(folder.read("ball.exr").starts_with(&[0x76, 0x2f, 0x31, 0x01]));
+    assert!(folder.read("ball.png").starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn the_same_scene_gives_the_same_bytes_for_any_number_of_threads() {
+    let folder = Folder::new("same-bytes").with("a.scene", SCENE);
+    for (name, threads) in [("one", "1"), ("three", "3")] {
+        let done = folder.luxel(&["render", "a.scene", "-q", "--threads", threads, "-o", name]);
+        assert_eq!((done.code, done.out.as_str(), done.err.as_str()), (0, "", ""));
+    }
+    assert_eq!(folder.read("one.exr"), folder.read("three.exr"));
+    assert_eq!(folder.read("one.png"), folder.read("three.png"));
+    folder.luxel(&["render", "a.scene", "-q", "--seed", "9", "-o", "other"]);
+    assert_ne!(folder.read("one.exr"), folder.read("other.exr"));
+}
+
+#[test]
+fn json_tells_size_samples_and_files() {
+    let folder = Folder::new("json").with("a.scene", SCENE);
+    let done = folder.luxel(&[
+        "render",
+        "a.scene",
+        "--json",
+        "--size",
+        "20x10",
+        "--spp",
+        "3",
+        "--crop",
+        "15,0,10,5",
+    ]);
+    assert_eq!(done.code, 0, "{done:?}");
+    for part in [
+        r#""size":[20,10]"#,
+        r#""window":[15,0,5,5]"#,
+        r#""samples":75"#,
+        r#""complete":true"#,
+        r#""bad_samples":0"#,
+        r#""exr":"a.exr""#,
+    ] {
+        assert!(done.out.contains(part), "{part} in {}", done.out);
+    }
+    assert_eq!(done.out.lines().count(), 1);
+}
+
+#[test]
+fn mistakes_of_the_scene_are_told_at_their_place_with_code_1_and_no_picture() {
+    let camera_end = SCENE.find("film").unwrap();
+    let faults = [
+        (format!("{SCENE}shape sphere {{ radus = 1 m }}"), "E0402"),
+        (format!("{SCENE}shape mesh {{ file = \"none.obj\", unit = 1 m }}"), "E0413"),
+        (format!("scene 1\n{}", &SCENE[camera_end..]), "E0409"),
+        (SCENE.replace("rgb {", "rgb { file = \"../up.exr\","), "outside this folder"),
+    ];
+    for (scene, told) in faults {
+        let folder = Folder::new("mistakes").with("a.scene", &scene);
+        let done = folder.luxel(&["render", "a.scene"]);
+        assert_eq!(done.code, 1, "{done:?}");
+        assert!(done.err.contains(told), "{told}: {done:?}");
+        assert_eq!(folder.names(), ["a.scene"]);
+    }
+}
+
+#[test]
+fn check_tells_place_and_code_as_json_lines() {
+    let scene = format!("{SCENE}\nshape sphere {{ radus = 1 m }}\n");
+    let folder = Folder::new("check").with("good.scene", SCENE).with("bad.scene", &scene);
+    let good = folder.luxel(&["check", "good.scene"]);
+    assert_eq!((good.code, good.out.as_str()), (0, "good.scene: fine\n"), "{good:?}");
+    let both = folder.luxel(&["check", "--json", "good.scene", "bad.scene"]);
+    assert_eq!(both.code, 1);
+    let line = scene.lines().count();
+    for part in [r#""code":"E0402""#, r#""file":"bad.scene""#, &format!("\"line\":{line},")] {
+        assert!(both.out.contains(part), "{part} in {}", both.out);
+    }
+    let missing = folder.luxel(&["check", "none.scene"]);
+    assert_eq!(missing.code, 1, "{missing:?}");
+    assert!(missing.err.contains("none.scene"), "{missing:?}");
+}
+
+#[test]
+fn check_prints_the_scene_graph() {
+    let folder = Folder::new("print").with("a.scene", SCENE);
+    let done = folder.luxel(&["check", "--print", "a.scene"]);
+    assert!(done.code == 0 && done.out.contains("sphere"), "{done:?}");
+}
+
+#[test]
+fn mistakes_of_the_command_line_end_with_code_2() {
+    let folder = Folder::new("usage").with("a.scene", SCENE);
+    for args in [
+        &["render"][..],
+        &["paint", "a.scene"],
+        &["render", "a.scene", "--size", "0x4"],
+        &["render", "a.scene", "--spp", "0"],
+        &["render", "a.scene", "--crop", "99,99,4,4"],
+    ] {
+        let done = folder.luxel(args);
+        assert_eq!(done.code, 2, "{args:?}: {done:?}");
+        assert!(!done.err.is_empty());
+    }
+    assert_eq!(folder.names(), ["a.scene"]);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_told_before_rendering() {
+    let folder = Folder::new("unwritable").with("a.scene", SCENE).with("taken.exr/x", "");
+    // At this many samples the render would take days.
+    for place in ["none/out", "taken"] {
+        let done = folder.luxel(&["render", "a.scene", "--spp", "4000000000", "-o", place]);
+        assert_eq!(done.code, 1, "{done:?}");
+        assert!(done.err.contains(&format!("cannot write `{place}.exr`")), "{done:?}");
+    }
+    assert_eq!(folder.names(), ["a.scene", "taken.exr"]);
+}
+
+#[test]
+fn unknown_names_are_answered_with_the_nearest() {
+    let folder = Folder::new("names");
+    let kind = folder.luxel(&["list", "materail"]);
+    assert!(kind.code == 1 && kind.err.contains("did you mean `material`"), "{kind:?}");
+    let name = folder.luxel(&["describe", "shape", "spher"]);
+    assert!(name.code == 1 && name.err.contains("did you mean `sphere`"), "{name:?}");
+    let page = folder.luxel(&["describe", "shape", "sphere"]);
+    assert!(page.code == 0 && page.out.contains("radius: number, in m"), "{page:?}");
+    let list = folder.luxel(&["list"]);
+    assert!(list.code == 0 && list.out.contains("sphere") && list.out.contains("sobol"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_a_valid_picture_and_says_so() {
+    let folder = Folder::new("interrupt").with("a.scene", SCENE);
+    let mut running = folder.start(&["render", "a.scene", "--spp", "4000000000", "--json"]);
+    // Whatever the machine is busy with, the first pass is done well within this time.
+    std::thread::sleep(Duration::from_millis(700));
+    running.interrupt();
+    let done = running.end();
+    assert_eq!(done.code, 3, "{done:?}");
+    assert!(done.out.contains(r#""complete":false"#), "{done:?}");
+    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene"]);
+    // Reading it as a scene's texture proves that it is whole.
+    let read = "scene 1\nlet t = texture image { file = \"a.exr\" }\n";
+    let scene = SCENE.replace("scene 1\n", read).replace("reflectance = 0.5", "reflectance = t");
+    let again = Folder::write(&folder, "b.scene", &scene).luxel(&["check", "b.scene"]);
+    assert_eq!(again.code, 0, "{again:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_keeps_the_old_picture_and_leaves_nothing_else() {
+    let folder = Folder::new("full").with("a.scene", SCENE).with("a.exr", "old");
+    // A limit on the size of files stands in for the disk's: writing fails half way through.
+    let done = folder
+        .luxel_under("trap '' XFSZ; ulimit -f 8", &["render", "a.scene", "--size", "200x200"]);
+    assert_eq!(done.code, 1, "{done:?}");
+    assert!(done.err.contains("cannot write `a.exr`"), "{done:?}");
+    assert_eq!(folder.read("a.exr"), b"old");
+    assert_eq!(folder.names(), ["a.exr", "a.scene"]);
+}
+
+#[test]
+fn a_scene_does_not_write_over_what_it_reads() {
+    let folder = Folder::new("own-output").with("a.scene", SCENE);
+    assert_eq!(folder.luxel(&["render", "a.scene", "-q", "-o", "sky"]).code, 0);
+    let scene =
+        SCENE.replace("light constant { scale = 1 }", "light environment { file = \"sky.exr\" }");
+    let folder = folder.with("b.scene", &scene);
+    let done = folder.luxel(&["render", "b.scene", "-o", "sky"]);
+    assert!(done.code == 1 && done.err.contains("its own output"), "{done:?}");
+}
+
+/// Waits until `done`, at most ten seconds.
+fn until(what: &str, mut done: impl FnMut() -> bool) {
+    let since = Instant::now();
+    while !done() {
+        assert!(since.elapsed() < Duration::from_secs(10), "waited for {what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}

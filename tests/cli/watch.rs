@@ -1,0 +1,30 @@
+//! `luxel watch`, as an editor sees it.
+#![cfg(unix)]
+
+use super::program::{Folder, SCENE};
+use super::until;
+
+#[test]
+fn a_save_changes_the_picture_a_mistake_keeps_it_and_ctrl_c_ends_well() {
+    let folder = Folder::new("watch").with("a.scene", SCENE);
+    let mut watching = folder.start(&["watch", "a.scene"]);
+    until("the first picture", || !folder.read("a.exr").is_empty());
+    let first = folder.read("a.exr");
+
+    let darker = SCENE.replace("reflectance = 0.5", "reflectance = 0.1");
+    folder.write("a.scene", &darker);
+    until("the second picture", || folder.read("a.exr") != first);
+    let second = folder.read("a.exr");
+
+    folder.write("a.scene", &darker.replace("radius", "radus"));
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    assert_eq!(folder.read("a.exr"), second);
+
+    folder.write("a.scene", SCENE);
+    until("the first picture again", || folder.read("a.exr") == first);
+    watching.interrupt();
+    let done = watching.end();
+    assert_eq!(done.code, 0, "{done:?}");
+    assert!(done.err.contains("E0402"), "{done:?}");
+    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene"]);
+}

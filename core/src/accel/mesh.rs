@@ -101,18 +101,31 @@ impl MeshBvh {
     /// infinite. A ray that is not finite (or a `t_max` of NaN), has no direction, or starts more than 2¹⁰⁰ mesh sizes
     /// away hits nothing.
     pub fn intersect(&self, o: Vec3, d: Vec3, t_max: f32) -> Option<MeshHit> {
-        self.trace::<false, false>(o, d, t_max).0
+        self.trace::<false, false>(o, d, t_max, NONE).0
     }
 
     /// True if anything is hit with 0 < t <= `t_max`; the same answer as
     /// `intersect(..).is_some()`, sooner.
     pub fn occluded(&self, o: Vec3, d: Vec3, t_max: f32) -> bool {
-        self.trace::<true, false>(o, d, t_max).0.is_some()
+        self.trace::<true, false>(o, d, t_max, NONE).0.is_some()
     }
 
-    /// [`MeshBvh::intersect`] and how many nodes and triangle blocks it looked at.
-    pub fn intersect_counted(&self, o: Vec3, d: Vec3, t_max: f32) -> (Option<MeshHit>, u32) {
-        self.trace::<false, true>(o, d, t_max)
+    /// [`MeshBvh::occluded`] for a ray that leaves the triangle `skip`, which a straight ray cannot
+    /// meet again: rounding would let it, where the triangle is a sliver.
+    pub fn occluded_from(&self, o: Vec3, d: Vec3, t_max: f32, skip: Option<u32>) -> bool {
+        self.trace::<true, false>(o, d, t_max, skip.unwrap_or(NONE)).0.is_some()
+    }
+
+    /// [`MeshBvh::intersect`] for a ray that leaves the triangle `skip`, and how many nodes and
+    /// triangle blocks it looked at.
+    pub fn intersect_counted(
+        &self,
+        o: Vec3,
+        d: Vec3,
+        t_max: f32,
+        skip: Option<u32>,
+    ) -> (Option<MeshHit>, u32) {
+        self.trace::<false, true>(o, d, t_max, skip.unwrap_or(NONE))
     }
 
     #[inline(always)]
@@ -121,12 +134,13 @@ impl MeshBvh {
         o: Vec3,
         d: Vec3,
         t_max: f32,
+        skip: u32,
     ) -> (Option<MeshHit>, u32) {
         let Some(root) = self.root else { return (None, 0) };
         if t_max.is_nan() {
             return (None, 0);
         }
-        let Some((ray, t_unit)) = self.prepare(o, d) else { return (None, 0) };
+        let Some((ray, t_unit)) = self.prepare(o, d, skip) else { return (None, 0) };
         // An infinite limit would let a ray "enter" the boxes that it misses at infinity.
         let limit = (t_max / t_unit).min(f32::MAX);
         let mut best = Nearest { t: limit, id: u32::MAX, b1: 0.0, b2: 0.0 };
@@ -148,7 +162,7 @@ impl MeshBvh {
     /// The ray in the tree's frame with a direction of moderate length, and the power of two by
     /// which a parameter of that ray is multiplied to be one of the caller's.
     #[inline(always)]
-    fn prepare(&self, o: Vec3, d: Vec3) -> Option<(MeshRay, f32)> {
+    fn prepare(&self, o: Vec3, d: Vec3, skip: u32) -> Option<(MeshRay, f32)> {
         let o = o * self.unit;
         let mut d = d * self.unit;
         let mut t_unit = 1.0;
@@ -160,7 +174,7 @@ impl MeshBvh {
             largest = d.abs().max_element();
         }
         let valid = o.is_finite() && d.is_finite() && largest > 0.0;
-        valid.then(|| (MeshRay::new(o, d, self.reach), t_unit))
+        valid.then(|| (MeshRay::new(o, d, self.reach).skipping(skip), t_unit))
     }
 
     /// Visits nodes near to far by octant; `LEN` is a power of two not below `self.stack`.
@@ -215,6 +229,9 @@ impl MeshBvh {
         }
     }
 }
+
+/// The number of no triangle.
+const NONE: u32 = u32::MAX;
 
 /// The power of two at or below `x`, within 2^±100; 1 for zero.
 fn power_of_two_below(x: f32) -> f32 {

@@ -27,7 +27,7 @@ fn check(
         let expected = list.intersect(o, d, t_max);
         assert_eq!(tree.intersect(o, d, t_max), expected, "o {o} d {d} t_max {t_max}");
         assert_eq!(tree.occluded(o, d, t_max), expected.is_some());
-        let (counted, steps) = tree.intersect_counted(o, d, t_max);
+        let (counted, steps) = tree.intersect_counted(o, d, t_max, None);
         assert_eq!(counted, expected);
         assert!(steps > 0);
         hits += usize::from(expected.is_some());
@@ -114,7 +114,7 @@ fn distance_and_barycentrics_agree_with_double_precision() {
 fn twenty_thousand_identical_triangles_give_the_first_in_few_steps() {
     let points = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let tree = build(&(points, vec![[0, 1, 2]; 20_000]));
-    let (hit, steps) = tree.intersect_counted(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z, FAR);
+    let (hit, steps) = tree.intersect_counted(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z, FAR, None);
     assert_eq!(hit.unwrap().triangle, 0);
     // All must be looked at, four at a time, and a third as many nodes again.
     assert!(steps < 20_000, "{steps}");

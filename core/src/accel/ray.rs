@@ -29,6 +29,8 @@ pub(super) struct MeshRay {
     pub(super) o: [f32; 3],
     /// `d[kx]/d[kz]`, `d[ky]/d[kz]`, `1/d[kz]`.
     pub(super) shear: [f32; 3],
+    /// A triangle that is passed; `u32::MAX` for none.
+    pub(super) skip: u32,
 }
 
 impl MeshRay {
@@ -66,7 +68,14 @@ impl MeshRay {
             axes,
             o: [o[axes[0]], o[axes[1]], o[axes[2]]],
             shear: [d[axes[0]] * rz, d[axes[1]] * rz, rz],
+            skip: u32::MAX,
         }
+    }
+
+    /// The same ray, passing the triangle of that number.
+    #[inline(always)]
+    pub(super) fn skipping(self, skip: u32) -> Self {
+        Self { skip, ..self }
     }
 
     /// Which of the node's four boxes the ray may enter at or before `t_max`, and where.

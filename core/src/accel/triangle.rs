@@ -88,7 +88,12 @@ impl Block {
         let r = Vec4::ONE / det;
         let t = (edges.u * az + edges.v * bz + edges.w * cz) * sz * r;
         let within = t.cmpgt(Vec4::ZERO) & t.cmple(Vec4::splat(t_max)) & det.cmpne(Vec4::ZERO);
-        let mask = (inside & within).bitmask();
+        let mut mask = (inside & within).bitmask();
+        if mask != 0 {
+            for lane in 0..WIDTH {
+                mask &= !(u32::from(self.ids[lane] == ray.skip) << lane);
+            }
+        }
         (mask != 0).then(|| Lanes { mask, t, b1: edges.v * r, b2: edges.w * r })
     }
 }

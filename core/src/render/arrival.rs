@@ -83,7 +83,7 @@ impl Shader<'_, '_> {
         }
         self.path.from = surface.p;
         let outside = wo.dot(surface.ng) > 0.0;
-        self.path.on = Some(Standing { placement: hit.placement, ng: surface.ng, outside });
+        self.path.on = Some(Standing { leaving: hit.into(), ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
             self.scatter(at, &surface, material);

@@ -4,7 +4,7 @@ use glam::DVec3;
 use luxel_sdk::color::{Palette, Spectrum};
 use luxel_sdk::num::Ray;
 
-use crate::stage::{MediumStack, Stage};
+use crate::stage::{Leaving, MediumStack, Stage};
 
 /// One path, beside the integrator's own state.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +27,7 @@ pub(super) struct Path {
 /// A surface that a path stands on: enough to know which side a ray leaves to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
-    pub(super) placement: u32,
+    pub(super) leaving: Leaving,
     pub(super) ng: DVec3,
     /// Whether the path came from the outside.
     pub(super) outside: bool,
@@ -39,6 +39,11 @@ impl Path {
         Self { job, weight, palette, ended: false, from: DVec3::ZERO, on: None, media }
     }
 
+    /// The surface that a ray from here leaves.
+    pub(super) fn leaving(&self) -> Option<Leaving> {
+        self.on.map(|on| on.leaving)
+    }
+
     /// The media around a ray that leaves from here.
     pub(super) fn media_along(&self, ray: &Ray, stage: &Stage) -> MediumStack {
         let mut media = self.media;
@@ -46,7 +51,7 @@ impl Path {
             && let Some(on) = self.on
             && (ray.d.dot(on.ng) > 0.0) != on.outside
         {
-            stage.cross(&mut media, on.placement, ray.d, on.ng);
+            stage.cross(&mut media, on.leaving.placement, ray.d, on.ng);
         }
         media
     }

@@ -16,7 +16,7 @@ use super::{Control, shadow};
 use crate::cast;
 use crate::film::Tile;
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Skin, Stage};
+use crate::stage::{Leaving, Skin, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
 const LANES: usize = 128;
@@ -162,15 +162,8 @@ impl<'s> Worker<'s> {
         for request in &self.now.shadows {
             let lane = &mut self.lanes[request.lane as usize];
             let path = &self.paths[request.lane as usize];
-            let media = path.media_along(&request.ray, self.stage);
-            let left = shadow::passes(
-                self.stage,
-                &request.ray,
-                media,
-                &path.palette,
-                &mut lane.samples,
-                &mut self.scratch,
-            );
+            let (samples, scratch) = (&mut lane.samples, &mut self.scratch);
+            let left = shadow::passes(self.stage, &request.ray, path, samples, scratch);
             lane.l += request.l * left;
         }
     }
@@ -189,9 +182,10 @@ impl<'s> Worker<'s> {
     fn fly(&mut self, mut ray: Ray, lane: usize) {
         let stage = self.stage;
         let mut media = self.paths[lane].media_along(&ray, stage);
+        let mut from = self.paths[lane].leaving();
         let (mut steps, mut flight) = (0, Spectrum::ONE);
         loop {
-            let hit = stage.intersect(&ray, &mut steps);
+            let hit = stage.intersect(&ray, from, &mut steps);
             let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
             let path = &mut self.paths[lane];
             let Lane { at: arrival, samples, .. } = &mut self.lanes[lane];
@@ -217,6 +211,7 @@ impl<'s> Worker<'s> {
             if stage.placements[hit.placement as usize].skin != Skin::Open {
                 return shader.surface(&ray, &hit, steps, arrival);
             }
+            from = Some(Leaving::from(&hit));
             let surface = stage.surface(&ray, &hit);
             stage.cross(&mut media, hit.placement, ray.d, surface.ng);
             let o = offset_origin(surface.p, surface.p_err, surface.ng, ray.d);
@@ -306,7 +301,7 @@ struct StageHost<'a>(&'a Stage);
 
 impl Host for StageHost<'_> {
     fn occluded(&self, ray: &Ray) -> bool {
-        self.0.occluded(ray)
+        self.0.occluded(ray, None)
     }
 
     fn scene_sphere(&self) -> (DVec3, f64) {

@@ -22,6 +22,9 @@ pub enum Geometry {
     Mesh(Arc<Mesh>),
 }
 
+/// Most triangles behind its origin that a ray passes; what it then meets counts.
+const MOST_BEHIND: u32 = 8;
+
 /// A mesh with its tree.
 #[derive(Debug)]
 pub struct Mesh {
@@ -59,29 +62,55 @@ impl Mesh {
         self.bvh.bytes()
     }
 
-    /// The local ray in single precision about the mesh's centre, and where on the ray it starts:
-    /// a diagonal before the mesh's box, so that little is lost by rounding, and triangles on the
-    /// box's faces stay ahead however their distance is rounded.
-    fn narrow(&self, ray: &Ray, t_enter: f64) -> (glam::Vec3, glam::Vec3, f32, f64) {
-        let start = (t_enter - self.diagonal / ray.d.abs().max_element()).max(0.0);
+    /// Where a ray that enters the box at `t_enter` is taken up: a diagonal before, so that little is
+    /// lost by rounding, and triangles on the box's faces stay ahead however their distance is
+    /// rounded.
+    fn start(&self, ray: &Ray, t_enter: f64) -> f64 {
+        (t_enter - self.diagonal / ray.d.abs().max_element()).max(0.0)
+    }
+
+    /// The local ray from `start` on in single precision about the mesh's centre.
+    fn narrow(&self, ray: &Ray, start: f64) -> (glam::Vec3, glam::Vec3, f32) {
         let o = ray.at(start) - self.triangles().centre;
-        let t_max = narrow(ray.t_max - start).next_up();
-        (o.as_vec3(), ray.d.as_vec3(), t_max, start)
+        (o.as_vec3(), ray.d.as_vec3(), narrow(ray.t_max - start).next_up())
     }
 
-    fn intersect(&self, ray: &Ray, t_enter: f64, steps: &mut u32) -> Option<Hit> {
-        let (o, d, t_max, start) = self.narrow(ray, t_enter);
-        let (hit, n) = self.bvh.intersect_counted(o, d, t_max);
-        *steps += n;
-        let hit = hit?;
-        let t = start + f64::from(hit.t);
-        let at = DVec2::new(f64::from(hit.b1), f64::from(hit.b2));
-        (t <= ray.t_max).then_some(Hit { t, at, face: hit.triangle })
+    /// The nearest hit. A ray that leaves this mesh may seem to meet a sliver beside the triangle
+    /// that it leaves, by rounding: what double precision finds behind the origin is passed.
+    fn intersect(
+        &self,
+        ray: &Ray,
+        t_enter: f64,
+        from: Option<u32>,
+        steps: &mut u32,
+    ) -> Option<Hit> {
+        let mut start = self.start(ray, t_enter);
+        for left in (0..MOST_BEHIND).rev() {
+            let (o, d, t_max) = self.narrow(ray, start);
+            let (hit, n) = self.bvh.intersect_counted(o, d, t_max, from);
+            *steps += n;
+            let hit = hit?;
+            let t = start + f64::from(hit.t);
+            if from.is_none() || left == 0 || !self.is_behind(hit.triangle, ray) {
+                let at = DVec2::new(f64::from(hit.b1), f64::from(hit.b2));
+                return (t <= ray.t_max).then_some(Hit { t, at, face: hit.triangle });
+            }
+            start = t;
+        }
+        None
     }
 
-    fn occluded(&self, ray: &Ray, t_enter: f64) -> bool {
-        let (o, d, t_max, _) = self.narrow(ray, t_enter);
-        self.bvh.occluded(o, d, t_max)
+    fn occluded(&self, ray: &Ray, t_enter: f64, from: Option<u32>) -> bool {
+        let (o, d, t_max) = self.narrow(ray, self.start(ray, t_enter));
+        self.bvh.occluded_from(o, d, t_max, from)
+            && (from.is_none() || self.intersect(ray, t_enter, from, &mut 0).is_some())
+    }
+
+    /// Whether the plane of a triangle lies behind the origin of a ray, in double precision.
+    fn is_behind(&self, triangle: u32, ray: &Ray) -> bool {
+        let [a, b, c] = self.triangles().corners(triangle);
+        let normal = (b - a).cross(c - a);
+        normal.dot(a - ray.o) * normal.dot(ray.d) <= 0.0
     }
 
     /// The point of a triangle with barycentrics `at` of its second and third corner.
@@ -166,19 +195,26 @@ impl Geometry {
         }
     }
 
-    /// The nearest hit of a ray in the geometry's frame; it enters the box at `t_enter`.
-    pub fn intersect(&self, ray: &Ray, t_enter: f64, steps: &mut u32) -> Option<Hit> {
+    /// The nearest hit of a ray in the geometry's frame; it enters the box at `t_enter`, and leaves
+    /// the triangle `from` if it starts on one.
+    pub fn intersect(
+        &self,
+        ray: &Ray,
+        t_enter: f64,
+        from: Option<u32>,
+        steps: &mut u32,
+    ) -> Option<Hit> {
         match self {
             Self::Analytic(object) => object.fixed().shape().intersect(ray),
-            Self::Mesh(mesh) => mesh.intersect(ray, t_enter, steps),
+            Self::Mesh(mesh) => mesh.intersect(ray, t_enter, from, steps),
         }
     }
 
     /// Whether anything is hit.
-    pub fn occluded(&self, ray: &Ray, t_enter: f64) -> bool {
+    pub fn occluded(&self, ray: &Ray, t_enter: f64, from: Option<u32>) -> bool {
         match self {
             Self::Analytic(object) => object.fixed().shape().intersect(ray).is_some(),
-            Self::Mesh(mesh) => mesh.occluded(ray, t_enter),
+            Self::Mesh(mesh) => mesh.occluded(ray, t_enter, from),
         }
     }
 

@@ -29,7 +29,7 @@ pub use features::Features;
 pub use geometry::{Geometry, Mesh};
 pub use lights::{FoundLight, LightSource, Lights, Origin};
 pub use media::MediumStack;
-pub use placement::{Placement, SceneHit, Skin};
+pub use placement::{Leaving, Placement, SceneHit, Skin};
 pub use settings::{ColorChoice, Film};
 
 /// A scene made ready to trace.

@@ -74,6 +74,28 @@ impl Placement {
     }
 }
 
+/// The primitive that a ray leaves: a flat one cannot be met again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Leaving {
+    /// Which placement.
+    pub placement: u32,
+    /// Which of its faces.
+    pub face: u32,
+}
+
+impl Leaving {
+    /// The face that is passed where it is on this placement.
+    pub fn face_on(from: Option<Self>, placement: u32) -> Option<u32> {
+        from.filter(|from| from.placement == placement).map(|from| from.face)
+    }
+}
+
+impl From<&SceneHit> for Leaving {
+    fn from(hit: &SceneHit) -> Self {
+        Self { placement: hit.placement, face: hit.hit.face }
+    }
+}
+
 /// Where a ray met the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneHit {

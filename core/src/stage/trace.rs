@@ -3,31 +3,32 @@
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::Ray;
 
-use super::{MediumStack, SceneHit, Skin, Stage};
+use super::{Leaving, MediumStack, SceneHit, Skin, Stage};
 
 impl Stage {
-    /// The nearest surface along a ray. Counts nodes and primitives in `steps`.
-    pub fn intersect(&self, ray: &Ray, steps: &mut u32) -> Option<SceneHit> {
+    /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
+    pub fn intersect(&self, ray: &Ray, from: Option<Leaving>, steps: &mut u32) -> Option<SceneHit> {
         let mut nearest = None;
         self.top.intersect(ray.o, ray.d, ray.t_max, |index, t_enter, t_max| {
             *steps += 1;
             let placement = &self.placements[index as usize];
             let local = placement.to_local(&Ray { t_max, ..*ray });
             let geometry = &self.geometries[placement.geometry as usize];
-            let hit = geometry.intersect(&local, t_enter, steps)?;
+            let hit = geometry.intersect(&local, t_enter, Leaving::face_on(from, index), steps)?;
             nearest = Some(SceneHit { placement: index, hit });
             Some(hit.t)
         });
         nearest
     }
 
-    /// Whether a surface that stops light lies along a ray.
-    pub fn occluded(&self, ray: &Ray) -> bool {
+    /// Whether a surface that stops light lies along a ray that leaves `from`.
+    pub fn occluded(&self, ray: &Ray, from: Option<Leaving>) -> bool {
         self.top.any(ray.o, ray.d, ray.t_max, |index, t_enter, t_max| {
             let placement = &self.placements[index as usize];
             let local = placement.to_local(&Ray { t_max, ..*ray });
+            let geometry = &self.geometries[placement.geometry as usize];
             placement.skin != Skin::Open
-                && self.geometries[placement.geometry as usize].occluded(&local, t_enter)
+                && geometry.occluded(&local, t_enter, Leaving::face_on(from, index))
         })
     }
 
@@ -62,7 +63,9 @@ impl Stage {
         let mut ray = Ray { o: p, d, t_max: f64::INFINITY };
         let mut entered: Vec<u32> = vec![];
         let mut left: Vec<u32> = vec![];
-        while let Some(hit) = self.intersect(&ray, &mut 0) {
+        let mut from = None;
+        while let Some(hit) = self.intersect(&ray, from, &mut 0) {
+            from = Some(Leaving::from(&hit));
             let surface = self.surface(&ray, &hit);
             if self.placements[hit.placement as usize].closed {
                 let known = entered.iter().rposition(|inside| *inside == hit.placement);

@@ -92,7 +92,9 @@ fn facts(param: &Param) -> Vec<String> {
 
 fn what(param: &Param) -> String {
     match param.ty {
-        Type::Float | Type::Double | Type::MaybeFloat => "number".into(),
+        // The spectrum itself stands in no group; its amounts do.
+        Type::Emission if param.group.is_empty() => "spectrum".into(),
+        Type::Emission | Type::Float | Type::Double | Type::MaybeFloat => "number".into(),
         Type::Int => "whole number".into(),
         Type::Bool => "true or false".into(),
         Type::Vec2 => "two numbers".into(),
@@ -104,9 +106,6 @@ fn what(param: &Param) -> String {
         Type::File => "file".into(),
         Type::Table => "list of numbers".into(),
         Type::Look => "look_at(from, to, up)".into(),
-        // The spectrum itself stands in no group; its amounts do.
-        Type::Emission if param.group.is_empty() => "spectrum".into(),
-        Type::Emission => "number".into(),
         Type::Object(kind) => kind.word().into(),
     }
 }

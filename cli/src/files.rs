@@ -97,7 +97,7 @@ fn told(error: &io::Error) -> FileError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::tests::Folder;
+    use crate::testing::Folder;
 
     #[test]
     fn only_the_scenes_folder_and_allowed_ones_are_read() {

@@ -16,6 +16,8 @@ mod progress;
 mod render;
 mod report;
 mod summary;
+#[cfg(test)]
+mod testing;
 mod watch;
 
 use std::process::ExitCode;

@@ -60,7 +60,7 @@ mod tests {
     use luxel_core::film::Rect;
 
     use super::*;
-    use crate::output::tests::Folder;
+    use crate::testing::Folder;
 
     #[test]
     fn both_files_appear_and_nothing_else() {

@@ -185,7 +185,7 @@ fn refused(error: notify::Error) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::tests::Folder;
+    use crate::testing::Folder;
 
     /// Far above the longest wait of `Changes`, on a busy machine.
     const LONG: Duration = Duration::from_secs(10);

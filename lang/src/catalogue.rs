@@ -74,6 +74,7 @@ pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0414", "a plugin library that is not loaded"),
     ("E0415", "an asset without its unit"),
     ("E0416", "an unknown choice"),
+    ("E0417", "a plugin or importer warns of something odd (warning)"),
     ("E0418", "a transform where nothing has a place"),
     ("E0419", "a second film, integrator, sampler, filter or medium"),
     ("E0420", "an object that is seen nowhere (warning)"),

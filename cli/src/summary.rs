@@ -104,7 +104,7 @@ impl Summary {
 
     /// A few lines.
     pub(crate) fn text(&self, output: &Output) -> String {
-        let Self { size, spp, mean, .. } = self;
+        let Self { spp, mean, .. } = self;
         let error = match self.error {
             Some(Errors { median, p95 }) => {
                 format!("median {:.2} %, 95th percentile {:.2} %", median * 100.0, p95 * 100.0)
@@ -118,7 +118,7 @@ impl Summary {
         };
         format!(
             "wrote {exr} and {png}{done}\n\
-             {w} x {h}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
+             {size}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
              mean radiance ({:.4}, {:.4}, {:.4}) W/m²/sr\n\
              relative standard error per pixel: {error}\n",
             mean.x,
@@ -126,12 +126,22 @@ impl Summary {
             mean.z,
             exr = output.exr.display(),
             png = output.png.display(),
-            w = size.x,
-            h = size.y,
+            size = self.place(),
             mode = self.mode,
             time = duration(self.seconds),
             rate = self.rate() / 1e6,
         )
+    }
+
+    /// `640 x 480`, or of a crop `64 x 64 at (100, 50) of 640 x 480`.
+    fn place(&self) -> String {
+        let [x, y, w, h] = self.window;
+        let whole = format!("{} x {}", self.size.x, self.size.y);
+        if [w, h] == self.size.to_array() {
+            whole
+        } else {
+            format!("{w} x {h} at ({x}, {y}) of {whole}")
+        }
     }
 
     fn wanted(&self) -> u64 {

@@ -26,6 +26,8 @@ const SHAPE: &[Param] = &[
     handle("material", Kind::Material, "How the surface scatters; a group's material if absent."),
     handle("interior", Kind::Medium, "What fills a closed shape."),
 ];
+const IMPORTER: &[Param] =
+    &[handle("material", Kind::Material, "For shapes to which the file gives no material.")];
 const MATERIAL: &[Param] =
     &[handle("interior", Kind::Medium, "What fills closed shapes of this material.")];
 
@@ -35,6 +37,7 @@ pub fn common_params(kind: Kind) -> &'static [Param] {
     match kind {
         Kind::Shape => SHAPE,
         Kind::Material => MATERIAL,
+        Kind::Importer => IMPORTER,
         _ => &[],
     }
 }

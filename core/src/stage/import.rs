@@ -50,6 +50,9 @@ impl Import<'_> {
             let known = self.done.get(&id).copied();
             let group = known.unwrap_or_else(|| self.asset(scene, id, diagnostics));
             self.done.insert(id, group);
+            if let Some(Value::Node(own)) = scene.node(id).get("material").map(|a| &a.value) {
+                item.material = item.material.or(Some(*own));
+            }
             // An asset that could not be read leaves an empty place; the error has been said.
             item.target = Target::Group(group.unwrap_or_else(|| self.group(Group::default())));
         }

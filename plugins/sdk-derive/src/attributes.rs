@@ -74,7 +74,10 @@ impl Attributes {
         if tagged {
             return Ok(out);
         }
-        Err(Error::new_spanned(field, "every field is #[param(…)]; computed ones #[param(derived)]"))
+        Err(Error::new_spanned(
+            field,
+            "every field is #[param(…)]; computed ones #[param(derived)]",
+        ))
     }
 
     fn key(&mut self, meta: &syn::meta::ParseNestedMeta<'_>) -> Result<()> {
@@ -100,7 +103,8 @@ impl Attributes {
             "emission" => {
                 let list;
                 syn::parenthesized!(list in meta.input);
-                let words = list.parse_terminated(<Ident as syn::parse::Parse>::parse, Token![,])?;
+                let words =
+                    list.parse_terminated(<Ident as syn::parse::Parse>::parse, Token![,])?;
                 self.emission = words.into_iter().collect();
             }
             _ => {

@@ -12,7 +12,10 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
         return Err(Error::new_spanned(input, "a choice is an enum without fields"));
     };
     if !has_repr(&input.attrs, "u32") {
-        return Err(Error::new_spanned(name, "a choice needs #[repr(u32)]: it is written by index"));
+        return Err(Error::new_spanned(
+            name,
+            "a choice needs #[repr(u32)]: it is written by index",
+        ));
     }
     let mut words = vec![];
     let variants = data.variants.iter().map(|variant| &variant.ident);

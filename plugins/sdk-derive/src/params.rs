@@ -26,7 +26,10 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
         return Err(Error::new_spanned(name, "needs #[repr(C)]: fields are written at offsets"));
     }
     if input.generics.type_params().next().is_some() || input.generics.lifetimes().count() > 1 {
-        return Err(Error::new_spanned(&input.generics, "at most one lifetime, no type parameters"));
+        return Err(Error::new_spanned(
+            &input.generics,
+            "at most one lifetime, no type parameters",
+        ));
     }
     if doc.is_empty() {
         return Err(Error::new_spanned(name, "needs a doc comment: it is the manual page"));
@@ -69,7 +72,10 @@ impl Parts {
             return Err(Error::new_spanned(&field.ty, "no fixed layout: use Maybe<f32> or Text"));
         }
         if attributes.textured && !TEXTURED.contains(&type_name.as_str()) {
-            return Err(Error::new_spanned(&field.ty, "only f32, Vec3 and spectra can be textured"));
+            return Err(Error::new_spanned(
+                &field.ty,
+                "only f32, Vec3 and spectra can be textured",
+            ));
         }
         let given = attributes.default.is_some() || attributes.required || attributes.optional;
         if !given && attributes.emission.is_empty() {
@@ -159,11 +165,8 @@ fn descriptor(id: &Ident, ty: &Type, type_name: &str, doc: &str, a: &Attributes)
     };
     let min = a.min.as_ref().map_or(low, |e| quote!((#e) as f64));
     let max = a.max.as_ref().map_or(high, |e| quote!((#e) as f64));
-    let choices = if a.choice {
-        quote!(<#ty as ::luxel_sdk::params::Choice>::WORDS)
-    } else {
-        quote!(&[])
-    };
+    let choices =
+        if a.choice { quote!(<#ty as ::luxel_sdk::params::Choice>::WORDS) } else { quote!(&[]) };
     let default = default(ty, type_name, a);
     let (required, textured) = (a.required, a.textured);
     quote! {

@@ -11,13 +11,24 @@ mod tests;
 use std::marker::PhantomData;
 
 use crate::kind::{
-    Camera, Filter, Importer, Integrator, Kind, Light, Material, Medium, PathIntegrator, Phase,
-    Sampler, Shape, Texture,
+    Camera, Filter, Importer, Integrator, Kind, Light, Material, MaterialRef, Medium,
+    PathIntegrator, Phase, PhaseRef, Sampler, Shape, Texture,
 };
-use crate::params::{Build, BuildContext, Fault, Object, Param, Params, Preset, SharedFns};
+use crate::params::{
+    Build, BuildContext, Fault, Field, Object, Param, Params, Preset, SharedFns, Type,
+};
 
 /// A lifetime as a value: how long the bytes behind a view are lent.
 pub type Life<'a> = PhantomData<&'a ()>;
+
+// SAFETY: the host writes a live material, which is never null.
+unsafe impl Field for MaterialRef<'_> {
+    const TYPE: Type = Type::Object(Kind::Material);
+}
+// SAFETY: the host writes a live phase function, which is never null.
+unsafe impl Field for PhaseRef<'_> {
+    const TYPE: Type = Type::Object(Kind::Phase);
+}
 
 /// How bytes are seen as a plugin of each kind.
 ///
@@ -112,7 +123,10 @@ impl Class {
             // SAFETY: the caller passes a valid struct of this class.
             unsafe { &*p.cast::<T>() }.check()
         }
-        Self { check: check::<T>, ..Self::base::<T>(Kind::Importer, name, View::Importer(view::<T>)) }
+        Self {
+            check: check::<T>,
+            ..Self::base::<T>(Kind::Importer, name, View::Importer(view::<T>))
+        }
     }
 
     /// An integrator.

@@ -75,8 +75,7 @@ impl TriangleMesh {
 
     /// The corners of a triangle in the frame of the shape, exact in double precision.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.indices[triangle as usize]
-            .map(|i| self.centre + self.points[i as usize].as_dvec3())
+        self.indices[triangle as usize].map(|i| self.centre + self.points[i as usize].as_dvec3())
     }
 }
 

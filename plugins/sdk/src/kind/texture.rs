@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec2};
 
+use crate::color::Spectrum;
 use crate::color::Wavelengths;
 use crate::params::Fault;
-use crate::color::Spectrum;
 
 /// Where a texture is looked up.
 #[derive(Clone, Copy, Debug)]

@@ -10,9 +10,8 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{Fault, Type};
+use super::{Fault, Kind, Type};
 use crate::color::Spectrum;
-use crate::kind::{Kind, MaterialRef, PhaseRef};
 
 /// A type that the host may write at an offset.
 ///
@@ -295,12 +294,4 @@ pub struct ShapeSlot(pub u32);
 // SAFETY: the host writes a number.
 unsafe impl Field for ShapeSlot {
     const TYPE: Type = Type::Object(Kind::Shape);
-}
-// SAFETY: the host writes a live material.
-unsafe impl Field for MaterialRef<'_> {
-    const TYPE: Type = Type::Object(Kind::Material);
-}
-// SAFETY: the host writes a live phase function.
-unsafe impl Field for PhaseRef<'_> {
-    const TYPE: Type = Type::Object(Kind::Phase);
 }

@@ -5,6 +5,7 @@
 //! offsets that it lists.
 
 mod dimension;
+mod kind;
 mod fields;
 mod schema;
 mod unit;
@@ -14,5 +15,6 @@ pub use fields::{
     Build, BuildContext, Choice, ComplexIor, Emission, Field, File, Look, Maybe, Plain, Quantity,
     ShapeSlot, Shared, Table, Text,
 };
+pub use kind::Kind;
 pub use schema::{Fault, Object, Param, Params, Preset, Role, SharedFns, Type};
 pub use unit::{UNITS, Unit};

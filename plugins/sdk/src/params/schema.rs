@@ -1,7 +1,6 @@
 //! The schema: what the derive writes down about each parameter.
 
-use super::BuildContext;
-use crate::kind::Kind;
+use super::{BuildContext, Kind};
 
 /// How a parameter is stored in the struct, and so what the host writes at its offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,0 +1,188 @@
+"""Luxel beside Mitsuba 3, on the same scenes: do the pictures agree, and at what speed.
+
+    python compare.py accuracy --luxel target/release/luxel [--spp 1024] [--res 256]
+    python compare.py speed    --luxel target/release/luxel [--spp 16] [--res 512] [--rounds 5]
+
+`accuracy` prints the ratio of means, with its standard error, for the whole picture and for the
+pixels that lie whole on one surface, and for the grey box the relative MSE of 32 x 32 blocks at
+growing sample counts. `speed` interleaves the programs and counts processor time (user + system):
+Luxel's is that of the whole process, with reading the scene and writing the picture; Mitsuba's that
+of the render call alone, after a first one that compiles its kernels. relMSE is the mean of
+(I - R)^2 / (R^2 + 0.01) less the reference's own variance, and efficiency 1 / (relMSE * seconds),
+with seconds of processor time over the number of cores. Needs mitsuba and numpy; for the llvm
+variants on AVX-512, LLVM 19 or later (DRJIT_LIBLLVM_PATH).
+"""
+
+import argparse
+import os
+import pathlib
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+import mitsuba_cornell as scenes
+
+HERE = pathlib.Path(__file__).parent
+CORES = len(os.sched_getaffinity(0))
+XYZ_OF_RGB = np.array(
+    [[0.4123907993, 0.3575843394, 0.1804807884], [0.2126390059, 0.7151686788, 0.0721923154],
+     [0.0193308187, 0.1191947798, 0.9505321522]]
+)
+
+
+def cpu(who):
+    usage = resource.getrusage(who)
+    return usage.ru_utime + usage.ru_stime
+
+
+def luxel(args, scene, res, spp, seed):
+    """Picture, and the processor time of the whole process."""
+    import mitsuba as mi
+
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "out"
+        before = cpu(resource.RUSAGE_CHILDREN)
+        command = [args.luxel, "render", str(HERE / "scenes" / f"{scene}.scene"), "--quiet", "-o", str(out)]
+        command += ["--size", f"{res}x{res}", "--spp", str(spp), "--seed", str(seed)]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        seconds = cpu(resource.RUSAGE_CHILDREN) - before
+        bitmap = mi.Bitmap(str(out) + ".exr")
+        names = [field.name for field in bitmap.struct_()]
+        pixels = np.array(bitmap, dtype=float)
+        return pixels[..., [names.index(c) for c in "RGB"]], seconds
+
+
+def mitsuba(scene, spp, seed):
+    """Picture, and the processor time of the render call."""
+    import mitsuba as mi
+
+    before = cpu(resource.RUSAGE_SELF)
+    picture = np.array(mi.render(scene, spp=spp, seed=seed), dtype=float)
+    return picture, cpu(resource.RUSAGE_SELF) - before
+
+
+def variant_for(scene):
+    return "llvm_ad_spectral" if scene == "cornell_spectral" else "llvm_ad_rgb"
+
+
+def reference(args, scene, res):
+    """Independent pictures of a scene by Mitsuba, kept between runs in `args.keep`."""
+    import mitsuba as mi
+
+    path = pathlib.Path(args.keep) / f"{scene}_{res}_{args.reference_spp}.npy"
+    if path.exists():
+        return np.load(path)
+    mi.set_variant(variant_for(scene))
+    ready, chunk = scenes.load(mi, scene, res, 64), 64
+    groups = [[] for _ in range(16)]
+    for i in range(max(args.reference_spp // chunk, 16)):
+        groups[i % 16].append(mitsuba(ready, chunk, 1_000 + i)[0])
+    stack = np.stack([np.mean(group, 0) for group in groups]).astype(np.float32)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    np.save(path, stack)
+    return stack
+
+
+def accuracy(args):
+    import mitsuba as mi
+
+    mi.set_variant("scalar_rgb")
+    for scene in args.scenes:
+        stack = reference(args, scene, args.res).astype(float)
+        mi.set_variant("scalar_rgb")
+        # Seeds, not error bars of pixels: those of Sobol samples are an upper estimate.
+        runs = [luxel(args, scene, args.res, args.spp, 10 + i)[0] for i in range(args.seeds)]
+        if scene == "cornell_spectral":
+            runs = [run @ XYZ_OF_RGB.T for run in runs]
+        factor = scenes.LUXEL_PER_MITSUBA.get(scene, 1.0)
+        print(f"\n{scene}: {args.res}^2, Luxel {args.spp} spp x {args.seeds} seeds, channel ratios Luxel / ({factor:.6g} x Mitsuba)")
+        for name, mask in scenes.regions(scene, args.res).items():
+            ours = np.array([run[mask].mean(0) for run in runs])
+            theirs = np.array([group[mask].mean(0) for group in stack]) * factor
+            ratio = ours.mean(0) / theirs.mean(0)
+            noise = lambda x: x.std(0, ddof=1) / len(x) ** 0.5 / x.mean(0)
+            error = np.hypot(noise(ours), noise(theirs))
+            cells = "  ".join(f"{r - 1:+.5f} +- {e:.5f}" for r, e in zip(ratio, error))
+            print(f"  {name:8} {mask.sum():6} px  {cells}")
+        if scene == "cornell_grey":
+            blocks(args, stack)
+
+
+def blocks(args, stack):
+    """Relative MSE over 32 x 32 blocks, which falls as 1/N until a difference shows."""
+    half = lambda x: x.reshape(args.res // 32, 32, args.res // 32, 32, 3).mean((1, 3))
+    theirs = np.array([half(group) for group in stack])
+    mean = theirs.mean(0)
+    own = (theirs.var(0, ddof=1) / len(theirs) / mean**2).mean()
+    print(f"  relMSE of 32 x 32 blocks (Mitsuba's own noise: {own:.2e})")
+    for spp in (4, 16, 64, 256, 1024):
+        found = [((half(luxel(args, "cornell_grey", args.res, spp, 90 + i)[0]) / mean - 1) ** 2).mean() for i in range(3)]
+        print(f"    {spp:5} spp  {statistics.mean(found):.3e}")
+
+
+def relative_mse(picture, stack):
+    mean = stack.mean(0)
+    weight = 1 / (mean**2 + 0.01)
+    noise = stack.var(0, ddof=1) / len(stack)
+    return float((((picture - mean) ** 2 - noise) * weight).mean())
+
+
+def speed(args):
+    import mitsuba as mi
+
+    for scene in args.scenes:
+        if scene in ("cornell_grey", "cornell_spectral"):
+            continue
+        stack = reference(args, scene, args.res).astype(float)
+        ready = {}
+        for variant in args.variants:
+            mi.set_variant(variant)
+            ready[variant] = scenes.load(mi, scene, args.res, args.spp)
+            if variant.startswith("llvm"):
+                mitsuba(ready[variant], args.spp, 1)
+        rows = {name: [] for name in ["luxel", *args.variants]}
+        for i in range(args.rounds):
+            picture, seconds = luxel(args, scene, args.res, args.spp, 500 + i)
+            rows["luxel"].append((seconds, relative_mse(picture, stack)))
+            for variant in args.variants:
+                mi.set_variant(variant)
+                picture, seconds = mitsuba(ready[variant], args.spp, 500 + i)
+                rows[variant].append((seconds, relative_mse(picture, stack)))
+        paths = args.res**2 * args.spp
+        print(f"\n{scene}: {args.res}^2, {args.spp} spp, {args.rounds} rounds interleaved, {CORES} cores")
+        print(f"  {'':14}{'cpu s':>8}{'spread':>9}{'Mpaths/cpu-s':>14}{'relMSE':>11}{'spread':>9}{'efficiency':>12}{'Luxel is':>10}")
+        table = {}
+        for name, found in rows.items():
+            times, errors = zip(*found)
+            t, e = statistics.median(times), statistics.median(errors)
+            spread = lambda x: (max(x) - min(x)) / statistics.median(x)
+            table[name] = 1 / (e * t / CORES)
+            cells = f"{t:8.2f}{spread(times):9.1%}{paths / t / 1e6:14.3f}{e:11.5f}{spread(errors):9.1%}{table[name]:12.2f}"
+            print(f"  {name:14}{cells}{table['luxel'] / table[name]:9.2f}x")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("what", choices=("accuracy", "speed"))
+    parser.add_argument("--luxel", required=True)
+    parser.add_argument("--spp", type=int)
+    parser.add_argument("--res", type=int)
+    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--reference-spp", type=int, default=2048)
+    parser.add_argument("--scenes", nargs="+", default=list(scenes.SCENES), choices=scenes.SCENES)
+    parser.add_argument("--variants", nargs="+", default=["scalar_rgb", "llvm_ad_rgb"])
+    parser.add_argument("--keep", default=str(pathlib.Path(tempfile.gettempdir()) / "luxel-bench"))
+    args = parser.parse_args()
+    args.spp = args.spp or (256 if args.what == "accuracy" else 16)
+    args.res = args.res or (256 if args.what == "accuracy" else 512)
+    sys.stdout.reconfigure(line_buffering=True)
+    (accuracy if args.what == "accuracy" else speed)(args)
+
+
+if __name__ == "__main__":
+    main()

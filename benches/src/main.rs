@@ -1,0 +1,78 @@
+//! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
+//!
+//! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|cornell] [--luxel PATH]
+//! [--python PATH]`. The program under test is `target/release/luxel` beside this one unless given.
+//! Every figure is a median with its spread, (largest − smallest) / median.
+#![forbid(unsafe_code)]
+#![expect(clippy::print_stdout, reason = "the report is this program's output")]
+
+mod parse;
+mod peer;
+mod ply;
+mod process;
+mod series;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use process::Luxel;
+
+/// What is measured, and with which programs.
+struct Plan {
+    what: String,
+    luxel: Luxel,
+    python: Option<PathBuf>,
+}
+
+const USAGE: &str =
+    "usage: luxel-bench [all|parse|cold|memory|ply|cornell] [--luxel PATH] [--python PATH]";
+
+fn plan() -> Result<Plan, String> {
+    let mut what = "all".to_owned();
+    let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
+    let mut python = None;
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "all" | "parse" | "cold" | "memory" | "ply" | "cornell" => what = word,
+            "--luxel" => luxel = words.next().map(PathBuf::from),
+            "--python" => python = words.next().map(PathBuf::from),
+            _ => return Err(format!("`{word}`? {USAGE}")),
+        }
+    }
+    let program = luxel.filter(|path| path.exists());
+    if what != "parse" && program.is_none() {
+        return Err("no `luxel`: run `cargo build --release -p luxel`, or give --luxel".to_owned());
+    }
+    Ok(Plan { what, luxel: Luxel { program: program.unwrap_or_default() }, python })
+}
+
+fn run(plan: &Plan) -> Result<(), String> {
+    let wanted = |what: &str| plan.what == what || plan.what == "all";
+    if wanted("parse") {
+        parse::run();
+    }
+    if wanted("cold") {
+        peer::cold(&plan.luxel)?;
+    }
+    if wanted("memory") {
+        peer::memory(&plan.luxel)?;
+    }
+    if wanted("ply") {
+        ply::run(&plan.luxel, plan.python.as_deref())?;
+    }
+    if wanted("cornell") {
+        peer::cornell(&plan.luxel, plan.python.as_deref())?;
+    }
+    Ok(())
+}
+
+fn main() -> ExitCode {
+    match plan().and_then(|plan| run(&plan)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            println!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}

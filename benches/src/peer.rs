@@ -1,0 +1,79 @@
+//! Whole renders: start, memory, and the comparison with Mitsuba.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::process::{Luxel, has_mitsuba, here, write};
+use crate::series::Series;
+
+const TRIVIAL: &str = "scene 1
+camera perspective { look = look_at(from = (0, 0, 4) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }
+film rgb { resolution = (64, 64) }
+shape sphere { radius = 1 m, material = material diffuse {} }
+light area { shape = shape sphere { center = (0, 5, 0) m, radius = 1 m }, radiance = 1 W/m^2/sr }
+";
+
+/// Prints the time from the start of the program to its end with a trivial picture on disk.
+///
+/// # Errors
+/// The program failed; its words.
+pub(crate) fn cold(luxel: &Luxel) -> Result<(), String> {
+    let scene = write("trivial.scene", TRIVIAL.as_bytes())?;
+    luxel.render(&scene, 64, 1)?;
+    let (mut ms, mut mb) = (vec![], vec![]);
+    for _ in 0..20 {
+        let took = luxel.render(&scene, 64, 1)?;
+        ms.push(took.seconds * 1e3);
+        mb.extend(took.megabytes);
+    }
+    let (ms, mb) = (Series::from(ms), Series::from(mb));
+    println!("start to a trivial 64 x 64 picture, whole process, 20 runs (goal 20 ms)");
+    println!("  min {:.1} ms, median {:.1} ms, peak {:.0} MB", ms.min(), ms.median(), mb.median());
+    Ok(())
+}
+
+/// Prints the peak memory of the Cornell box.
+///
+/// # Errors
+/// The program failed; its words.
+pub(crate) fn memory(luxel: &Luxel) -> Result<(), String> {
+    let scene = here().join("scenes/cornell_rgb.scene");
+    let took = luxel.render(&scene, 512, 1)?;
+    let peak = took.megabytes.unwrap_or(f64::NAN);
+    println!("Cornell box 512 x 512, picture written: peak {peak:.1} MB (goal 45)");
+    Ok(())
+}
+
+/// Runs the comparison with Mitsuba, where this Python has it; without, Luxel's speed alone.
+///
+/// # Errors
+/// A program failed; its words.
+pub(crate) fn cornell(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
+    let Some(python) = python.filter(|python| has_mitsuba(python)) else {
+        println!("Mitsuba is not to be had (--python PATH of one that imports it): Luxel alone");
+        return alone(luxel);
+    };
+    for what in ["accuracy", "speed"] {
+        let mut command = Command::new(python);
+        command.arg(here().join("compare.py")).arg(what).arg("--luxel").arg(&luxel.program);
+        let status = command.status().map_err(|e| format!("{}: {e}", python.display()))?;
+        if !status.success() {
+            return Err(format!("compare.py {what} failed"));
+        }
+    }
+    Ok(())
+}
+
+fn alone(luxel: &Luxel) -> Result<(), String> {
+    for name in ["cornell_rgb", "cornell_spectral", "glass_metal"] {
+        let scene = here().join(format!("scenes/{name}.scene"));
+        let mut seconds = vec![];
+        for _ in 0..5 {
+            seconds.push(luxel.render(&scene, 512, 16)?.seconds);
+        }
+        let seconds = Series::from(seconds);
+        let rate = 512.0 * 512.0 * 16.0 / 1e6 / seconds.median();
+        println!("  {name:18} {rate:.2} Mpaths/s wall (spread {:.0} %)", seconds.spread());
+    }
+    Ok(())
+}

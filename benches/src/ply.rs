@@ -1,0 +1,74 @@
+//! Two million triangles: reading a binary PLY and building its tree.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::process::{Luxel, has_mitsuba, here, write};
+use crate::series::Series;
+
+/// Vertices along each side of the grid: 2 · 1023² = 2,093,058 triangles.
+const SIDE: u32 = 1024;
+const ROUNDS: usize = 5;
+
+const SCENE: &str = "scene 1
+camera perspective { look = look_at(from = (0, 2, 3) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }
+film rgb { resolution = (8, 8) }
+light area { shape = shape sphere { center = (0, 5, 0) m, radius = 1 m }, radiance = 1 W/m^2/sr }
+";
+
+/// Prints time and peak memory above those of the same scene without the mesh.
+///
+/// # Errors
+/// A program failed; its words.
+pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
+    let ply = write("waves.ply", &grid())?;
+    let empty = write("empty.scene", SCENE.as_bytes())?;
+    let mesh = "shape mesh \"waves\" { file = \"waves.ply\", unit = 1 m }\n";
+    let full = write("waves.scene", format!("{SCENE}{mesh}").as_bytes())?;
+    let (mut seconds, mut memory) = (vec![], vec![]);
+    for _ in 0..ROUNDS {
+        let (with, without) = (luxel.render(&full, 8, 1)?, luxel.render(&empty, 8, 1)?);
+        seconds.push(with.seconds - without.seconds);
+        memory.extend(with.megabytes);
+    }
+    let (seconds, memory) = (Series::from(seconds), Series::from(memory));
+    let n = 2 * (SIDE - 1) * (SIDE - 1);
+    println!("binary PLY of {n} triangles, read and built (goals: 1 s, 300 MB)");
+    println!(
+        "  luxel       {:.2} s (spread {:.0} %), peak {:.0} MB",
+        seconds.median(),
+        seconds.spread(),
+        memory.median()
+    );
+    let Some(python) = python.filter(|python| has_mitsuba(python)) else { return Ok(()) };
+    let script = here().join("load_ply.py");
+    let status = Command::new(python).arg(script).arg(ply).status();
+    status.map(drop).map_err(|e| format!("{}: {e}", python.display()))
+}
+
+/// A wavy square as binary PLY.
+fn grid() -> Vec<u8> {
+    let n = 2 * (SIDE - 1) * (SIDE - 1);
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n\
+         property float y\nproperty float z\nelement face {n}\n\
+         property list uchar int vertex_indices\nend_header\n",
+        SIDE * SIDE
+    );
+    let mut bytes = header.into_bytes();
+    for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
+        let at = |k: u32| 2.0 * k as f32 / (SIDE - 1) as f32 - 1.0;
+        let (x, z) = (at(j), at(i));
+        let y = 0.05 * (23.0 * x).sin() * (17.0 * z).cos();
+        bytes.extend([x, y, z].into_iter().flat_map(f32::to_le_bytes));
+    }
+    for (i, j) in (1..SIDE).flat_map(|i| (1..SIDE).map(move |j| (i, j))) {
+        let corner = i * SIDE + j;
+        let (left, above) = (corner - 1, corner - SIDE);
+        for face in [[above - 1, left, corner], [above - 1, corner, above]] {
+            bytes.push(3);
+            bytes.extend(face.into_iter().flat_map(u32::to_le_bytes));
+        }
+    }
+    bytes
+}

@@ -1,0 +1,89 @@
+//! Running programs, with what they took.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// The program under test.
+pub(crate) struct Luxel {
+    pub(crate) program: PathBuf,
+}
+
+/// What a process took.
+pub(crate) struct Took {
+    /// Wall time from start to end, seconds.
+    pub(crate) seconds: f64,
+    /// Most memory it held at once, megabytes; `None` without `/usr/bin/time`.
+    pub(crate) megabytes: Option<f64>,
+}
+
+/// GNU time: the only portable way to a child's peak memory without unsafe code.
+const TIME: &str = "/usr/bin/time";
+
+impl Luxel {
+    /// Renders a scene with more arguments, and throws the picture away.
+    ///
+    /// # Errors
+    /// The program did not start or failed; its words.
+    pub(crate) fn render(&self, scene: &Path, size: u32, spp: u32) -> Result<Took, String> {
+        let out = scratch()?.join("picture");
+        let mut words = vec![self.program.clone(), "render".into(), scene.into()];
+        words.extend(["--quiet", "-o"].map(PathBuf::from));
+        words.push(out);
+        let numbers = [format!("--size={size}x{size}"), format!("--spp={spp}")];
+        words.extend(numbers.map(PathBuf::from));
+        timed(&words)
+    }
+}
+
+/// Runs a program; `words` begins with it.
+fn timed(words: &[PathBuf]) -> Result<Took, String> {
+    let with_time = Path::new(TIME).exists();
+    let mut command = Command::new(if with_time { Path::new(TIME) } else { &words[0] });
+    if with_time {
+        command.args(["-f", "%M"]).arg(&words[0]);
+    }
+    command.args(&words[1..]).stdout(Stdio::null()).stderr(Stdio::piped());
+    let start = Instant::now();
+    let output = command.output().map_err(|e| format!("{}: {e}", words[0].display()))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let told = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        return Err(format!("{} failed: {told}", words[0].display()));
+    }
+    let kilobytes: Option<f64> = told.lines().last().and_then(|line| line.trim().parse().ok());
+    Ok(Took { seconds, megabytes: kilobytes.filter(|_| with_time).map(|k| k / 1024.0) })
+}
+
+/// Whether this Python can import Mitsuba.
+pub(crate) fn has_mitsuba(python: &Path) -> bool {
+    let mut command = Command::new(python);
+    command.args(["-c", "import mitsuba, numpy"]).stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
+
+/// A folder for what the benches make.
+///
+/// # Errors
+/// The system's words.
+pub(crate) fn scratch() -> Result<PathBuf, String> {
+    let folder = std::env::temp_dir().join("luxel-bench");
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    Ok(folder)
+}
+
+/// Writes a file among what the benches make.
+///
+/// # Errors
+/// The system's words.
+#[expect(clippy::disallowed_methods, reason = "a scratch file that nobody watches")]
+pub(crate) fn write(name: &str, bytes: &[u8]) -> Result<PathBuf, String> {
+    let path = scratch()?.join(name);
+    std::fs::write(&path, bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+    Ok(path)
+}
+
+/// The folder of the benches' scenes and scripts.
+pub(crate) fn here() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}

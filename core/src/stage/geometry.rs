@@ -33,6 +33,8 @@ pub struct Mesh {
     bvh: MeshBvh,
     /// Whether every edge joins exactly two triangles that run along it in opposite directions.
     closed: bool,
+    /// What the tree's points are relative to, in the mesh's frame.
+    centre: DVec3,
     /// Diagonal of the tree's box, metres of the mesh's frame.
     diagonal: f64,
 }
@@ -41,7 +43,8 @@ impl Mesh {
     /// Takes over the triangles of a shape and its finished tree.
     pub fn new(object: Arc<Object>, bvh: MeshBvh, closed: bool) -> Self {
         let diagonal = bvh.bounds().map_or(0.0, |(min, max)| (max - min).as_dvec3().length());
-        Self { object, bvh, closed, diagonal }
+        let centre = object.fixed().shape().mesh().map_or(DVec3::ZERO, |mesh| mesh.centre);
+        Self { object, bvh, closed, centre, diagonal }
     }
 
     /// The triangles.
@@ -71,7 +74,7 @@ impl Mesh {
 
     /// The local ray from `start` on in single precision about the mesh's centre.
     fn narrow(&self, ray: &Ray, start: f64) -> (glam::Vec3, glam::Vec3, f32) {
-        let o = ray.at(start) - self.triangles().centre;
+        let o = ray.at(start) - self.centre;
         (o.as_vec3(), ray.d.as_vec3(), narrow(ray.t_max - start).next_up())
     }
 
@@ -176,7 +179,7 @@ impl Geometry {
             Self::Analytic(object) => object.fixed().shape().bounds(),
             Self::Mesh(mesh) => match mesh.bvh.bounds() {
                 Some((min, max)) => {
-                    let centre = mesh.triangles().centre;
+                    let centre = mesh.centre;
                     let widen = |p: DVec3, towards: f64| {
                         p + centre + (p.abs() + centre.abs()) * (towards * f64::EPSILON)
                     };

@@ -1,0 +1,162 @@
+//! Truths about single functions and objects, through the same doors as everyone's.
+
+use std::path::Path;
+
+use glam::{DVec3, UVec2, Vec3};
+use luxel_core::files::MemoryFiles;
+use luxel_core::object::{Scratch, Site};
+use luxel_core::stage::Stage;
+use luxel_sdk::color::{Observer, Spectrum, blackbody, glass, illuminant, xyz_to_xy};
+use luxel_sdk::kind::Raster;
+use luxel_sdk::scattering::{conductor_reflectance, dielectric_reflectance, refract};
+
+use super::Row;
+use crate::load::stage_of;
+
+pub(super) fn rows() -> Vec<Row> {
+    [snell(), dielectric(), conductor(), bk7(), white(), planckian(), pinhole(), phase()].concat()
+}
+
+fn direction(degrees: f64) -> Vec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    DVec3::new(sin, 0.0, cos).as_vec3()
+}
+
+fn snell() -> Vec<Row> {
+    let cases = [(10.0, 6.647777092828614), (45.0, 28.125505702055705), (80.0, 41.03641052520335)];
+    let row = |(degrees, expected)| {
+        let wi = refract(direction(degrees), Vec3::Z, 1.5).unwrap().as_dvec3();
+        let measured = wi.truncate().length().atan2(-wi.z).to_degrees();
+        Row::exact("snell", &format!("{degrees} deg"), (expected, measured), (1e-6, 0.0))
+    };
+    cases.map(row).to_vec()
+}
+
+fn dielectric() -> Vec<Row> {
+    let cases = [
+        (0.0, 0.04000000000000001),
+        (30.0, 0.04152262597582152),
+        (45.0, 0.05023991101223595),
+        (60.0, 0.08918671280221274),
+        (80.0, 0.3877043546914726),
+        (89.0, 0.9041849497801884),
+    ];
+    let row = |(degrees, expected)| {
+        let measured = f64::from(dielectric_reflectance(direction(degrees).z, 1.5));
+        let case = format!("{degrees} deg");
+        Row::exact("fresnel.dielectric", &case, (expected, measured), (1e-5, 1e-7))
+    };
+    cases.map(row).to_vec()
+}
+
+fn conductor() -> Vec<Row> {
+    let cases = [(0.0, 0.9449911374610354), (60.0, 0.9395398409334175), (85.0, 0.9685002284019043)];
+    let (eta, k) = (Spectrum::splat(0.18), Spectrum::splat(3.42));
+    let row = |(degrees, expected)| {
+        let measured = f64::from(conductor_reflectance(direction(degrees).z, eta, k).lane(0));
+        let case = format!("{degrees} deg");
+        Row::exact("fresnel.conductor", &case, (expected, measured), (1e-5, 0.0))
+    };
+    cases.map(row).to_vec()
+}
+
+fn bk7() -> Vec<Row> {
+    let bk7 = glass("N-BK7").unwrap();
+    let row = |case, expected, measured| {
+        Row::exact("dispersion.bk7", case, (expected, measured), (1e-5, 0.0))
+    };
+    vec![
+        row("n(F)", 1.5223762897312287, bk7.eta(486.1327)),
+        row("n(d)", 1.5168000345005883, bk7.eta(587.5618)),
+        row("n(C)", 1.5143223472613747, bk7.eta(656.2725)),
+        row("Abbe number", 64.16733623749799, bk7.abbe()),
+    ]
+}
+
+fn white() -> Vec<Row> {
+    let xyz = illuminant("D65").unwrap().to_xyz(Observer::Cie1931);
+    let xy = xyz_to_xy(xyz);
+    let row = |case, expected, measured| {
+        Row::exact("colour.D65_white", case, (expected, measured), (0.0, 3e-4))
+    };
+    vec![
+        row("X", 0.9504707649452454, xyz.x),
+        row("Y", 1.0, xyz.y),
+        row("Z", 1.088828422436495, xyz.z),
+        row("x", 0.3127269499795595, xy.x),
+        row("y", 0.32902321829706677, xy.y),
+    ]
+}
+
+fn planckian() -> Vec<Row> {
+    let cases = [
+        (2042.0, [0.5221281961604605, 0.4139359199197973]),
+        (2856.0, [0.44753514422783025, 0.4074282897043499]),
+        (5000.0, [0.3451011744720346, 0.3516080420867534]),
+        (6500.0, [0.31352588036670903, 0.3236283046370668]),
+        (10000.0, [0.28063357207812717, 0.288287840668302]),
+    ];
+    let mut rows = vec![];
+    for (kelvin, expected) in cases {
+        let xy = xyz_to_xy(blackbody(kelvin).unwrap().to_xyz(Observer::Cie1931));
+        for (i, axis) in ["x", "y"].into_iter().enumerate() {
+            let case = format!("{kelvin} K, {axis}");
+            rows.push(Row::exact("colour.blackbody_xy", &case, (expected[i], xy[i]), (0.0, 2e-4)));
+        }
+    }
+    rows
+}
+
+/// The stage of a scene with a camera at the origin and a medium all around.
+fn stage() -> Stage {
+    let text = "scene 1
+        camera perspective {
+            look = look_at(from = (0, 0, 0) m, to = (0, 0, -1) m, up = (0, 1, 0)), fov = 60 deg
+        }
+        film rgb { resolution = (1920, 1080) }
+        medium homogeneous { sigma_t = 1 / (1 m), phase = phase henyey_greenstein { g = 0.7 } }";
+    let files = MemoryFiles::default().with("unit.scene", text.as_bytes());
+    stage_of(Path::new("unit.scene"), &files, &[], None).unwrap()
+}
+
+fn pinhole() -> Vec<Row> {
+    let stage = stage();
+    let raster = Raster { size: UVec2::new(1920, 1080) };
+    let point = DVec3::new(1.0, 0.5, -4.0);
+    let p = stage.camera.fixed().camera().project(raster, point).unwrap();
+    let row = |case, expected, measured| {
+        Row::exact("camera.pinhole", case, (expected, measured), (1e-6, 0.0))
+    };
+    vec![row("x", 1193.8268590217986, p.x), row("y", 423.0865704891008, p.y)]
+}
+
+/// The value where light is turned by an angle: `wo` points back along the way it came.
+fn phase() -> Vec<Row> {
+    let stage = stage();
+    let outside = stage.outside.unwrap() as usize;
+    let scratch = Scratch::default();
+    let palette = luxel_sdk::color::Palette::rgb();
+    let site = Site { p: DVec3::ZERO, uv: glam::Vec2::ZERO, palette: &palette };
+    let medium = stage.media[outside].resolve(&site, &scratch).medium();
+    let value = |degrees: f64| medium.phase().eval(Vec3::NEG_Z, direction(degrees)).f.lane(0);
+    let row = |case: &str, expected, measured: f64| {
+        Row::exact("phase.hg", case, (expected, measured), (1e-5, 0.0))
+    };
+    // ∫p and ∫p·cos θ over the sphere by the midpoint rule, whose error is below 1e-6 here.
+    let n = 4000_u16;
+    let (mut total, mut cosine) = (0.0, 0.0);
+    for i in 0..n {
+        let theta = (f64::from(i) + 0.5) / f64::from(n) * 180.0;
+        let (sin, cos) = theta.to_radians().sin_cos();
+        let ring = std::f64::consts::TAU * sin * std::f64::consts::PI / f64::from(n);
+        total += f64::from(value(theta)) * ring;
+        cosine += f64::from(value(theta)) * ring * cos;
+    }
+    vec![
+        row("0 deg", 1.5031300180901208, f64::from(value(0.0))),
+        row("90 deg", 0.02231417883943917, f64::from(value(90.0))),
+        row("180 deg", 0.008260637184700452, f64::from(value(180.0))),
+        row("mean cosine", 0.7, cosine),
+        row("total", 1.0, total),
+    ]
+}

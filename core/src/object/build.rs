@@ -66,7 +66,7 @@ impl<'a> Builder<'a> {
     /// The object of a node. `None` when something is wrong with it, which has then been said.
     pub fn build(&mut self, id: NodeId) -> Option<Arc<Object>> {
         let node = self.scene.node(id);
-        let key = (node.hash, self.mode);
+        let key = (self.scene.own_hash(id), self.mode);
         if let Some(object) = self.objects.get(&key) {
             return Some(object.clone());
         }

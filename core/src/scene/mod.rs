@@ -15,6 +15,7 @@ use glam::{DAffine3, UVec2};
 use luxel_sdk::kind::Kind;
 
 use crate::diag::{SourceId, Span};
+use crate::registry::common_params;
 
 pub use color::Color;
 pub use conform::{DefaultUnits, Given, Misfit, conform, describe, wanted};
@@ -155,6 +156,19 @@ impl Scene {
     /// in files and nodes that nothing uses do not count; nor do the contents of files by path.
     pub fn hash(&self) -> Hash {
         value::hash_scene(self)
+    }
+
+    /// Hash of a node without the parameters that the host adds to its kind: equal where the object
+    /// itself is equal, whatever its surface or what fills it.
+    pub fn own_hash(&self, id: NodeId) -> Hash {
+        let node = self.node(id);
+        let added = |name: &str| common_params(node.kind).iter().any(|param| param.name == name);
+        if !node.params.iter().any(|argument| added(argument.name)) {
+            return node.hash;
+        }
+        let mut own = node.clone();
+        own.params.retain(|argument| !added(argument.name));
+        value::hash_node(&own, |id| self.node(id).hash)
     }
 
     /// Adds a node whose children are already here; its hash is computed.

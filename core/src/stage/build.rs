@@ -184,8 +184,9 @@ impl Maker<'_> {
             return Some(*index);
         }
         let object = self.builder.build(id)?;
-        let hash = self.scene.node(id).hash;
-        let geometry = match self.cache.meshes.get(&hash) {
+        let hash = self.scene.own_hash(id);
+        let known = self.made.meshes.get(&hash).or_else(|| self.cache.meshes.get(&hash));
+        let geometry = match known {
             // The object itself is kept only where no file that it read has changed.
             Some((kept, geometry)) if Arc::ptr_eq(kept, &object) => geometry.clone(),
             _ => Arc::new(self.new_geometry(id, &object)?),

@@ -76,7 +76,7 @@ fn mesh_of(corners: [DVec3; 3]) -> Mesh {
     registry.add("test", &[Class::shape::<Triangle<'_>>("triangle")]).unwrap();
     let mut scene = Scene::default();
     let span = Span::new(SourceId(0), 0, 0);
-    let table: Vec<f64> = corners.iter().flat_map(|p| p.to_array()).collect();
+    let table: Vec<f64> = corners.iter().flat_map(DVec3::to_array).collect();
     let points = Argument { name: "points", value: Value::Table(table.into()), span };
     let id = scene.add(Node {
         kind: Kind::Shape,

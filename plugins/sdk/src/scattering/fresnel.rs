@@ -21,7 +21,7 @@ pub fn dielectric_reflectance(cos_i: f32, eta: f32) -> f32 {
     (0.5 * (parallel * parallel + perpendicular * perpendicular)) as f32
 }
 
-/// eta times the cosine on the far side, by η² cos_t² = η² − 1 + cos_i²: exact for an index of 1, and
+/// eta times the cosine on the far side, by `η² cos_t² = η² − 1 + cos_i²`: exact for an index of 1, and
 /// good at grazing angles. `None` for total reflection and for a NaN.
 fn beyond(cos_i: f64, eta: f64) -> Option<f64> {
     let square = (eta - 1.0) * (eta + 1.0) + cos_i * cos_i;

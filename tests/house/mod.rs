@@ -70,6 +70,7 @@ const NOWHERE: [&str; 5] = ["#[allow(", "#![allow(", "#[ignore", "todo!(", "unim
 
 const MAX_LINES: usize = 500;
 
+
 /// Every Rust file of the project by its path from the root.
 fn sources() -> Vec<Source> {
     let root = root();

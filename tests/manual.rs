@@ -35,7 +35,7 @@ fn whole(snippet: &str) -> String {
     for name in ["white", "wood", "steel", "red", "gold", "paint"] {
         let uses = snippet.contains(&format!("= {name}"));
         if uses && !snippet.contains(&format!("let {name} ")) {
-            text += &format!("let {name} = material diffuse {{}}\n");
+            text += &["let ", name, " = material diffuse {}\n"].concat();
         }
     }
     text += snippet;

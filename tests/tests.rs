@@ -1,11 +1,20 @@
 //! Whole-system tests.
 
+#[cfg(test)]
 mod bad_input;
+#[cfg(test)]
 mod cli;
+#[cfg(test)]
 mod determinism;
+#[cfg(test)]
 mod disk;
+#[cfg(test)]
 mod house;
+#[cfg(test)]
 mod load;
+#[cfg(test)]
 mod manual;
+#[cfg(test)]
 mod scenes;
+#[cfg(test)]
 mod truths;

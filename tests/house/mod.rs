@@ -70,7 +70,6 @@ const NOWHERE: [&str; 5] = ["#[allow(", "#![allow(", "#[ignore", "todo!(", "unim
 
 const MAX_LINES: usize = 500;
 
-
 /// Every Rust file of the project by its path from the root.
 fn sources() -> Vec<Source> {
     let root = root();
@@ -143,7 +142,7 @@ fn each_dangerous_word_stands_in_its_room_alone() {
 #[test]
 fn nothing_is_silenced_skipped_or_left_to_do() {
     let mut wrong = vec![];
-    for source in sources().iter() {
+    for source in &sources() {
         for word in NOWHERE {
             wrong
                 .extend(source.all_lines_with(word).map(|n| format!("{word} {}:{n}", source.path)));

@@ -18,7 +18,9 @@ pub(super) fn cycles(prefix: &str, sources: &[&Source]) -> Vec<String> {
         uses.extend(named(&code, &path).into_iter().filter(|used| used != own));
     }
     let known: BTreeSet<_> = edges.keys().cloned().collect();
-    edges.values_mut().for_each(|uses| uses.retain(|used| known.contains(used)));
+    for uses in edges.values_mut() {
+        uses.retain(|used| known.contains(used));
+    }
     let mut found: Vec<String> = known.iter().filter_map(|from| cycle(&edges, from)).collect();
     found.dedup();
     found

@@ -1,6 +1,6 @@
 //! Colours of measured surfaces: a spectral render against the sum over the tables.
 //!
-//! The reflectances are those of the ColorChecker as measured by Ohta (1997), which the project
+//! The reflectances are those of the colour chart as measured by Ohta (1997), which the project
 //! ships; what is expected is their own quadrature at 1 nm and not the published colours of another
 //! measurement of the chart.
 

@@ -34,7 +34,6 @@ impl Series {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "values are copied, and the quotients exact")]
 mod tests {
     use super::*;
 

@@ -6,7 +6,9 @@ use glam::{DVec3, UVec2, Vec3};
 use luxel_core::files::MemoryFiles;
 use luxel_core::object::{Scratch, Site};
 use luxel_core::stage::Stage;
-use luxel_sdk::color::{Observer, Spectrum, blackbody, glass, illuminant, xyz_to_xy};
+use luxel_sdk::color::{
+    K_CD, Observer, Spectrum, blackbody, glass, illuminant, srgb_decode, srgb_encode, xyz_to_xy,
+};
 use luxel_sdk::kind::Raster;
 use luxel_sdk::scattering::{conductor_reflectance, dielectric_reflectance, refract};
 
@@ -14,7 +16,19 @@ use super::Row;
 use crate::load::stage_of;
 
 pub(super) fn rows() -> Vec<Row> {
-    [snell(), dielectric(), conductor(), bk7(), white(), planckian(), pinhole(), phase()].concat()
+    [
+        snell(),
+        dielectric(),
+        conductor(),
+        bk7(),
+        whites(),
+        planckian(),
+        photometry(),
+        transfer(),
+        pinhole(),
+        phase(),
+    ]
+    .concat()
 }
 
 fn direction(degrees: f64) -> Vec3 {
@@ -73,18 +87,44 @@ fn bk7() -> Vec<Row> {
     ]
 }
 
-fn white() -> Vec<Row> {
-    let xyz = illuminant("D65").unwrap().to_xyz(Observer::Cie1931);
-    let xy = xyz_to_xy(xyz);
+fn whites() -> Vec<Row> {
+    let d65 = illuminant("D65").unwrap().to_xyz(Observer::Cie1931);
+    let xy = |name: &str| xyz_to_xy(illuminant(name).unwrap().to_xyz(Observer::Cie1931));
+    let row = |id: &str, case: &str, expected, measured, abs| {
+        Row::exact(id, case, (expected, measured), (0.0, abs))
+    };
+    let (d65_xy, a, e) = (xyz_to_xy(d65), xy("A"), xy("E"));
+    vec![
+        row("colour.D65_white", "X", 0.9504707649452454, d65.x, 3e-4),
+        row("colour.D65_white", "Y", 1.0, d65.y, 3e-4),
+        row("colour.D65_white", "Z", 1.088828422436495, d65.z, 3e-4),
+        row("colour.D65_white", "x", 0.3127269499795595, d65_xy.x, 3e-4),
+        row("colour.D65_white", "y", 0.32902321829706677, d65_xy.y, 3e-4),
+        row("colour.illuminant_A", "x", 0.44757354857161313, a.x, 5e-5),
+        row("colour.illuminant_A", "y", 0.40743939269060886, a.y, 5e-5),
+        row("colour.E_white", "x", 0.33331438077735187, e.x, 5e-5),
+        row("colour.E_white", "y", 0.33328770579931666, e.y, 5e-5),
+    ]
+}
+
+/// Lumens of one watt at one wavelength.
+fn photometry() -> Vec<Row> {
+    let cases = [(555, 683.0), (532, 604.4293192), (589, 525.3326600999997), (633, 160.7333952)];
+    let row = |(nm, expected): (u16, f64)| {
+        let measured = K_CD * f64::from(Observer::Cie1931.xyz_bar(f32::from(nm)).y);
+        Row::exact("photometry.monochrom", &format!("{nm} nm"), (expected, measured), (1e-4, 0.0))
+    };
+    cases.map(row).to_vec()
+}
+
+fn transfer() -> Vec<Row> {
     let row = |case, expected, measured| {
-        Row::exact("colour.D65_white", case, (expected, measured), (0.0, 3e-4))
+        Row::exact("srgb.transfer", case, (expected, measured), (1e-5, 0.0))
     };
     vec![
-        row("X", 0.9504707649452454, xyz.x),
-        row("Y", 1.0, xyz.y),
-        row("Z", 1.088828422436495, xyz.z),
-        row("x", 0.3127269499795595, xy.x),
-        row("y", 0.32902321829706677, xy.y),
+        row("encode 0.18", 0.46135612950044164, srgb_encode(0.18)),
+        row("encode 0.0031308", 0.040449936, srgb_encode(0.0031308)),
+        row("decode 0.5", 0.21404114048223255, srgb_decode(0.5)),
     ]
 }
 

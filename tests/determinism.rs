@@ -145,6 +145,21 @@ fn an_edit_keeps_the_geometry_that_it_does_not_touch() {
 }
 
 #[test]
+fn equal_shapes_share_their_geometry_whatever_they_are_made_of() {
+    let mesh = "points = #[ 0 0 0  1 0 0  0 1 0 ] m, indices = #[ 0 1 2 ]";
+    let text = format!(
+        "scene 1
+        camera perspective {{ look = look_at(from = (0, 0, 1) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }}
+        shape mesh {{ {mesh}, material = material diffuse {{ reflectance = 0.1 }} }}
+        shape mesh {{ {mesh}, material = material diffuse {{ reflectance = 0.9 }} }}"
+    );
+    let stage = stage(&text, &[], None);
+    let found = meshes(&stage);
+    assert_eq!((found.len(), stage.placements.len(), stage.materials.len()), (2, 2, 2));
+    assert!(Arc::ptr_eq(&found[0], &found[1]), "two trees over the same triangles");
+}
+
+#[test]
 fn samples_that_are_asked_for_are_taken() {
     let stage = stage(SCENE, &[], None);
     for spp in [1, 3, 17] {

@@ -55,12 +55,14 @@ fn dielectric() -> Vec<Row> {
         (80.0, 0.3877043546914726),
         (89.0, 0.9041849497801884),
     ];
-    let row = |(degrees, expected)| {
+    let row = |id: &str, (degrees, expected): (f64, f64)| {
         let measured = f64::from(dielectric_reflectance(direction(degrees).z, 1.5));
-        let case = format!("{degrees} deg");
-        Row::exact("fresnel.dielectric", &case, (expected, measured), (1e-5, 1e-7))
+        Row::exact(id, &format!("{degrees} deg"), (expected, measured), (1e-5, 1e-7))
     };
-    cases.map(row).to_vec()
+    let mut rows = cases.map(|case| row("fresnel.dielectric", case)).to_vec();
+    // Half of what is reflected of the one polarisation that is.
+    rows.push(row("fresnel.brewster", (56.309932474020215, 0.07396449704142012)));
+    rows
 }
 
 fn conductor() -> Vec<Row> {

@@ -11,7 +11,7 @@ use luxel_sdk::sampling::Alias;
 use super::flatten::{Flat, flatten};
 use super::lights::LightSource;
 use super::{Cache, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage};
-use super::{closed, features, import};
+use super::{features, import};
 use crate::accel::{BuildError, MeshBvh, TopBvh};
 use crate::cast::index;
 use crate::diag::Diagnostic;
@@ -45,7 +45,8 @@ pub fn build(
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
     let builder = Builder::new(registry, &scene, files, mode, &cache.objects);
-    let mut maker = Maker { scene: &scene, builder, cache, made: Made::default() };
+    let has_media = scene.nodes.iter().any(|node| node.kind == Kind::Medium);
+    let mut maker = Maker { scene: &scene, builder, cache, has_media, made: Made::default() };
     match flatten(&scene) {
         Ok(flats) => flats.iter().for_each(|flat| maker.place(flat)),
         Err(diagnostic) => diagnostics.push(*diagnostic),
@@ -91,6 +92,8 @@ struct Maker<'a> {
     scene: &'a Scene,
     builder: Builder<'a>,
     cache: &'a Cache,
+    /// Whether it matters which shapes are closed.
+    has_media: bool,
     made: Made,
 }
 
@@ -138,7 +141,7 @@ impl Maker<'_> {
         let interior = self.interior(shape, flat.material);
         let skin = self.skin(shape, flat.material, light.is_some(), interior.is_some());
         let Some(skin) = skin else { return };
-        let closed = self.made.geometries[geometry as usize].is_closed();
+        let closed = self.has_media && self.made.geometries[geometry as usize].is_closed();
         let placement = Placement {
             geometry,
             transform,
@@ -208,8 +211,7 @@ impl Maker<'_> {
                     let message = format!("{} triangles without area left out", bvh.dropped());
                     self.builder.diagnostics.push(Diagnostic::warning("E0418", span, message));
                 }
-                let closed = closed::is_closed(triangles);
-                Some(Geometry::Mesh(Arc::new(Mesh::new(object.clone(), bvh, closed))))
+                Some(Geometry::Mesh(Arc::new(Mesh::new(object.clone(), bvh))))
             }
             Err(error) => {
                 self.builder.diagnostics.push(mesh_error(error, span));

@@ -3,12 +3,13 @@
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32};
 
+use super::closed::is_closed;
 use crate::accel::MeshBvh;
 use crate::cast::narrow;
 use crate::object::Object;
@@ -31,8 +32,9 @@ pub struct Mesh {
     /// Keeps the triangles.
     object: Arc<Object>,
     bvh: MeshBvh,
-    /// Whether every edge joins exactly two triangles that run along it in opposite directions.
-    closed: bool,
+    /// Whether every edge joins exactly two triangles that run along it in opposite directions:
+    /// found when first asked for, which only scenes with media do.
+    closed: OnceLock<bool>,
     /// What the tree's points are relative to, in the mesh's frame.
     centre: DVec3,
     /// Diagonal of the tree's box, metres of the mesh's frame.
@@ -41,10 +43,10 @@ pub struct Mesh {
 
 impl Mesh {
     /// Takes over the triangles of a shape and its finished tree.
-    pub fn new(object: Arc<Object>, bvh: MeshBvh, closed: bool) -> Self {
+    pub fn new(object: Arc<Object>, bvh: MeshBvh) -> Self {
         let diagonal = bvh.bounds().map_or(0.0, |(min, max)| (max - min).as_dvec3().length());
         let centre = object.fixed().shape().mesh().map_or(DVec3::ZERO, |mesh| mesh.centre);
-        Self { object, bvh, closed, centre, diagonal }
+        Self { object, bvh, closed: OnceLock::new(), centre, diagonal }
     }
 
     /// The triangles.
@@ -194,7 +196,7 @@ impl Geometry {
     pub fn is_closed(&self) -> bool {
         match self {
             Self::Analytic(object) => object.fixed().shape().is_closed(),
-            Self::Mesh(mesh) => mesh.closed,
+            Self::Mesh(mesh) => *mesh.closed.get_or_init(|| is_closed(mesh.triangles())),
         }
     }
 

@@ -92,7 +92,7 @@ fn mesh_of(corners: [DVec3; 3]) -> Mesh {
         Builder::new(&registry, &scene, &files, ColorMode::Rgb, &before).build(id).unwrap();
     let mesh = object.fixed().shape().mesh().unwrap();
     let bvh = MeshBvh::build(&mesh.points, &mesh.indices).unwrap();
-    Mesh::new(object, bvh, false)
+    Mesh::new(object, bvh)
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub(super) fn passes(
         let open = stage.features.open_surfaces;
         let hit = if open { stage.intersect(&ray, from, &mut 0) } else { None };
         let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
-        if let Some(medium) = media.current(stage.outside) {
+        if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
             scratch.reset();
             let uv = glam::Vec2::ZERO;
             let at = Site { p: ray.o, uv, palette: &path.palette };

@@ -191,7 +191,7 @@ impl<'s> Worker<'s> {
             let Lane { at: arrival, samples, .. } = &mut self.lanes[lane];
             let scratch = &mut self.scratch;
             let wants = self.wants;
-            if let Some(medium) = media.current(stage.outside) {
+            if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
                 self.medium_scratch.reset();
                 let uv = glam::Vec2::ZERO;
                 let at = Site { p: ray.o, uv, palette: &path.palette };

@@ -378,6 +378,7 @@ fn finish(
         integrator: settings.integrator,
         sampler: settings.sampler,
         filter: settings.filter,
+        reach: sphere.1,
         camera_media: MediumStack::default(),
         cache: Cache { objects, meshes: made.meshes },
         scene,
@@ -386,19 +387,22 @@ fn finish(
         features,
         sphere,
     };
-    stage.camera_media = camera_media(&stage);
+    if let Some(eye) = eye(&stage) {
+        stage.reach = FOG_REACH * sphere.1.max(eye.distance(sphere.0));
+        if stage.features.media {
+            stage.camera_media = stage.media_at(eye);
+        }
+    }
     stage
 }
 
-/// The media around the camera, looked for only where there are any.
-fn camera_media(stage: &Stage) -> MediumStack {
-    if !stage.features.media {
-        return MediumStack::default();
-    }
+/// How far the medium that fills the outside reaches, in radii of what holds the scene and the
+/// camera: endless fog would let no light from far away through, and hold paths for ever.
+const FOG_REACH: f64 = 2.0;
+
+/// Where the camera stands.
+fn eye(stage: &Stage) -> Option<DVec3> {
     let raster = luxel_sdk::kind::Raster { size: stage.film.resolution };
     let centre = stage.film.resolution.as_dvec2() / 2.0;
-    match stage.camera.fixed().camera().ray(raster, centre, [0.5; 2]) {
-        Some(found) => stage.media_at(found.ray.o),
-        None => MediumStack::default(),
-    }
+    Some(stage.camera.fixed().camera().ray(raster, centre, [0.5; 2])?.ray.o)
 }

@@ -32,6 +32,11 @@ impl MediumStack {
         }
     }
 
+    /// Whether it is inside no shape.
+    pub fn is_outside(&self) -> bool {
+        self.len == 0
+    }
+
     /// The medium around the ray; `outside` where it is in no shape.
     pub fn current(&self, outside: Option<u32>) -> Option<u32> {
         match self.len {
@@ -56,6 +61,7 @@ mod tests {
         stack.leave(2);
         stack.leave(2);
         assert_eq!(stack.current(Some(0)), Some(0));
+        assert!(stack.is_outside());
     }
 
     #[test]

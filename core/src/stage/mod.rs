@@ -69,6 +69,8 @@ pub struct Stage {
     pub features: Features,
     /// Centre and radius of a sphere around everything, metres.
     pub sphere: (DVec3, f64),
+    /// Radius about the centre of `sphere` to which what fills the outside reaches, metres.
+    pub reach: f64,
     /// The media that the camera stands in.
     pub camera_media: MediumStack,
     /// For the next build.

@@ -1,7 +1,7 @@
 //! Rays through the whole stage.
 
 use luxel_sdk::kind::Surface;
-use luxel_sdk::num::Ray;
+use luxel_sdk::num::{Ray, sphere_roots};
 
 use super::{Leaving, MediumStack, SceneHit, Skin, Stage};
 
@@ -41,6 +41,17 @@ impl Stage {
             (geometry, _) => geometry.surface(&placement.to_local(ray), &hit.hit),
         };
         placement.to_world(local)
+    }
+
+    /// The medium that a ray is in at its origin, and how far along the ray it may reach: what fills
+    /// the outside ends at `reach`.
+    pub fn medium_along(&self, media: &MediumStack, ray: &Ray) -> Option<(u32, f64)> {
+        let medium = media.current(self.outside)?;
+        if !media.is_outside() {
+            return Some((medium, ray.t_max));
+        }
+        let (_, exit) = sphere_roots(ray.o - self.sphere.0, ray.d, self.reach)?;
+        (exit > 0.0).then(|| (medium, ray.t_max.min(exit)))
     }
 
     /// Changes the media that a ray is in as it passes a surface along `d`.

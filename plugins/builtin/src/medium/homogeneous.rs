@@ -65,8 +65,13 @@ impl Medium for Homogeneous<'_> {
 
     /// The distance comes from one lane, chosen evenly; all four are weighed as if by the mean of
     /// their densities (one-sample balance heuristic, as in Wilkie et al. 2014).
+    ///
+    /// Where nothing scatters, every ray passes, with what absorption leaves of it.
     fn sample(&self, ray: &Ray, samples: &mut Samples<'_>) -> FreeFlight {
         let sigma = self.extinction();
+        if self.scattering().is_black() {
+            return FreeFlight { t: None, weight: attenuation(sigma, ray.t_max) };
+        }
         let [lane, u] = samples.next_2d();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [0, 4)")]
         let chosen = f64::from(sigma.lane((lane * 4.0) as usize & 3));

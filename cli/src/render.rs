@@ -23,7 +23,7 @@ use crate::{interrupt, picture};
 #[command(after_help = "\
 Examples:
   luxel render scenes/cornell.scene
-  luxel render scenes/cornell.scene -o /tmp/cornell --size 256x256 --spp 64
+  luxel render scenes/cornell.scene -o small --size 256x256 --spp 64
   luxel render scenes/cornell.scene --crop 100,100,64,64 --json")]
 pub(crate) struct Args {
     /// The scene

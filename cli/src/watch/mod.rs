@@ -27,7 +27,7 @@ use changes::{Changes, Wake};
 #[command(after_help = "\
 Examples:
   luxel watch scenes/cornell.scene
-  luxel watch scenes/cornell.scene -o /tmp/cornell --size 320x320 --spp 16")]
+  luxel watch scenes/cornell.scene -o small --size 320x320 --spp 16")]
 pub(crate) struct Args {
     /// The scene
     file: PathBuf,

@@ -45,7 +45,8 @@ impl Output {
         };
         let known = |e: &OsStr| ["exr", "png"].iter().any(|k| e.eq_ignore_ascii_case(k));
         let stem = if stem.extension().is_some_and(known) { stem.with_extension("") } else { stem };
-        if stem.file_name().is_none() {
+        let is_folder = stem.to_string_lossy().ends_with(std::path::is_separator);
+        if is_folder || stem.file_name().is_none() {
             let message = format!("`{}` is not a file name", stem.display());
             return Err(Failure::new(Exit::Usage, message).help("as in -o picture"));
         }

@@ -158,8 +158,10 @@ impl Summary {
 fn errors(film: &Film) -> Option<Errors> {
     let weights = RgbSpace::LinearSrgb.luminance_weights();
     let relative = film.pixels().filter_map(|(_, pixel)| {
-        let mean = weights.dot(pixel.mean);
-        (pixel.n >= 2 && mean > 0.0).then(|| weights.dot(pixel.standard_error()) / mean)
+        let (mean, error) = (weights.dot(pixel.mean), weights.dot(pixel.standard_error()));
+        // A pixel that saw nothing but black is black without error, as far as one can tell.
+        let relative = if error > 0.0 { error / mean } else { 0.0 };
+        (pixel.n >= 2 && relative.is_finite()).then_some(relative)
     });
     let mut sorted: Vec<f64> = relative.collect();
     sorted.sort_unstable_by(f64::total_cmp);

@@ -9,6 +9,8 @@ pub struct Budgets {
     pub total_bytes: usize,
     /// How deep files may include one another.
     pub include_depth: usize,
+    /// How often files may be included or imported, one file counted each time.
+    pub includes: usize,
     /// How deep brackets may nest; far above the default the stack may not suffice.
     pub brackets: usize,
     /// Operators in one expression.
@@ -35,6 +37,7 @@ impl Default for Budgets {
             file_bytes: 64 << 20,
             total_bytes: 256 << 20,
             include_depth: 32,
+            includes: 10_000,
             brackets: 128,
             operators: 4096,
             steps: 100_000_000,

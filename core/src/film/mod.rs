@@ -109,15 +109,16 @@ impl Film {
         self.tiles.iter().flat_map(|tile| &tile.pixels).map(|pixel| u64::from(pixel.bad)).sum()
     }
 
-    /// Mean over the window, and its standard error, per channel.
+    /// Mean over the pixels that have samples, and its standard error, per channel; zero if none has.
     pub fn mean(&self) -> (DVec3, DVec3) {
         let (mut sum, mut variance, mut n) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-        for (_, pixel) in self.pixels() {
+        for (_, pixel) in self.pixels().filter(|(_, pixel)| pixel.n > 0) {
             let error = pixel.standard_error();
             sum += pixel.mean;
             variance += error * error;
             n += 1.0;
         }
+        let n = f64::max(n, 1.0);
         let root = DVec3::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt());
         (sum / n, root / n)
     }
@@ -144,6 +145,14 @@ mod tests {
         pixel.push(DVec3::new(1.0, f64::NAN, 0.0));
         pixel.push(DVec3::ONE);
         assert_eq!((pixel.n, pixel.bad, pixel.mean), (1, 1, DVec3::ONE));
+    }
+
+    #[test]
+    fn pixels_without_samples_do_not_darken_the_mean() {
+        let mut film = Film::new(UVec2::new(32, 16), Rect::new(UVec2::ZERO, UVec2::new(32, 16)));
+        assert_eq!(film.mean().0, DVec3::ZERO);
+        film.tiles_mut()[0].pixels[3].push(DVec3::ONE);
+        assert_eq!(film.mean().0, DVec3::ONE);
     }
 
     #[test]

@@ -195,11 +195,11 @@ impl<'a> Builder<'a> {
                 }
             }
             (Type::Spectrum | Type::ComplexIor, Some(Value::Color(color, _))) => {
-                draft.lanes(param.offset, colour::lanes(color, param.role, draft.mode)?);
+                draft.lanes(param.offset, colour::lanes(color, param.role, draft.mode)?)?;
                 if param.ty == Type::ComplexIor
                     && let Some(k) = colour::extinction(color, draft.mode)
                 {
-                    draft.lanes(param.offset + size_of::<Spectrum>(), k);
+                    draft.lanes(param.offset + size_of::<Spectrum>(), k)?;
                 }
             }
             // A metal's `eta` has written it already.
@@ -245,12 +245,12 @@ impl<'a> Builder<'a> {
                 }
             }
             Some(Value::Color(color, _)) => {
-                draft.lanes(param.offset, colour::emission(color, amount, draft.mode)?);
+                draft.lanes(param.offset, colour::emission(color, amount, draft.mode)?)?;
             }
             Some(other) => return Err(format!("a spectrum cannot be made of {other:?}")),
             None => {
                 let lanes = colour::emission(&colour::white(), amount, draft.mode)?;
-                draft.lanes(param.offset, lanes);
+                draft.lanes(param.offset, lanes)?;
             }
         }
         Ok(())
@@ -276,12 +276,21 @@ struct Draft {
 }
 
 impl Draft {
-    fn lanes(&mut self, offset: usize, lanes: Lanes) {
+    fn lanes(&mut self, offset: usize, lanes: Lanes) -> Result<(), String> {
+        let finite = match &lanes {
+            Lanes::Constant(value) => value.is_finite(),
+            Lanes::Curve(curve) => curve.max().is_finite(),
+            Lanes::Rgb(rgb, _) => rgb.is_finite(),
+        };
+        if !finite {
+            return Err("a value beyond single precision".to_owned());
+        }
         match lanes {
             Lanes::Constant(value) => self.block.write(offset, value),
             Lanes::Curve(curve) => self.patches.curves.push(CurvePatch { offset, curve }),
             Lanes::Rgb(rgb, uplift) => self.patches.colours.push(RgbPatch { offset, rgb, uplift }),
         }
+        Ok(())
     }
 
     fn child(&mut self, offset: usize, kind: Kind, child: &Arc<Object>) {
@@ -324,6 +333,9 @@ impl Draft {
     fn value(&mut self, param: &Param, value: &Value) -> Result<(), String> {
         let at = param.offset;
         match (param.ty, value) {
+            (Type::Float | Type::MaybeFloat, Value::Number(x, _)) if narrow(*x).is_infinite() => {
+                return Err(format!("`{}` = {x:e} is beyond single precision", param.name));
+            }
             (Type::Float, Value::Number(x, _)) => self.block.write(at, narrow(*x)),
             (Type::Double, Value::Number(x, _)) => self.block.write(at, *x),
             (Type::Int, Value::Number(x, _)) => self.block.write(at, whole(*x)),

@@ -153,6 +153,12 @@ impl Evaluator<'_> {
             self.poison("E0505", name.span, message);
             return None;
         }
+        self.includes += 1;
+        if self.includes > self.budgets.includes {
+            let message = format!("files are included more than {} times", self.budgets.includes);
+            self.over_budget("E0505", name.span, message);
+            return None;
+        }
         if let Some(read) = self.read.get(&canonical) {
             return Some((path, canonical, read.clone()));
         }

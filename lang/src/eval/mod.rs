@@ -57,6 +57,7 @@ pub(crate) fn load(
         placements: 0,
         stopped: false,
         bytes_read: 0,
+        includes: 0,
         read: BTreeMap::new(),
         imported: BTreeMap::new(),
         chain: vec![],
@@ -89,6 +90,8 @@ struct Evaluator<'a> {
     /// A budget is spent: everything winds up.
     stopped: bool,
     bytes_read: usize,
+    /// Files included or imported so far.
+    includes: usize,
     /// Files that were read, by canonical path.
     read: BTreeMap<PathBuf, Rc<ReadFile>>,
     imported: BTreeMap<PathBuf, Rc<Module>>,

@@ -125,6 +125,18 @@ fn files_are_bounded_in_size_and_depth() {
 }
 
 #[test]
+fn files_that_each_include_the_next_twice_end_at_the_budget() {
+    let mut files = MemoryFiles::default();
+    for level in 0..30 {
+        let next = format!("include \"{}.scene\"\n", level + 1).repeat(2);
+        files = files.with(format!("{level}.scene"), format!("scene 1\n{next}").into_bytes());
+    }
+    let files = files.with("30.scene", &b"scene 1"[..]);
+    let loaded = load(Path::new("0.scene"), &files, &registry(), &Settings::default());
+    assert_eq!(loaded.diagnostics.iter().map(|d| d.code).collect::<Vec<_>>(), ["E0505"]);
+}
+
+#[test]
 fn bytes_that_are_no_text_are_told_of() {
     let loaded = load_bytes(b"scene 1\nlet a = \xff".to_vec(), Budgets::default());
     assert_eq!(loaded.diagnostics[0].code, "E0003");

@@ -44,7 +44,7 @@ pub(crate) struct ThinLens {
     #[param(default = [0.0, 0.0])]
     shift: Vec2,
     /// Focal length over the diameter of the lens.
-    #[param(optional, min = 0, group = "opening")]
+    #[param(optional, min = 1e-3, group = "opening")]
     f_number: f64,
     /// Radius of the lens; 0 is a pinhole.
     #[param(optional, unit = "m", min = 0, group = "opening")]

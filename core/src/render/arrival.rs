@@ -173,7 +173,8 @@ impl Local {
         // that the surface does not have: the geometric one counts.
         let agree = (at.wo.dot(at.ns) > 0.0) == outside;
         let normal = if agree { at.ns } else { at.ng };
-        let tangent = surface.dp_du.normalize_or_zero().as_vec3();
+        // Of any length, but in the range of single precision.
+        let tangent = (surface.dp_du / surface.dp_du.abs().max_element()).as_vec3();
         let frame = Frame::from_z_and_tangent(normal.as_vec3(), tangent);
         Self { wo: frame.to_local(at.wo.as_vec3()), frame, ng: at.ng, outside }
     }

@@ -118,12 +118,11 @@ impl<'s> Worker<'s> {
                 }
                 continue;
             };
-            let state = Lane { at: Arrival::default(), l: Spectrum::ZERO, samples };
             if fresh {
-                self.lanes.push(state);
+                self.lanes.push(Lane { at: Arrival::default(), l: Spectrum::ZERO, samples });
                 self.paths.push(path);
             } else {
-                self.lanes[lane] = state;
+                (self.lanes[lane].l, self.lanes[lane].samples) = (Spectrum::ZERO, samples);
                 self.paths[lane] = path;
             }
             let asked = self.next.rays.len() + self.next.shadows.len();

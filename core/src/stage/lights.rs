@@ -219,8 +219,7 @@ impl Stage {
         let ray = ray_between(from, &surface);
         let to = surface.p - from.p;
         let distance2 = to.length_squared();
-        let wi = to / distance2.sqrt();
-        let cos_o = -surface.ng.dot(wi);
+        let cos_o = -surface.ng.dot(ray.d);
         let pdf = pdf_area * distance2 / cos_o.abs();
         if !(pdf > 0.0 && pdf.is_finite()) {
             return None;

@@ -29,28 +29,18 @@ pub const fn gamma64(n: u16) -> f64 {
 /// positive side if `d` is tangential or NaN. All in one frame; NaN in, NaN out.
 ///
 /// # Source
-/// PBR4 §6.8.6: the plane is moved by |`ng`|·`p_err`, then every component rounds away from `p`.
+/// PBR4 §6.8.6: the plane is moved by |`ng`|·`p_err`, then every component rounds away from `p`: by
+/// one to two units in the last place, which costs a product where stepping to the next float costs
+/// branches.
 #[inline]
 pub fn offset_origin(p: DVec3, p_err: DVec3, ng: DVec3, d: DVec3) -> DVec3 {
     let distance = ng.abs().dot(p_err);
+    if distance <= 0.0 {
+        return p;
+    }
     let offset = if d.dot(ng) < 0.0 { ng * -distance } else { ng * distance };
     let moved = p + offset;
-    DVec3::new(
-        round_away(moved.x, offset.x),
-        round_away(moved.y, offset.y),
-        round_away(moved.z, offset.z),
-    )
-}
-
-#[inline]
-fn round_away(x: f64, towards: f64) -> f64 {
-    if towards > 0.0 {
-        x.next_up()
-    } else if towards < 0.0 {
-        x.next_down()
-    } else {
-        x
-    }
+    moved + (moved.abs() * f64::EPSILON).copysign(offset)
 }
 
 #[cfg(test)]

@@ -47,7 +47,8 @@ impl Frame {
             return Self::from_z(z);
         }
         let y = across / length;
-        let x = y.cross(z64).normalize();
+        // As long as `z`: unit to the rounding of f32.
+        let x = y.cross(z64);
         Self { x: x.as_vec3(), y: y.as_vec3(), z }
     }
 

@@ -38,6 +38,7 @@ pub struct Placement {
 
 impl Placement {
     /// A ray of the world in the geometry's frame; its parameter `t` stays.
+    #[inline]
     pub fn to_local(&self, ray: &Ray) -> Ray {
         match &self.transform {
             Some(transform) => transform.inverse_ray(ray),
@@ -46,6 +47,7 @@ impl Placement {
     }
 
     /// A point of the world in the geometry's frame.
+    #[inline]
     pub fn point_to_local(&self, p: DVec3) -> DVec3 {
         match &self.transform {
             Some(transform) => transform.inverse_point(p),
@@ -54,6 +56,7 @@ impl Placement {
     }
 
     /// A surface point in the world.
+    #[inline]
     pub fn to_world(&self, s: Surface) -> Surface {
         let Some(transform) = &self.transform else { return s };
         let (p, p_err) = transform.point_with_error(s.p, s.p_err);

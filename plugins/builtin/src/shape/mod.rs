@@ -31,12 +31,20 @@ fn bounds_about(centre: DVec3, half: DVec3) -> Bounds3 {
     Bounds3 { min: centre - half - room, max: centre + half + room }
 }
 
-/// Refuses a length that is not above 0.
+/// Longest length whose square, times that of a far point, is still a number.
+const LONGEST: f64 = 1e75;
+
+/// Refuses a length that is not above 0, or whose powers overflow.
 fn check_length(field: &'static str, length: f64) -> Result<(), Fault> {
-    if length > 0.0 {
+    if length > 0.0 && length <= LONGEST {
         return Ok(());
     }
-    Err(Fault::range(field, format!("{length} m: it must exceed 0")))
+    let message = if length > 0.0 {
+        format!("{length:e} m: it is beyond every measure")
+    } else {
+        format!("{length} m: it must exceed 0")
+    };
+    Err(Fault::range(field, message))
 }
 
 /// Refuses a vector without a direction.

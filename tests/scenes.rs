@@ -33,3 +33,12 @@ fn every_shipped_scene_says_what_it_shows_and_renders() {
         assert!(mean.y > 0.0 && mean.is_finite(), "{name} is black");
     }
 }
+
+#[test]
+fn the_readme_shows_the_text_of_the_scene_that_made_its_picture() {
+    let readme = text(&root().join("README.md"));
+    let shown = readme.split("```scene\n").nth(1).and_then(|rest| rest.split("```").next());
+    let scene = text(&root().join("scenes/spot.scene"));
+    let (_, body) = scene.split_once('\n').expect("the first line says what it shows");
+    assert_eq!(shown, Some(body));
+}

@@ -15,7 +15,7 @@ use crate::kind::{
     PathIntegrator, Phase, PhaseRef, Sampler, Shape, Texture,
 };
 use crate::params::{
-    Build, BuildContext, Fault, Field, Object, Param, Params, Preset, SharedFns, Type,
+    Build, BuildContext, Fault, Field, Param, Params, Preset, SharedFns, SharedTable, Type,
 };
 
 /// A lifetime as a value: how long the bytes behind a view are lent.
@@ -211,7 +211,7 @@ class!("A filter.", filter, Filter);
 pub unsafe fn build_shared<P, T>(
     p: *const u8,
     context: &dyn BuildContext,
-) -> Result<Object, Vec<Fault>>
+) -> Result<SharedTable, Vec<Fault>>
 where
     P: Build<T>,
     T: Send + Sync + 'static,
@@ -219,7 +219,7 @@ where
     // SAFETY: the caller passes a valid struct of this type.
     let params = unsafe { &*p.cast::<P>() };
     let table = Box::new(params.build(context)?);
-    Ok(Object { address: (&raw const *table).cast(), owner: table })
+    Ok(SharedTable { address: (&raw const *table).cast(), owner: table })
 }
 
 /// Refuses a default outside its own range, while the plugin compiles.

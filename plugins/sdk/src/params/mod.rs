@@ -16,5 +16,5 @@ pub use fields::{
     ShapeSlot, Shared, Table, Text,
 };
 pub use kind::Kind;
-pub use schema::{Fault, Object, Param, Params, Preset, Role, SharedFns, Type};
+pub use schema::{Fault, Param, Params, Preset, Role, SharedFns, SharedTable, Type};
 pub use unit::{UNITS, Unit};

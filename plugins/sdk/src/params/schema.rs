@@ -138,11 +138,11 @@ pub struct SharedFns {
     /// Where the host writes the pointer to the table.
     pub offset: usize,
     /// Builds the table from the struct's bytes. The pointer is to a live struct of the class.
-    pub build: unsafe fn(*const u8, &dyn BuildContext) -> Result<Object, Vec<Fault>>,
+    pub build: unsafe fn(*const u8, &dyn BuildContext) -> Result<SharedTable, Vec<Fault>>,
 }
 
 /// A table that an object owns: built once, read by every copy of the struct.
-pub struct Object {
+pub struct SharedTable {
     /// What the struct's `Shared` field points to.
     pub address: *const u8,
     /// Keeps it alive.

@@ -40,14 +40,14 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut exit = Exit::Fine;
     for file in &args.files {
         let loaded = load::load(file, &args.load, None, &registry, None)?;
-        report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream);
+        report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream)?;
         if loaded.stage.is_none() || loaded.diagnostics.iter().any(Diagnostic::is_error) {
             exit = Exit::Input;
         } else if !args.json && !args.print {
-            report::out(&format!("{}: fine\n", file.display()));
+            report::out(&format!("{}: fine\n", file.display()))?;
         }
         if let (true, Some(scene)) = (args.print, &loaded.scene) {
-            report::out(&luxel_core::scene::print(scene));
+            report::out(&luxel_core::scene::print(scene))?;
         }
     }
     Ok(exit)

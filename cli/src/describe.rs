@@ -32,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(unknown(kind.word(), &args.name, &names));
     };
     let page = if args.json { format!("{}\n", object(entry)) } else { text(entry) };
-    report::out(&page);
+    report::out(&page)?;
     Ok(Exit::Fine)
 }
 

@@ -37,12 +37,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 "summary": summary(class.doc),
             })
         });
-        report::out(&format!("{}\n", all.collect::<serde_json::Value>()));
+        report::out(&format!("{}\n", all.collect::<serde_json::Value>()))?;
     } else {
         for entry in entries {
             let class = &entry.class;
             let (kind, summary) = (class.kind.word(), summary(class.doc));
-            report::out(&format!("{kind:<11}{:<20} {summary}\n", class.name));
+            report::out(&format!("{kind:<11}{:<20} {summary}\n", class.name))?;
         }
     }
     Ok(Exit::Fine)

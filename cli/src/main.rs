@@ -57,8 +57,10 @@ fn main() -> ExitCode {
         Err(error) => {
             // Help and version are errors to clap; they go to stdout with code 0.
             let told = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
-            report::usage(&error);
-            return told.into();
+            return match report::usage(&error) {
+                Ok(()) => told.into(),
+                Err(failure) => failed(&failure).into(),
+            };
         }
     };
     let done = exit::guarded(|| match &cli.command {
@@ -68,11 +70,12 @@ fn main() -> ExitCode {
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),
     });
-    let exit = done.unwrap_or_else(|failure: Failure| {
-        report::failure(&failure);
-        failure.exit
-    });
-    exit.into()
+    done.unwrap_or_else(|failure| failed(&failure)).into()
+}
+
+fn failed(failure: &Failure) -> Exit {
+    report::failure(failure);
+    failure.exit
 }
 
 #[cfg(test)]

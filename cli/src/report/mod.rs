@@ -1,4 +1,5 @@
-//! The only printing. A reader who has gone away (a closed pipe) is no error.
+//! The only printing. A reader who has gone away (a closed pipe) is no error; standard output that
+//! cannot be written (a full disk) is one. What cannot be told on standard error is lost.
 
 mod plain;
 mod snippet;
@@ -8,7 +9,7 @@ use std::io::{self, IsTerminal, Write};
 
 use luxel_core::diag::{Diagnostic, Sources};
 
-use crate::exit::Failure;
+use crate::exit::{Exit, Failure};
 
 /// How diagnostics are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,18 +30,21 @@ pub(crate) enum Stream {
 }
 
 /// Prints what was asked for.
-pub(crate) fn out(text: &str) {
-    put(Stream::Out, text);
+///
+/// # Errors
+/// If standard output cannot be written.
+pub(crate) fn out(text: &str) -> Result<(), Failure> {
+    put(Stream::Out, text)
 }
 
 /// Prints a remark for people.
 pub(crate) fn note(text: &str) {
-    put(Stream::Error, &format!("{}\n", plain::clean(text)));
+    tell(&format!("{}\n", plain::clean(text)));
 }
 
 /// Prints a warning that belongs to no place in a file.
 pub(crate) fn warning(message: &str) {
-    put(Stream::Error, &format!("warning: {}\n", plain::clean(message)));
+    tell(&format!("warning: {}\n", plain::clean(message)));
 }
 
 /// Prints why a command stopped.
@@ -49,25 +53,38 @@ pub(crate) fn failure(failure: &Failure) {
     if let Some(help) = &failure.help {
         text.extend(["  help: ", &plain::clean(help), "\n"]);
     }
-    put(Stream::Error, &text);
+    tell(&text);
 }
 
-/// Prints what clap has to say: help, version or a mistake of the command line.
-pub(crate) fn usage(error: &clap::Error) {
-    let _ = error.print();
+/// Prints what clap has to say: help and version on standard output, a mistake of the command line
+/// on standard error.
+///
+/// # Errors
+/// As `out`.
+pub(crate) fn usage(error: &clap::Error) -> Result<(), Failure> {
+    let printed = error.print().and_then(|()| io::stdout().lock().flush());
+    if error.use_stderr() { Ok(()) } else { written(printed) }
 }
 
 /// Redraws the line of progress on standard error; an empty one is wiped.
 pub(crate) fn progress(line: &str) {
-    put(Stream::Error, &format!("\r{line}\x1b[K"));
+    tell(&format!("\r{line}\x1b[K"));
 }
 
 /// Prints diagnostics, then how many there are.
-pub(crate) fn diagnostics(found: &[Diagnostic], sources: &Sources, form: Form, stream: Stream) {
+///
+/// # Errors
+/// As `out`, where they go there.
+pub(crate) fn diagnostics(
+    found: &[Diagnostic],
+    sources: &Sources,
+    form: Form,
+    stream: Stream,
+) -> Result<(), Failure> {
     match form {
         Form::Json => {
             for diagnostic in found {
-                put(stream, &format!("{}\n", plain::json(diagnostic, sources)));
+                put(stream, &format!("{}\n", plain::json(diagnostic, sources)))?;
             }
         }
         Form::Text => {
@@ -77,21 +94,52 @@ pub(crate) fn diagnostics(found: &[Diagnostic], sources: &Sources, form: Form, s
             };
             for diagnostic in found {
                 let text = snippet::render(diagnostic, sources, coloured);
-                put(stream, &format!("{text}\n\n"));
+                put(stream, &format!("{text}\n\n"))?;
             }
             if !found.is_empty() {
-                put(stream, &format!("{}\n", plain::count(found)));
+                put(stream, &format!("{}\n", plain::count(found)))?;
             }
+        }
+    }
+    Ok(())
+}
+
+fn put(stream: Stream, text: &str) -> Result<(), Failure> {
+    match stream {
+        Stream::Out => {
+            let mut out = io::stdout().lock();
+            written(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+        }
+        Stream::Error => {
+            tell(text);
+            Ok(())
         }
     }
 }
 
-fn put(stream: Stream, text: &str) {
-    let _ = match stream {
-        Stream::Out => {
-            let mut out = io::stdout().lock();
-            out.write_all(text.as_bytes()).and_then(|()| out.flush())
+/// To standard error, beside which there is no other place to complain.
+fn tell(text: &str) {
+    let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+fn written(done: io::Result<()>) -> Result<(), Failure> {
+    match done {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            let message = format!("cannot write to standard output: {error}");
+            Err(Failure::new(Exit::Input, message))
         }
-        Stream::Error => io::stderr().lock().write_all(text.as_bytes()),
-    };
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reader_who_has_gone_is_no_error_and_a_full_device_is_one() {
+        let end = |kind: io::ErrorKind| written(Err(kind.into())).map_err(|f| f.exit);
+        assert_eq!(end(io::ErrorKind::BrokenPipe), Ok(()));
+        assert_eq!(end(io::ErrorKind::StorageFull), Err(Exit::Input));
+    }
 }

@@ -1,21 +1,133 @@
-//! Ctrl-C: the first one asks for an orderly end, the second one ends at once.
+//! Ctrl-C: the first one asks for an orderly end, a later one gives up what is not yet saved.
+//! A picture that is being written is always finished: no half file, no new EXR beside an old PNG.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use crate::exit::{Exit, Failure};
+use crate::report;
 
-/// Calls `first` at the first interrupt; the second ends the program. Termination counts as one.
-///
-/// # Errors
-/// If the system refuses the handler.
-pub(crate) fn on_ctrl_c(first: impl Fn() + Send + 'static) -> Result<(), Failure> {
-    let asked = AtomicBool::new(false);
-    ctrlc::set_handler(move || {
-        if asked.swap(true, Ordering::Relaxed) {
-            #[expect(clippy::exit, clippy::disallowed_methods, reason = "asked for twice")]
-            std::process::exit(Exit::Incomplete as i32);
+/// Interrupts within this time of the first are taken for the same one (a double press, a signal
+/// sent to the whole group as well): most renders have ended in order by then.
+const SAME: Duration = Duration::from_secs(1);
+
+/// How far the picture has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Phase {
+    /// It is in memory only.
+    #[default]
+    Measuring,
+    /// It is on its way to the disk.
+    Saving,
+    /// It is on the disk.
+    Saved,
+}
+
+/// What an interrupt does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answer {
+    First,
+    Again,
+    Wait,
+    GiveUp(&'static str),
+}
+
+#[derive(Debug, Default)]
+struct State {
+    phase: Phase,
+    first: Option<Instant>,
+}
+
+impl State {
+    fn answer(&mut self, now: Instant) -> Answer {
+        let Some(first) = self.first else {
+            self.first = Some(now);
+            return Answer::First;
+        };
+        match self.phase {
+            Phase::Saving => Answer::Wait,
+            _ if now.duration_since(first) < SAME => Answer::Again,
+            Phase::Measuring => Answer::GiveUp(
+                "interrupted again: what was measured is lost, the files are as they were",
+            ),
+            Phase::Saved => Answer::GiveUp("interrupted again: the picture has been written"),
         }
-        first();
-    })
-    .map_err(|error| Failure::new(Exit::Ours, format!("cannot listen for Ctrl-C: {error}")))
+    }
+}
+
+/// Knows whether a picture is being written, so that no interrupt cuts it in half.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Guard(Arc<Mutex<State>>);
+
+/// While it lives, files are being written; afterwards they are whole.
+pub(crate) struct Saving<'a>(&'a Guard);
+
+impl Guard {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The picture is about to be written.
+    pub(crate) fn saving(&self) -> Saving<'_> {
+        self.state().phase = Phase::Saving;
+        Saving(self)
+    }
+
+    /// The next picture is about to be measured.
+    pub(crate) fn measuring(&self) {
+        self.state().phase = Phase::Measuring;
+    }
+
+    /// Calls `first` at the first interrupt; a later one ends the program with a word on what was
+    /// kept, at once or when the picture in hand is written. Termination counts as one.
+    ///
+    /// # Errors
+    /// If the system refuses the handler.
+    pub(crate) fn on_ctrl_c(&self, first: impl Fn() + Send + 'static) -> Result<(), Failure> {
+        let guard = self.clone();
+        let handler = move || {
+            // Held to the end: nothing begins to be written while the program is on its way out.
+            let mut state = guard.state();
+            match state.answer(Instant::now()) {
+                Answer::First => first(),
+                Answer::Again => {}
+                Answer::Wait => report::note("the picture is being written: one moment"),
+                Answer::GiveUp(word) => {
+                    report::note(word);
+                    #[expect(clippy::exit, clippy::disallowed_methods, reason = "asked for twice")]
+                    std::process::exit(Exit::Incomplete as i32);
+                }
+            }
+        };
+        ctrlc::set_handler(handler)
+            .map_err(|error| Failure::new(Exit::Ours, format!("cannot listen for Ctrl-C: {error}")))
+    }
+}
+
+impl Drop for Saving<'_> {
+    fn drop(&mut self) {
+        self.0.state().phase = Phase::Saved;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_second_interrupt_gives_up_only_what_nothing_can_save() {
+        let (guard, now) = (Guard::default(), Instant::now());
+        let after = |seconds| guard.state().answer(now + Duration::from_secs(seconds));
+        let lost = |answer, word| matches!(answer, Answer::GiveUp(said) if said.contains(word));
+        assert_eq!(after(0), Answer::First);
+        assert_eq!(after(0), Answer::Again);
+        assert!(lost(after(2), "lost"));
+        let saving = guard.saving();
+        assert_eq!(after(0), Answer::Wait);
+        assert_eq!(after(9), Answer::Wait);
+        drop(saving);
+        assert!(lost(after(9), "has been written"));
+        guard.measuring();
+        assert!(lost(after(9), "lost"));
+    }
 }

@@ -18,7 +18,8 @@ use crate::{interrupt, picture};
 ///
 /// The EXR holds linear sRGB radiance (R, G, B), its standard error (SE.R, SE.G, SE.B) and the
 /// number of samples (N) of each pixel, with the settings as an attribute. The PNG shows it exposed.
-/// Ctrl-C ends early with a valid picture of what was measured and exit code 3.
+/// Ctrl-C ends early with a valid picture of what was measured and exit code 3; once more, a second
+/// later, gives up what has not been saved by then. No file is ever left half written.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -47,21 +48,22 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let registry = load::registry();
     let loaded = load::load(&args.file, &args.load, args.render.size, &registry, None)?;
     let form = if args.json { Form::Json } else { Form::Text };
-    report::diagnostics(&loaded.diagnostics, &loaded.sources, form, report::Stream::Error);
+    report::diagnostics(&loaded.diagnostics, &loaded.sources, form, report::Stream::Error)?;
     let Loaded { stage: Some(stage), files, .. } = loaded else { return Ok(Exit::Input) };
 
     let options = args.render.options();
     measure::window(&stage, &options)?;
     let film_file = stage.film.file.as_deref();
     let output = Output::choose(args.render.output.as_deref(), film_file, &args.file)?;
-    output.check(&files)?;
-
     let control = Arc::new(Control::default());
     let stop = control.clone();
-    interrupt::on_ctrl_c(move || stop.cancel())?;
+    let guard = interrupt::Guard::default();
+    guard.on_ctrl_c(move || stop.cancel())?;
+    output.check(&files)?;
     let line = !args.quiet;
     let measured = measure::measure((&args.file, &stage), &options, &control, line)?;
     let Measured { film, outcome, seconds } = measured;
+    let saving = guard.saving();
     let samples = control.samples_done();
     if samples == 0 {
         let message = "interrupted before anything was measured: no picture was written";
@@ -69,7 +71,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let summary = Summary::new((&stage, &files), &options, (&film, outcome), (seconds, samples));
     picture::write(&output, &film, &stage.film, &summary.notes())?;
-    tell(args, &summary, &output);
+    drop(saving);
+    tell(args, &summary, &output)?;
     Ok(match outcome {
         _ if args.strict && summary.bad > 0 => Exit::Ours,
         Outcome::Cancelled => Exit::Incomplete,
@@ -77,14 +80,16 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     })
 }
 
-fn tell(args: &Args, summary: &Summary, output: &Output) {
-    if args.json {
-        report::out(&format!("{}\n", summary.json(output)));
-    } else if !args.quiet {
-        report::out(&summary.text(output));
-    }
+fn tell(args: &Args, summary: &Summary, output: &Output) -> Result<(), Failure> {
     if summary.bad > 0 {
         let message = format!("{} samples were not finite and were left out", summary.bad);
         report::warning(&message);
+    }
+    if args.json {
+        report::out(&format!("{}\n", summary.json(output)))
+    } else if args.quiet {
+        Ok(())
+    } else {
+        report::out(&summary.text(output))
     }
 }

@@ -165,6 +165,43 @@ fn an_interrupt_leaves_a_valid_picture_and_says_so() {
 
 #[cfg(unix)]
 #[test]
+fn a_second_interrupt_still_leaves_a_whole_picture() {
+    let folder = Folder::new("twice").with("a.scene", SCENE);
+    let mut running = folder.start(&["render", "a.scene", "--spp", "4000000000"]);
+    std::thread::sleep(Duration::from_millis(700));
+    let since = Instant::now();
+    running.interrupt();
+    running.interrupt();
+    let done = running.end();
+    assert_eq!(done.code, 3, "{done:?}");
+    assert!(done.out.contains("wrote a.exr and a.png, interrupted"), "{done:?}");
+    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene"]);
+    assert!(since.elapsed() < Duration::from_secs(10));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_is_full_is_told_and_a_reader_who_leaves_is_not() {
+    let folder = Folder::new("stdout").with("a.scene", SCENE);
+    for args in [
+        &["list"][..],
+        &["describe", "shape", "sphere", "--json"],
+        &["check", "--print", "a.scene"],
+        &["--help"],
+        &["render", "--help"],
+        &["--version"],
+    ] {
+        let full = folder.luxel_under("exec >/dev/full", args);
+        assert_eq!(full.code, 1, "{args:?}: {full:?}");
+        assert!(full.err.contains("cannot write to standard output"), "{args:?}: {full:?}");
+    }
+    // The reader has gone before the first line is written.
+    let left = folder.luxel_under("mkfifo p; (: <p) & exec >p; wait", &["list"]);
+    assert_eq!((left.code, left.err.as_str()), (0, ""), "{left:?}");
+}
+
+#[cfg(unix)]
+#[test]
 fn a_full_disk_keeps_the_old_picture_and_leaves_nothing_else() {
     let folder = Folder::new("full").with("a.scene", SCENE).with("a.exr", "old");
     // A limit on the size of files stands in for the disk's: writing fails half way through.

@@ -11,12 +11,13 @@ use luxel_core::stage::Stage;
 use crate::args::{LoadArgs, RenderArgs};
 use crate::exit::{Exit, Failure};
 use crate::files::DiskFiles;
+use crate::interrupt::Guard;
 use crate::load::{self, Loaded};
 use crate::measure::{self, Measured};
 use crate::output::Output;
+use crate::picture;
 use crate::report::{self, Form, Stream};
 use crate::summary::Summary;
-use crate::{interrupt, picture};
 use changes::{Changes, Wake};
 
 /// Render a scene again whenever it, or a file that it reads, is saved
@@ -48,7 +49,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let (mut changes, waker) = Changes::new()?;
     let current = Current::default();
     let stopped = current.clone();
-    interrupt::on_ctrl_c(move || {
+    let guard = Guard::default();
+    guard.on_ctrl_c(move || {
         let _ = waker.send(Wake::Stop);
         stopped.lock().unwrap_or_else(PoisonError::into_inner).cancel();
     })?;
@@ -70,7 +72,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             }
         };
         let go_on = match (&last_good, &files) {
-            (Some(stage), Some(files)) => one(args, (stage, files), &current, &mut changes),
+            (Some(stage), Some(files)) => {
+                one(args, (stage, files), (&current, &guard), &mut changes)
+            }
             _ => changes.wait(),
         };
         if !go_on {
@@ -87,19 +91,24 @@ fn take(
     changes: &mut Changes,
 ) -> Result<Option<DiskFiles>, Failure> {
     changes.expect(loaded.files.asked())?;
-    report::diagnostics(&loaded.diagnostics, &loaded.sources, Form::Text, Stream::Error);
+    report::diagnostics(&loaded.diagnostics, &loaded.sources, Form::Text, Stream::Error)?;
     let Loaded { stage: Some(stage), files, .. } = loaded else { return Ok(None) };
     *last_good = Some(stage);
     Ok(Some(files))
 }
 
 /// Renders until done, or until a save or Ctrl-C; then waits for the next one. False at the end.
-fn one(args: &Args, scene: (&Stage, &DiskFiles), current: &Current, changes: &mut Changes) -> bool {
+fn one(
+    args: &Args,
+    scene: (&Stage, &DiskFiles),
+    (current, guard): (&Current, &Guard),
+    changes: &mut Changes,
+) -> bool {
     let control = Arc::new(Control::default());
     current.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&control);
     std::thread::scope(|scope| {
         let rendering = scope.spawn(|| {
-            if let Err(failure) = render(args, scene, &control) {
+            if let Err(failure) = render(args, scene, (&control, guard)) {
                 report::failure(&failure);
             }
         });
@@ -111,31 +120,39 @@ fn one(args: &Args, scene: (&Stage, &DiskFiles), current: &Current, changes: &mu
     })
 }
 
-fn render(args: &Args, scene: (&Stage, &DiskFiles), control: &Control) -> Result<(), Failure> {
+fn render(
+    args: &Args,
+    scene: (&Stage, &DiskFiles),
+    (control, guard): (&Control, &Guard),
+) -> Result<(), Failure> {
     let (stage, files) = scene;
     let film_file = stage.film.file.as_deref();
     let output = Output::choose(args.render.output.as_deref(), film_file, &args.file)?;
     output.check(files)?;
+    guard.measuring();
     let options = args.render.options();
     let of = (args.file.as_path(), stage);
     if options.samples(stage) > COARSE {
         let coarse = Options { spp: Some(1), ..options.clone() };
         let first = measure::measure(of, &coarse, control, false)?;
         if first.outcome == Outcome::Complete {
+            let _whole = guard.saving();
             picture::preview(&output, &first.film, &stage.film)?;
         }
     }
     // The coarse picture's samples are already counted.
+    guard.measuring();
     let before = control.samples_done();
     let Measured { film, outcome, seconds } = measure::measure(of, &options, control, !args.quiet)?;
     if outcome == Outcome::Cancelled {
         return Ok(());
     }
+    let _whole = guard.saving();
     let samples = control.samples_done() - before;
     let summary = Summary::new(scene, &options, (&film, outcome), (seconds, samples));
     picture::write(&output, &film, &stage.film, &summary.notes())?;
     if !args.quiet {
-        report::out(&summary.text(&output));
+        report::out(&summary.text(&output))?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Every built-in plugin: one folder per kind, one file per plugin. They see the SDK alone.
 
+mod sniff;
 mod shape;
 mod material;
 mod texture;

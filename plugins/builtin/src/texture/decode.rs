@@ -1,12 +1,15 @@
 //! Picture files, kept as compactly as they are.
 
-use std::io::Cursor;
+use std::error::Error;
+use std::io::{self, Cursor};
 use std::ops::{Add, Mul};
 
-use ::image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use ::image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
 use glam::Vec3;
 use luxel_sdk::Choice;
 use luxel_sdk::color::{RgbSpace, srgb_decode};
+
+use crate::sniff;
 
 /// The largest side that is read, pixels.
 const MAX_SIDE: u32 = 1 << 16;
@@ -84,23 +87,85 @@ pub(crate) struct Pixels {
 }
 
 /// Decodes PNG, JPEG, HDR or EXR.
+///
+/// # Errors
+/// What the file is and what is wrong with it; the decoder's own words stand in brackets.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| error.to_string())?;
-    match reader.format() {
-        Some(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Hdr | ImageFormat::OpenExr) => {}
-        Some(_) => return Err("not a PNG, JPEG, HDR or EXR file".to_owned()),
-        None => return Err("not a picture: PNG, JPEG, HDR and EXR can be read".to_owned()),
+    let format = ::image::guess_format(bytes).ok();
+    let name = match format {
+        Some(ImageFormat::Png) => "PNG",
+        Some(ImageFormat::Jpeg) => "JPEG",
+        Some(ImageFormat::Hdr) => "HDR",
+        Some(ImageFormat::OpenExr) => "EXR",
+        _ => {
+            let found = sniff::what(bytes);
+            return Err(format!("not a picture that can be read but {found}; {READABLE}"));
+        }
+    };
+    if name == "JPEG" && !has_end(bytes) {
+        return Err(format!("a JPEG picture that {CUT}"));
     }
+    let mut reader = ImageReader::new(Cursor::new(bytes));
+    reader.set_format(format.expect("it has just been named"));
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
     let room = (bytes.len() as u64).saturating_mul(MAX_BYTES.1).saturating_add(MAX_BYTES.0);
     limits.max_alloc = Some(room.min(MAX_ALLOC));
     reader.limits(limits);
-    let picture = reader.decode().map_err(|error| error.to_string())?;
-    Pixels::new(picture).ok_or_else(|| "a picture without pixels".to_owned())
+    let picture = reader
+        .decode()
+        .map_err(|error| format!("{} {name} picture {}", article(name), wrong(bytes, &error)))?;
+    Pixels::new(picture).ok_or_else(|| format!("{} {name} picture without pixels", article(name)))
+}
+
+const READABLE: &str = "PNG, JPEG, HDR (Radiance) and EXR are";
+const CUT: &str = "ends too early: copy or export it again";
+
+/// What the EXR decoder makes of a file's early end.
+const EXR_CUT: &str = "missing bytes";
+
+fn article(name: &str) -> &'static str {
+    if name == "PNG" || name == "JPEG" { "a" } else { "an" }
+}
+
+/// What a decoder's complaint means, as the end of a sentence that begins with the picture.
+fn wrong(bytes: &[u8], error: &ImageError) -> String {
+    let detail = causes(error).last().map(ToString::to_string).unwrap_or_default();
+    match error {
+        ImageError::Limits(_) => format!(
+            "that claims more pixels than are read: at most {MAX_SIDE} on a side, and as many as its \
+             {} bytes can stand for",
+            bytes.len()
+        ),
+        ImageError::Unsupported(_) => {
+            format!("of a kind that is not read ({detail}): save it as RGB, or as PNG")
+        }
+        _ if is_cut(bytes, error) || detail.contains(EXR_CUT) => format!("that {CUT}"),
+        _ => format!("that is damaged ({detail}): copy or export it again"),
+    }
+}
+
+/// An error, then what lies behind it.
+fn causes(error: &ImageError) -> impl Iterator<Item = &(dyn Error + 'static)> {
+    let first: &(dyn Error + 'static) = error;
+    std::iter::successors(Some(first), |error| (**error).source())
+}
+
+fn is_cut(bytes: &[u8], error: &ImageError) -> bool {
+    let is_end = |io: &io::Error| io.kind() == io::ErrorKind::UnexpectedEof;
+    let early = match error {
+        // Passes over itself where it names its source.
+        ImageError::IoError(io) => is_end(io),
+        _ => causes(error).any(|cause| cause.downcast_ref::<io::Error>().is_some_and(is_end)),
+    };
+    early || bytes.starts_with(b"\x89PNG") && !bytes.windows(4).rev().any(|word| word == b"IEND")
+}
+
+/// Whether a JPEG's last scan has an end: decoders fill up with grey what is missing.
+fn has_end(bytes: &[u8]) -> bool {
+    let last = |marker: u8| bytes.windows(2).rposition(|pair| pair == [0xff, marker]);
+    last(0xd9) > last(0xda)
 }
 
 impl Pixels {
@@ -277,20 +342,37 @@ mod tests {
             let whole = encoded(format);
             for cut in (0..whole.len()).step_by(whole.len() / 40 + 1) {
                 let read = decode(&whole[..cut]);
-                assert!(read.is_err() || format == ImageFormat::Jpeg, "{format:?} {cut}");
+                let told = read.err().unwrap_or_else(|| panic!("{format:?} {cut}"));
+                assert!(told.contains("picture"), "{told}");
                 let mut changed = whole.clone();
                 changed[cut] ^= 0x55;
                 drop(decode(&changed));
             }
         }
-        assert!(decode(b"hello").err().unwrap().contains("not a picture"));
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_picture_is_said_in_words() {
+        for (format, name) in FORMATS.into_iter().zip(["a PNG", "a JPEG", "an HDR", "an EXR"]) {
+            let whole = encoded(format);
+            let cut = decode(&whole[..whole.len() * 3 / 4]).err().unwrap();
+            assert!(cut.starts_with(&format!("{name} picture that ends too early")), "{cut}");
+        }
+        let mut damaged = encoded(ImageFormat::Png);
+        damaged[20] ^= 0x55;
+        let told = decode(&damaged).err().unwrap();
+        assert!(told.starts_with("a PNG picture that is damaged ("), "{told}");
+        let told = |bytes: &[u8]| decode(bytes).err().unwrap();
+        assert!(told(b"v 0 0 0\n").contains("but text; PNG, JPEG"), "{}", told(b"v 0 0 0\n"));
+        assert!(told(b"GIF89a..").contains("a GIF picture"), "{}", told(b"GIF89a.."));
     }
 
     #[test]
     fn a_small_file_cannot_claim_a_large_picture() {
         for size in [100_000, 60_000] {
             let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {size} +X {size}\n");
-            assert!(decode(header.as_bytes()).is_err());
+            let told = decode(header.as_bytes()).err().unwrap();
+            assert!(told.contains("more pixels than are read: at most 65536"), "{told}");
         }
     }
 

@@ -87,9 +87,10 @@ pub(crate) struct Image<'a> {
 
 impl Build<Pixels> for Image<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Pixels, Vec<Fault>> {
+        let path = self.file.path.get();
         let fault = |message: String| vec![Fault::file("file", message)];
-        let bytes = context.read(self.file.path.get()).map_err(fault)?;
-        let mut pixels = decode(&bytes).map_err(fault)?;
+        let bytes = context.read(path).map_err(fault)?;
+        let mut pixels = decode(&bytes).map_err(|message| fault(format!("{path}: {message}")))?;
         pixels.decode_srgb(match self.space {
             Space::Auto => pixels.is_integer(),
             Space::Srgb => true,

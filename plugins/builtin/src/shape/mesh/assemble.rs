@@ -1,6 +1,7 @@
 //! From points as read to a mesh in metres about its own centre.
 
 use std::collections::HashMap;
+use std::fmt;
 
 use glam::{DMat3, DVec3, Vec3};
 use luxel_sdk::kind::TriangleMesh;
@@ -25,25 +26,30 @@ impl Axes {
     /// single precision. Walks over them twice and keeps only the result.
     ///
     /// # Errors
-    /// The first point that is not finite, or too far from the centre for single precision.
-    pub(super) fn rebase<I>(self, points: I) -> Result<TriangleMesh, String>
+    /// The first point that is not finite; where single precision does not reach from the centre
+    /// to all, the point farthest out.
+    pub(super) fn rebase<I>(self, points: I) -> Result<TriangleMesh, BadPoint>
     where
         I: Iterator<Item = DVec3> + Clone,
     {
         let mut bounds = Bounds3::EMPTY;
         for (i, p) in points.clone().enumerate() {
             if !p.is_finite() {
-                return Err(format!("point {i} is not finite: {p}"));
+                return Err(BadPoint {
+                    i,
+                    p,
+                    what: "has a coordinate that is not a finite number",
+                });
             }
             bounds = Bounds3 { min: bounds.min.min(p), max: bounds.max.max(p) };
         }
         let middle = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
         let centre = self.turn * (middle * self.unit);
         let mut out = Vec::with_capacity(points.size_hint().0);
-        for (i, p) in points.enumerate() {
+        for (i, p) in points.clone().enumerate() {
             let local = (self.turn * ((p - middle) * self.unit)).as_vec3();
             if !(local.is_finite() && centre.is_finite()) {
-                return Err(format!("point {i} is beyond every measure: {p}"));
+                return Err(farthest(points).unwrap_or(BadPoint { i, p, what: TOO_FAR }));
             }
             out.push(local);
         }
@@ -58,6 +64,40 @@ impl Axes {
         let n = n.as_dvec3();
         (self.turn * n / n.abs().max_element()).try_normalize().unwrap_or(DVec3::ZERO).as_vec3()
     }
+}
+
+/// A point that no mesh can hold.
+#[derive(Debug)]
+pub(super) struct BadPoint {
+    /// Which one, counted from 0.
+    i: usize,
+    /// As it was read.
+    pub(super) p: DVec3,
+    /// What is wrong with it, as the end of a sentence.
+    pub(super) what: &'static str,
+}
+
+impl fmt::Display for BadPoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.p.to_array();
+        write!(f, "point {} at ({x:e}, {y:e}, {z:e}) {}", self.i, self.what)
+    }
+}
+
+impl From<BadPoint> for String {
+    fn from(bad: BadPoint) -> Self {
+        bad.to_string()
+    }
+}
+
+/// Single precision ends at 3.4e38.
+const TOO_FAR: &str = "is too far out: a mesh reaches less than 3.4e38 m from its centre";
+
+/// The point with the largest coordinate.
+fn farthest(points: impl Iterator<Item = DVec3>) -> Option<BadPoint> {
+    let size = |p: &DVec3| p.abs().max_element();
+    let far = points.enumerate().max_by(|(_, p), (_, q)| size(p).total_cmp(&size(q)));
+    far.map(|(i, p)| BadPoint { i, p, what: TOO_FAR })
 }
 
 /// Adds a polygon as a fan about its first corner.

@@ -23,7 +23,7 @@ pub(super) fn build(mesh: &Mesh<'_>) -> Result<TriangleMesh, Vec<Fault>> {
     let axes = Axes { turn: mesh.up.turn(), ..Axes::METRES };
     let indices = triangles(corners, points.len(), &mut faults);
     let rebased = axes.rebase(points.iter().map(|p| DVec3::from_array(*p)));
-    let rebased = rebased.map_err(|message| faults.push(Fault::mesh("points", message)));
+    let rebased = rebased.map_err(|bad| faults.push(Fault::mesh("points", bad.to_string())));
     let (Ok(mut out), true) = (rebased, faults.is_empty()) else { return Err(faults) };
     out.indices = indices;
     out.normals = normals

@@ -26,9 +26,12 @@ pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
     let loaded = tobj::load_obj_buf(&mut &text[..], &OPTIONS, |_| Ok(Default::default()));
     let (models, _) = loaded.map_err(|error| error.to_string().to_lowercase())?;
     let meshes: Vec<_> = models.into_iter().map(|model| model.mesh).collect();
-    let mut out = axes.rebase(
-        meshes.iter().flat_map(|m| m.positions.as_chunks().0).map(|p| DVec3::from_array(*p)),
-    )?;
+    let points = meshes.iter().flat_map(|m| m.positions.as_chunks().0);
+    let rebased = axes.rebase(points.map(|p| DVec3::from_array(*p)));
+    let mut out = rebased.map_err(|bad| match line_of(&text, bad.p) {
+        Some(line) => format!("line {line}: this point {}", bad.what),
+        None => bad.to_string(),
+    })?;
     let any_normals = meshes.iter().any(|m| !m.normals.is_empty());
     let any_uvs = meshes.iter().any(|m| !m.texcoords.is_empty());
     for mesh in &meshes {
@@ -62,9 +65,26 @@ fn triangles(meshes: &[tobj::Mesh]) -> Result<Vec<[u32; 3]>, String> {
         start = next.ok_or("more than 4,294,967,295 corners")?;
     }
     if out.is_empty() {
-        return Err("a mesh without a triangle".to_owned());
+        return Err("an OBJ file without a face (no line `f 1 2 3`)".to_owned());
     }
     Ok(out)
+}
+
+/// The line, counted from 1, that gives a point.
+fn line_of(text: &[u8], p: DVec3) -> Option<usize> {
+    let given = |line: &[u8]| {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let number = |word: &[u8]| str::from_utf8(word).ok()?.parse::<f64>().ok();
+        let is_point = words.next() == Some(b"v");
+        // Compared by their bits, as no NaN equals itself.
+        let same = |x: f64| words.next().and_then(number).is_some_and(|y| alike(x, y));
+        is_point && p.to_array().into_iter().map(same).all(|same| same)
+    };
+    text.split(|b| *b == b'\n').position(given).map(|i| i + 1)
+}
+
+fn alike(a: f64, b: f64) -> bool {
+    a.total_cmp(&b).is_eq() || a.is_nan() && b.is_nan()
 }
 
 /// Finds the first face that names a corner which does not exist.

@@ -12,6 +12,7 @@ use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
 use luxel_sdk::{Choice, Params};
 
 use super::up::Up;
+use crate::sniff;
 
 /// What is done about shading normals.
 #[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +83,10 @@ impl Build<TriangleMesh> for Mesh<'_> {
             if bytes.starts_with(b"ply") {
                 ply::read(&bytes, frame).map_err(fault)?
             } else if has_extension(path, "ply") {
-                return Err(fault("not a PLY file: it does not begin with `ply`".to_owned()));
+                let found = sniff::what(&bytes);
+                return Err(fault(format!("not a PLY file, which begins with `ply`, but {found}")));
+            } else if let Some(told) = stranger(&bytes) {
+                return Err(fault(told));
             } else {
                 obj::read(&bytes, frame).map_err(fault)?
             }
@@ -95,6 +99,17 @@ impl Build<TriangleMesh> for Mesh<'_> {
         }
         Ok(mesh)
     }
+}
+
+/// What is said of bytes that are no OBJ file, which is text and has no beginning of its own.
+fn stranger(bytes: &[u8]) -> Option<String> {
+    let found = sniff::what(bytes);
+    let help = match found {
+        "text" => return None,
+        found if found.contains("glTF") => "place it as an asset: `let a = asset gltf { … }`",
+        _ => "as meshes, OBJ and PLY files are read",
+    };
+    Some(format!("not a mesh but {found}: {help}"))
 }
 
 fn has_extension(path: &str, wanted: &str) -> bool {

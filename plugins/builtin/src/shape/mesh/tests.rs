@@ -110,7 +110,11 @@ fn tables_that_do_not_fit_are_refused_together() {
         Mesh { points: Table::new(&points), indices: Table::new(&[0., 1., 2.]), ..square() },
         b"",
     );
-    assert!(fault(found).2.starts_with("point 1 is not finite"));
+    assert!(
+        fault(found)
+            .2
+            .starts_with("point 1 at (1e0, inf, 0e0) has a coordinate that is not a finite")
+    );
     assert!(load(Mesh { indices: Table::new(&[]), ..square() }, b"").is_err());
 }
 
@@ -158,6 +162,20 @@ fn quads_and_polygons_of_an_obj_become_fans() {
 }
 
 #[test]
+fn files_that_are_no_meshes_are_told_by_what_they_are() {
+    for (bytes, expected) in [
+        (&b"\x89PNG\r\n\x1a\n"[..], "not a mesh but a PNG picture: as meshes, OBJ and PLY"),
+        (b"\xff\xd8\xff\xe0", "a JPEG picture"),
+        (b"glTF\x02\0\0\0", "a binary glTF file: place it as an asset"),
+        (b"{ \"asset\": 1 }", "place it as an asset"),
+        (b"v 0 0 0\0\0", "not a mesh but binary data"),
+    ] {
+        let told = fault(load(params("a.obj"), bytes)).2;
+        assert!(told.contains(expected), "{told}");
+    }
+}
+
+#[test]
 fn damaged_objs_are_refused_with_their_line() {
     let v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (text, expected) in [
@@ -170,10 +188,21 @@ fn damaged_objs_are_refused_with_their_line() {
             "a.obj: line 4: `99999999999999999999` is no index of a v",
         ),
         ("f 1//1 2 3\n", "a.obj: line 4: vn 1 of 0"),
-        ("l 1 2\n", "a.obj: a mesh without a triangle"),
-        ("", "a.obj: a mesh without a triangle"),
-        ("v 1e400 0 0\nf 1 2 4\n", "a.obj: point 2 is not finite: [inf, 0, 0]"),
-        ("v nan 0 0\nf 4 2 1\n", "a.obj: point 0 is not finite: [NaN, 0, 0]"),
+        ("l 1 2\n", "a.obj: an OBJ file without a face (no line `f 1 2 3`)"),
+        ("", "a.obj: an OBJ file without a face (no line `f 1 2 3`)"),
+        (
+            "v 1e400 0 0\nf 1 2 4\n",
+            "a.obj: line 4: this point has a coordinate that is not a finite number",
+        ),
+        (
+            "v nan 0 0\nf 4 2 1\n",
+            "a.obj: line 4: this point has a coordinate that is not a finite number",
+        ),
+        (
+            "v 0 0 -1e300\nf 1 2 4\n",
+            "a.obj: line 4: this point is too far out: a mesh reaches less than 3.4e38 m from \
+             its centre",
+        ),
     ] {
         let found = load(params("a.obj"), format!("{v}{text}").as_bytes());
         assert_eq!(fault(found), ("file", "E0413", expected.to_owned()), "{text}");
@@ -250,7 +279,9 @@ fn damaged_plys_are_refused() {
         assert!(fault(ply_file(text.as_bytes())).2.contains("do not fit"), "{format}");
     }
     let nan = text_ply("0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2");
-    assert!(fault(ply_file(&nan)).2.starts_with("a.ply: point 1 is not finite"));
+    assert!(
+        fault(ply_file(&nan)).2.starts_with("a.ply: point 1 at (1e0, 0e0, NaN) has a coordinate")
+    );
     assert!(fault(ply_file(b"o hello")).2.contains("not a PLY file"));
 }
 

@@ -8,6 +8,7 @@ use gltf::json::{Index, Root, buffer, image};
 use luxel_sdk::params::BuildContext;
 
 use super::{EXTENSIONS, uri};
+use crate::sniff;
 
 /// What a file may unfold to: numbers for each byte of its buffers. A sound file has at most one;
 /// accessors that share bytes have more.
@@ -22,6 +23,8 @@ pub(super) struct Source<'a> {
     /// The description.
     pub(super) root: Root,
     buffers: Vec<Arc<[u8]>>,
+    /// Extensions that the file both declares and uses, and that are not understood.
+    strange: Vec<String>,
     /// Numbers that may still be made of it.
     budget: Cell<u64>,
 }
@@ -38,7 +41,14 @@ impl<'a> Source<'a> {
     ) -> Result<Self, Vec<String>> {
         let (json, bin) = split(bytes).map_err(|message| vec![message])?;
         let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&json);
-        let root = Root::from_slice(json).map_err(|error| vec![format!("JSON: {error}")])?;
+        if json.iter().find(|b| !b.is_ascii_whitespace()) != Some(&b'{') {
+            let found = sniff::what(json);
+            return Err(vec![format!(
+                "not glTF, which is JSON or begins with `glTF`, but {found}"
+            )]);
+        }
+        let root = Root::from_slice(json)
+            .map_err(|error| vec![format!("its JSON is damaged or not glTF 2.0 ({error})")])?;
         let unknown: Vec<String> = root
             .extensions_required
             .iter()
@@ -49,7 +59,9 @@ impl<'a> Source<'a> {
             return Err(unknown);
         }
         let budget = Cell::new(0);
-        let mut out = Self { path, context, root, buffers: vec![], budget };
+        let strange = |name: &&String| !EXTENSIONS.contains(&name.as_str()) && is_used(json, name);
+        let strange = root.extensions_used.iter().filter(strange).cloned().collect();
+        let mut out = Self { path, context, root, buffers: vec![], strange, budget };
         let mut faults = vec![];
         for (i, buffer) in out.root.buffers.iter().enumerate() {
             let bin = if i == 0 { bin.as_deref() } else { None };
@@ -136,10 +148,8 @@ impl<'a> Source<'a> {
     /// What the file holds that is not supported.
     pub(super) fn warnings(&self) -> Vec<String> {
         let mut out = vec![];
-        for name in &self.root.extensions_used {
-            if !EXTENSIONS.contains(&name.as_str()) {
-                out.push(format!("the extension `{name}` is not supported: it is passed over"));
-            }
+        for name in &self.strange {
+            out.push(format!("the extension `{name}` is not supported: it is passed over"));
         }
         if !self.root.animations.is_empty() {
             out.push("animations are not supported: the file's rest pose is used".to_owned());
@@ -149,6 +159,18 @@ impl<'a> Source<'a> {
         }
         out
     }
+}
+
+/// Whether anything in the file gives this extension: whether its name stands before a colon.
+/// Exporters declare more than they use.
+fn is_used(json: &[u8], name: &str) -> bool {
+    let key = format!("\"{name}\"");
+    let is_key = |at: usize| {
+        let after = json[at + key.len()..].iter().find(|b| !b.is_ascii_whitespace());
+        after == Some(&b':')
+    };
+    let places = json.windows(key.len()).enumerate();
+    places.filter(|(_, word)| *word == key.as_bytes()).any(|(at, _)| is_key(at))
 }
 
 /// Part of `bytes`; `None` beyond their end.

@@ -313,3 +313,25 @@ fn no_cut_or_flipped_byte_is_fatal() {
         let _ = import_with(params(), &damaged);
     }
 }
+
+#[test]
+fn extensions_that_are_declared_and_not_used_are_no_reason_to_warn() {
+    let declared = r#""extensionsUsed":["KHR_materials_unlit"],"scenes":[{"nodes":[]}]"#;
+    assert_eq!(import(&file(declared)).unwrap().warnings, [""; 0]);
+    let used =
+        format!(r#"{declared},"materials":[{{"extensions":{{"KHR_materials_unlit" : {{}}}}}}]"#);
+    let found = import(&file(&used)).unwrap().warnings;
+    assert!(found[0].contains("KHR_materials_unlit"), "{found:?}");
+}
+
+#[test]
+fn files_that_are_no_gltf_are_told_by_what_they_are() {
+    for (bytes, expected) in [
+        (&b"\x89PNG\r\n\x1a\n"[..], "but a PNG picture"),
+        (b"v 0 0 0\n", "but text"),
+        (b"{ \"asset\": ", "its JSON is damaged"),
+    ] {
+        let faults = import_with(params(), bytes).unwrap_err();
+        assert!(faults[0].message.contains(expected), "{}", faults[0].message);
+    }
+}

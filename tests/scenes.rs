@@ -26,6 +26,7 @@ fn every_shipped_scene_says_what_it_shows_and_renders() {
         scene.set_resolution(SIZE);
         let built = stage::build(&scene, &registry, &OnDisk, None)
             .unwrap_or_else(|said| panic!("{name}: {:?}", told(&said)));
+        assert!(built.warnings.is_empty(), "{name}: {:?}", told(&built.warnings));
         let options = Options { spp: Some(4), ..Options::default() };
         let (film, _) = render(&built.stage, &options, &Control::default());
         let (mean, _) = film.mean();

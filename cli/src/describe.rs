@@ -1,6 +1,7 @@
 //! `luxel describe`: the manual page of one plugin.
 
 use luxel_core::registry::{Entry, Registry, common_params};
+use luxel_core::scene::{number_words, range_words};
 use luxel_sdk::params::{Param, Preset, Type};
 use serde_json::{Value, json};
 
@@ -68,7 +69,7 @@ fn facts(param: &Param) -> Vec<String> {
     if !param.unit.is_empty() {
         facts.push(format!("in {}", param.unit.replace('|', " or ")));
     }
-    facts.extend(range(param));
+    facts.extend(range_words(param));
     if !param.choices.is_empty() {
         facts.push(format!("one of {}", param.choices.join(", ")));
     }
@@ -110,17 +111,6 @@ fn what(param: &Param) -> String {
     }
 }
 
-/// `[0, 1]`, `at least 0` in SI units; `None` if anything goes.
-fn range(param: &Param) -> Option<String> {
-    let Param { min, max, .. } = *param;
-    match (min.is_finite(), max.is_finite()) {
-        (true, true) => Some(format!("from {min} to {max}")),
-        (true, false) => Some(format!("at least {min}")),
-        (false, true) => Some(format!("at most {max}")),
-        (false, false) => None,
-    }
-}
-
 fn default(param: &Param) -> Option<String> {
     match param.default {
         Preset::Absent => None,
@@ -135,9 +125,9 @@ fn numbers_of(ty: Type, numbers: [f64; 4]) -> String {
         Type::Vec2 => 2,
         Type::Vec3 | Type::DVec3 => 3,
         Type::Bool => return (numbers[0] > 0.0).to_string(),
-        _ => return numbers[0].to_string(),
+        _ => return number_words(numbers[0]),
     };
-    format!("({})", numbers[..n].iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
+    format!("({})", numbers[..n].iter().map(|x| number_words(*x)).collect::<Vec<_>>().join(", "))
 }
 
 fn object(entry: &Entry) -> Value {
@@ -182,7 +172,7 @@ mod tests {
         for part in [
             "shape sphere (builtin)",
             "shape sphere \"ball\"",
-            "radius: number, in m, at least 0, required",
+            "radius: number, in m, more than 0, required",
             "center: three numbers, in m, default (0, 0, 0)",
             "material: material, optional",
         ] {

@@ -4,12 +4,15 @@
 //! their own spans.
 
 mod color;
+mod range;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look, Param, Role, Type, Unit};
+
+pub use range::{number_words, range_words};
 
 use super::{Color, NodeId, Value};
 use crate::diag::nearest;
@@ -235,14 +238,11 @@ fn in_range(param: &Param, x: f64, place: &str) -> Result<(), Misfit> {
     } else {
         dimensions(param).next().map(|d| format!(" {d}")).unwrap_or_default()
     };
-    let legal = match (param.min.is_finite(), param.max.is_finite()) {
-        (true, true) => format!("from {} to {}{unit}", param.min, param.max),
-        (true, false) => format!("at least {}{unit}", param.min),
-        _ => format!("at most {}{unit}", param.max),
-    };
     let reflectance = param.role == Role::Reflectance && x > param.max;
     let code = if reflectance { "E0210" } else { "E0405" };
-    let message = format!("`{}`{place} is {x}{unit}; it must be {legal}", param.name);
+    let legal = range_words(param).unwrap_or_default();
+    let x = number_words(x);
+    let message = format!("`{}`{place} is {x}{unit}; it must be {legal}{unit}", param.name);
     Err(Misfit::new(code, message))
 }
 
@@ -256,17 +256,18 @@ fn number(
     let x = x * scale;
     if param.ty == Type::Int && x.is_finite() {
         if x.fract().abs() > 0.0 {
-            let message = format!("`{}` wants a whole number, not {x}", param.name);
+            let message = format!("`{}` wants a whole number, not {}", param.name, number_words(x));
             return Err(Misfit::new("E0208", message));
         }
         if !(0.0..=f64::from(u32::MAX)).contains(&x) {
-            let message = format!("`{}` is {x}; it must be from 0 to {}", param.name, u32::MAX);
+            let found = number_words(x);
+            let message = format!("`{}` is {found}; it must be from 0 to {}", param.name, u32::MAX);
             return Err(Misfit::new("E0405", message));
         }
     }
     let single = !matches!(param.ty, Type::Double | Type::Int);
     if single && x.abs() > f64::from(f32::MAX) {
-        let message = format!("`{}` is too large: {x}", param.name);
+        let message = format!("`{}` is too large: {}", param.name, number_words(x));
         return Err(Misfit::new("E0405", message));
     }
     in_range(param, x, "")?;

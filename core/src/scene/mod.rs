@@ -18,7 +18,9 @@ use crate::diag::{SourceId, Span};
 use crate::registry::common_params;
 
 pub use color::Color;
-pub use conform::{DefaultUnits, Given, Misfit, conform, describe, wanted};
+pub use conform::{
+    DefaultUnits, Given, Misfit, conform, describe, number_words, range_words, wanted,
+};
 pub use print::print;
 pub use value::{Hash, Value};
 

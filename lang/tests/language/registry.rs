@@ -23,7 +23,7 @@ struct Sphere {
     #[param(default = [0.0; 3], unit = "m")]
     center: glam::DVec3,
     /// Its radius.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     radius: f64,
     /// The radius under its old name.
     #[param(optional, unit = "m", deprecated = "radius")]

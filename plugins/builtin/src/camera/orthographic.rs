@@ -23,7 +23,7 @@ pub(crate) struct Orthographic {
     #[param(required)]
     look: Look,
     /// What the picture shows from bottom to top.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     height: f64,
     #[param(derived)]
     axes: DMat3,

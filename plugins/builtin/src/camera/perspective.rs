@@ -24,10 +24,13 @@ pub(crate) struct Perspective {
     #[param(required)]
     look: Look,
     /// Angle of view along `fov_axis`, between 0 and 180 degrees.
-    #[param(optional, unit = "rad", min = 0, max = std::f64::consts::PI, group = "view")]
+    #[param(
+        optional, unit = "rad", min = f64::MIN_POSITIVE, max = std::f64::consts::PI,
+        group = "view"
+    )]
     fov: f64,
     /// Distance of the sensor from the pinhole.
-    #[param(optional, unit = "m", min = 0, group = "view")]
+    #[param(optional, unit = "m", min = f64::MIN_POSITIVE, group = "view")]
     focal_length: f64,
     /// Width and height of the sensor, for `focal_length`; full frame by default. If its shape
     /// differs from the picture's, its side along `fov_axis` counts.

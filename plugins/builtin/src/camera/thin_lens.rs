@@ -25,10 +25,13 @@ pub(crate) struct ThinLens {
     #[param(required)]
     look: Look,
     /// Angle of view along `fov_axis`, between 0 and 180 degrees.
-    #[param(optional, unit = "rad", min = 0, max = std::f64::consts::PI, group = "view")]
+    #[param(
+        optional, unit = "rad", min = f64::MIN_POSITIVE, max = std::f64::consts::PI,
+        group = "view"
+    )]
     fov: f64,
     /// Focal length of the lens.
-    #[param(optional, unit = "m", min = 0, group = "view")]
+    #[param(optional, unit = "m", min = f64::MIN_POSITIVE, group = "view")]
     focal_length: f64,
     /// Width and height of the sensor; full frame by default. With `fov` it says how long, and so
     /// how wide, the lens of an `f_number` is.
@@ -50,7 +53,7 @@ pub(crate) struct ThinLens {
     #[param(optional, unit = "m", min = 0, group = "opening")]
     aperture: f64,
     /// Distance along the view at which the picture is sharp.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     focus: f64,
     #[param(derived)]
     axes: DMat3,

@@ -22,7 +22,7 @@ pub(crate) struct Obj<'a> {
     #[param(required)]
     file: File<'a>,
     /// Length of one unit of the file; greater than 0.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     unit: f64,
     /// Which axis of the file is up.
     #[param(choice, default = Up::Y)]

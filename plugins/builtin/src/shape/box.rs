@@ -24,7 +24,7 @@ pub(crate) struct Box {
     #[param(default = [0.0, 0.0, 0.0], unit = "m")]
     pub(crate) center: DVec3,
     /// Whole edges along x, y and z; each greater than 0.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     pub(crate) size: DVec3,
 }
 

@@ -26,10 +26,10 @@ pub(crate) struct Cylinder {
     #[param(default = [0.0, 1.0, 0.0])]
     pub(crate) axis: DVec3,
     /// Greater than 0.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     pub(crate) radius: f64,
     /// From the base to the top; greater than 0.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     pub(crate) height: f64,
     /// Whether both ends are closed by disks.
     #[param(default = false)]

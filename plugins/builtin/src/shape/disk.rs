@@ -26,7 +26,7 @@ pub(crate) struct Disk {
     #[param(default = [0.0, 1.0, 0.0])]
     pub(crate) normal: DVec3,
     /// From the middle to the rim; greater than 0.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     pub(crate) radius: f64,
     /// Radius of the hole; less than `radius`.
     #[param(default = 0.0, unit = "m", min = 0)]

@@ -28,7 +28,7 @@ pub(crate) struct Sphere {
     #[param(default = [0.0, 0.0, 0.0], unit = "m")]
     pub(crate) center: DVec3,
     /// From the middle to the surface; greater than 0.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     pub(crate) radius: f64,
 }
 

@@ -45,7 +45,7 @@ pub(crate) struct Gltf<'a> {
     #[param(required)]
     file: File<'a>,
     /// Length of one unit of the file; the format says 1 m.
-    #[param(required, unit = "m", min = 0)]
+    #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     unit: f64,
     /// Which axis of the file is up; the format says y.
     #[param(choice, default = Up::Y)]

@@ -58,7 +58,7 @@ pub(crate) struct Mesh<'a> {
     #[param(optional, group = "geometry")]
     pub(crate) file: File<'a>,
     /// Length of one unit of the file; a file has to state it.
-    #[param(optional, unit = "m", min = 0)]
+    #[param(optional, unit = "m", min = f64::MIN_POSITIVE)]
     pub(crate) unit: f64,
     /// Which axis of the points is up.
     #[param(choice, default = Up::Y)]

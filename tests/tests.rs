@@ -1,6 +1,8 @@
 //! Whole-system tests.
 
 #[cfg(test)]
+mod assets;
+#[cfg(test)]
 mod bad_input;
 #[cfg(test)]
 mod cli;

@@ -20,15 +20,20 @@ pub(super) fn expand(
     registry: &Registry,
     files: &dyn Files,
 ) -> (Scene, Vec<Diagnostic>) {
-    let mut import = Import { registry, files, out: scene.clone(), done: BTreeMap::new() };
+    let (out, done, cameras) = (scene.clone(), BTreeMap::new(), BTreeMap::new());
+    let mut import = Import { registry, files, out, done, cameras };
     let mut diagnostics = vec![];
     for group in 0..scene.groups.len() {
         let mut items = std::mem::take(&mut import.out.groups[group].items);
         import.replace(scene, &mut items, &mut diagnostics);
+        import.first_camera(Some(GroupId(index(group))), &items);
         import.out.groups[group].items = items;
     }
     let mut items = std::mem::take(&mut import.out.root.items);
     import.replace(scene, &mut items, &mut diagnostics);
+    if let Some((camera, transform)) = import.first_camera(None, &items) {
+        import.camera(camera, transform);
+    }
     import.out.root.items = items;
     (import.out, diagnostics)
 }
@@ -38,6 +43,8 @@ struct Import<'a> {
     files: &'a dyn Files,
     out: Scene,
     done: BTreeMap<NodeId, Option<GroupId>>,
+    /// The first camera of each group that has one, in the group's frame.
+    cameras: BTreeMap<GroupId, (NodeId, DAffine3)>,
 }
 
 impl Import<'_> {
@@ -109,20 +116,39 @@ impl Import<'_> {
             ids.push(id);
         }
         let mut group = Group { label: asset.label.clone(), items: vec![] };
+        let mut camera = None;
         for (index, transform) in &imported.placed {
             let Some(id) = ids.get(*index).copied().flatten() else { continue };
             let (transform, span) = (*transform, asset.span);
             if self.out.node(id).kind == Kind::Camera {
-                self.camera(id, transform);
+                camera = camera.or(Some((id, transform)));
             } else {
                 let target = Target::Node(id);
                 group.items.push(Placed { target, transform, material: None, span });
             }
         }
-        self.group(group)
+        let id = self.group(group);
+        self.cameras.extend(camera.map(|camera| (id, camera)));
+        id
     }
 
-    /// An asset's camera counts where the scene gives none; the first one found.
+    /// The first camera among things in their places, in the frame that these stand in; kept for
+    /// the group. Groups are asked for before those that hold them.
+    fn first_camera(
+        &mut self,
+        group: Option<GroupId>,
+        items: &[Placed],
+    ) -> Option<(NodeId, DAffine3)> {
+        let found = items.iter().find_map(|item| {
+            let Target::Group(inner) = item.target else { return None };
+            let (id, transform) = *self.cameras.get(&inner)?;
+            Some((id, item.transform * transform))
+        });
+        self.cameras.extend(group.zip(found));
+        found
+    }
+
+    /// An asset's camera counts where the scene gives none; the first one that is placed.
     fn camera(&mut self, id: NodeId, transform: DAffine3) {
         if self.out.camera.is_some() {
             return;

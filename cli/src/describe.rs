@@ -2,24 +2,26 @@
 
 use luxel_core::registry::{Entry, Registry, common_params};
 use luxel_core::scene::{number_words, range_words};
+use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Preset, Type};
 use serde_json::{Value, json};
 
 use crate::exit::{Exit, Failure};
 use crate::list::{kind, unknown};
-use crate::{load, report};
+use crate::{load, report, words};
 
 /// Show the manual page of a plugin: what it is, and each parameter
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
   luxel describe shape sphere
+  luxel describe group
   luxel describe material diffuse --json")]
 pub(crate) struct Args {
     /// Its kind, as `luxel list` shows it
     kind: String,
-    /// Its name
-    name: String,
+    /// Its name; none for the language's own words, such as `group`
+    name: Option<String>,
     /// A JSON object
     #[arg(long)]
     json: bool,
@@ -27,14 +29,31 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let registry = load::registry();
-    let kind = kind(&args.kind)?;
-    let Some(entry) = registry.entry(kind, &args.name) else {
-        let names: Vec<_> = registry.of_kind(kind).map(|entry| entry.class.name).collect();
-        return Err(unknown(kind.word(), &args.name, &names));
+    let page = match (words::find(&args.kind), &args.name) {
+        (Some(word), None) if args.json => format!("{}\n", word.object()),
+        (Some(word), None) => word.page(),
+        (Some(word), Some(name)) => {
+            let message = format!("a `{}` has no kinds: there is no `{name}`", word.word);
+            let help = format!("luxel describe {}", word.word);
+            return Err(Failure::new(Exit::Input, message).help(help));
+        }
+        (None, name) => {
+            let entry = entry(&registry, kind(&args.kind)?, name.as_deref())?;
+            if args.json { format!("{}\n", object(entry)) } else { text(entry) }
+        }
     };
-    let page = if args.json { format!("{}\n", object(entry)) } else { text(entry) };
     report::out(&page)?;
     Ok(Exit::Fine)
+}
+
+fn entry<'r>(registry: &'r Registry, kind: Kind, name: Option<&str>) -> Result<&'r Entry, Failure> {
+    let names: Vec<_> = registry.of_kind(kind).map(|entry| entry.class.name).collect();
+    let Some(name) = name else {
+        let message = format!("which {kind}? its name is missing after `{kind}`");
+        let known = format!("known: {}", names.join(", "));
+        return Err(Failure::new(Exit::Usage, message).help(known));
+    };
+    registry.entry(kind, name).ok_or_else(|| unknown(kind.word(), name, &names))
 }
 
 fn text(entry: &Entry) -> String {
@@ -46,9 +65,17 @@ fn text(entry: &Entry) -> String {
         }
     }
     section(&mut page, "Parameters", class.params);
-    section(&mut page, "Of every object of this kind", common_params(class.kind));
+    let (own, common) = (words::fields_of(class.kind), common_params(class.kind));
+    section(&mut page, COMMON, common);
+    if common.is_empty() && !own.is_empty() {
+        page.extend(["\n", COMMON, ":\n"]);
+    }
+    words::describe(&mut page, own);
     page
 }
+
+/// Heads what every object of a kind may be given.
+const COMMON: &str = "Of every object of this kind";
 
 fn section(page: &mut String, title: &str, params: &[Param]) {
     if params.is_empty() {
@@ -132,12 +159,14 @@ fn numbers_of(ty: Type, numbers: [f64; 4]) -> String {
 
 fn object(entry: &Entry) -> Value {
     let class = &entry.class;
+    let own = Registry::params(class).map(parameter);
+    let parameters: Vec<_> = own.chain(words::parameters(words::fields_of(class.kind))).collect();
     json!({
         "kind": class.kind.word(),
         "name": class.name,
         "origin": entry.origin,
         "doc": class.doc.trim(),
-        "parameters": Registry::params(class).map(parameter).collect::<Vec<_>>(),
+        "parameters": parameters,
     })
 }
 
@@ -161,8 +190,6 @@ fn parameter(param: &Param) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use luxel_sdk::kind::Kind;
-
     use super::*;
 
     #[test]
@@ -175,6 +202,7 @@ mod tests {
             "radius: number, in m, more than 0, required",
             "center: three numbers, in m, default (0, 0, 0)",
             "material: material, optional",
+            "transform: list of rotate",
         ] {
             assert!(page.contains(part), "{part} in\n{page}");
         }

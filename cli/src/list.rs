@@ -5,6 +5,7 @@ use luxel_sdk::kind::Kind;
 use serde_json::json;
 
 use crate::exit::{Exit, Failure};
+use crate::words::{self, WORDS, Word};
 use crate::{load, report};
 
 /// List the plugins that a scene may name
@@ -16,7 +17,7 @@ Examples:
   luxel list --json")]
 pub(crate) struct Args {
     /// Only this kind: shape, material, texture, light, medium, phase, camera, sampler, filter,
-    /// integrator, asset, film
+    /// integrator, asset, film; group, place
     kind: Option<String>,
     /// A JSON array
     #[arg(long)]
@@ -24,9 +25,17 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let only = args.kind.as_deref().map(kind).transpose()?;
+    let word = args.kind.as_deref().and_then(words::find);
+    let only = args.kind.as_deref().filter(|_| word.is_none()).map(kind).transpose()?;
+    let told: &[Word] = match word {
+        Some(word) => std::slice::from_ref(word),
+        None if only.is_none() => &WORDS,
+        None => &[],
+    };
     let registry = load::registry();
-    let entries = registry.all().filter(|entry| only.is_none_or(|kind| entry.class.kind == kind));
+    let entries = registry
+        .all()
+        .filter(|entry| word.is_none() && only.is_none_or(|kind| entry.class.kind == kind));
     if args.json {
         let all = entries.map(|entry| {
             let class = &entry.class;
@@ -37,12 +46,23 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 "summary": summary(class.doc),
             })
         });
-        report::out(&format!("{}\n", all.collect::<serde_json::Value>()))?;
+        let words = told.iter().map(|word| {
+            json!({
+                "kind": word.word,
+                "name": "",
+                "origin": "language",
+                "summary": summary(word.doc),
+            })
+        });
+        report::out(&format!("{}\n", all.chain(words).collect::<serde_json::Value>()))?;
     } else {
         for entry in entries {
             let class = &entry.class;
             let (kind, summary) = (class.kind.word(), summary(class.doc));
             report::out(&format!("{kind:<11}{:<20} {summary}\n", class.name))?;
+        }
+        for word in told {
+            report::out(&format!("{:<11}{:<20} {}\n", word.word, "", summary(word.doc)))?;
         }
     }
     Ok(Exit::Fine)
@@ -54,7 +74,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 /// An unknown word, with the nearest and the known ones.
 pub(crate) fn kind(word: &str) -> Result<Kind, Failure> {
     Kind::of_word(word).ok_or_else(|| {
-        let words: Vec<_> = Kind::ALL.iter().map(|(_, word)| *word).collect();
+        let own = WORDS.iter().map(|word| word.word);
+        let words: Vec<_> = Kind::ALL.iter().map(|(_, word)| *word).chain(own).collect();
         unknown("kind", word, &words)
     })
 }

@@ -19,6 +19,7 @@ mod summary;
 #[cfg(test)]
 mod testing;
 mod watch;
+mod words;
 
 use std::process::ExitCode;
 

@@ -140,7 +140,14 @@ fn unknown_names_are_answered_with_the_nearest() {
     assert!(name.code == 1 && name.err.contains("did you mean `sphere`"), "{name:?}");
     let page = folder.luxel(&["describe", "shape", "sphere"]);
     assert!(page.code == 0 && page.out.contains("radius: number, in m"), "{page:?}");
+    let which = folder.luxel(&["describe", "shape"]);
+    assert!(which.code == 2 && which.err.contains("known: ") && which.err.contains("sphere"));
+    let group = folder.luxel(&["describe", "group"]);
+    assert!(group.code == 0 && group.out.contains("place pair"), "{group:?}");
+    let one = folder.luxel(&["list", "group"]);
+    assert!(one.code == 0 && one.out.starts_with("group ") && one.out.lines().count() == 1);
     let list = folder.luxel(&["list"]);
+    assert!(list.out.contains("\ngroup "), "{list:?}");
     assert!(list.code == 0 && list.out.contains("sphere") && list.out.contains("sobol"));
 }
 

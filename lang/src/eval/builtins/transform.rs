@@ -1,5 +1,6 @@
 //! Transforms and views.
 
+use std::ops::RangeInclusive;
 use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -16,6 +17,16 @@ pub(super) enum Transform {
     Scale,
     Matrix,
     LookAt,
+}
+
+/// Distances from a camera to what it looks at whose squares, and sums of them, are accurate.
+const VIEWS: RangeInclusive<f64> = 1e-150..=1e150;
+
+/// A vector made unit, whatever its length; `None` without a direction.
+fn direction(v: DVec3) -> Option<DVec3> {
+    let largest = v.abs().max_element();
+    let scaled = || (largest > 0.0 && v.is_finite()).then(|| (v / largest).normalize());
+    v.try_normalize().or_else(scaled)
 }
 
 impl Evaluator<'_> {
@@ -36,7 +47,7 @@ impl Evaluator<'_> {
     fn rotate(&mut self, call: &Call<'_>) -> Option<DAffine3> {
         let (axis, _, span) = self.vector_arg(call, 0)?;
         let angle = self.number_arg(call, 1, Dimension::ANGLE)?;
-        if let Some(axis) = DVec3::from_array(axis).try_normalize() {
+        if let Some(axis) = direction(DVec3::from_array(axis)) {
             Some(DAffine3::from_axis_angle(axis, angle))
         } else {
             self.poison("E0412", span, "the axis of a rotation has no direction");
@@ -83,18 +94,33 @@ impl Evaluator<'_> {
         let from = self.vector_of(call, 0, Dimension::LENGTH)?;
         let to = self.vector_of(call, 1, Dimension::LENGTH)?;
         let (up, _, _) = self.vector_arg(call, 2)?;
-        let up = DVec3::from_array(up);
-        let view = (to - from).try_normalize();
-        let Some(view) = view else {
-            self.poison("E0412", call.span, "`from` and `to` are the same point: there is no view");
+        let apart = to - from;
+        let Some(view) = direction(apart) else {
+            let same = from == to;
+            let wrong = if same { "the same point" } else { "farther apart than can be measured" };
+            let message = format!("`from` and `to` are {wrong}: there is no view");
+            self.poison("E0412", call.span, message);
             return None;
         };
+        let distance = apart.dot(view);
+        if !VIEWS.contains(&distance) {
+            let message = format!(
+                "`from` and `to` are {distance:e} m apart: a view is between {:e} m and {:e} m long",
+                VIEWS.start(),
+                VIEWS.end()
+            );
+            self.poison("E0412", call.span, message);
+            return None;
+        }
+        let up = DVec3::from_array(up);
         // Parallel to within the rounding of the cross product of unit vectors.
-        let side = up.try_normalize().map(|up| up.cross(view).length());
+        let side = direction(up).map(|up| up.cross(view).length());
         if side.is_none_or(|side| side <= 4.0 * f64::EPSILON) {
             self.poison("E0412", call.span, "`up` is parallel to the view, or zero");
             return None;
         }
+        // As written where its square is a number, else unit.
+        let up = if up.try_normalize().is_some() { Some(up) } else { direction(up) }?;
         Some(Value::Look(Rc::new(Look { from, to, up })))
     }
 

@@ -295,6 +295,16 @@ impl Resolver<'_> {
     }
 
     fn unknown(&self, name: &Name, joined: &str, span: Span) -> Diagnostic {
+        if let Some(label) = self.scopes.iter().rev().find_map(|s| s.labels.get(&name.text)) {
+            let text = &name.text;
+            let message = format!("`{text}` is a label, and labels name nothing but for `set`");
+            return Diagnostic::error("E0101", name.span, message).label(*label, "the label").help(
+                format!(
+                    "give the object a name, `let {text} = …`, and put it where it stood, and \
+                     anywhere else, with `place {text}`"
+                ),
+            );
+        }
         let dotted = builtins::names()
             .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
         let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };

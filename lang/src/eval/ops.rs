@@ -102,15 +102,57 @@ impl Evaluator<'_> {
     }
 
     fn equality(&mut self, op: Op, a: &Value, b: &Value, span: Span) -> Value {
-        let equal = match (a, b) {
-            (Value::Bool(a), Value::Bool(b)) => a == b,
-            (Value::Text(a), Value::Text(b)) => a == b,
-            (Value::Numbers(a), Value::Numbers(b)) if a.dimension == b.dimension => {
-                a.data == b.data
+        match self.equal(a, b, span, COMPARED_DEPTH) {
+            Ok(equal) => Value::Bool(equal == (op == Op::Eq)),
+            Err(Incomparable::Told) => Value::Poison,
+            Err(Incomparable::Kinds(a, b)) => {
+                let message = format!("`{}` does not compare {a} and {b}", op.token());
+                let help = "numbers of one dimension, texts, `true` and `false` can be compared, and \
+                            lists of these";
+                self.tell(Diagnostic::error("E0214", span, message).help(help));
+                Value::Poison
             }
-            _ => return self.no_operator(op, a, b, span),
-        };
-        Value::Bool(equal == (op == Op::Eq))
+        }
+    }
+
+    /// Whether two values are the same; lists are so item by item.
+    fn equal(
+        &mut self,
+        a: &Value,
+        b: &Value,
+        span: Span,
+        depth: usize,
+    ) -> Result<bool, Incomparable> {
+        let kinds = || Err(Incomparable::Kinds(a.describe(), b.describe()));
+        match (a, b) {
+            (Value::Poison, _) | (_, Value::Poison) => return Err(Incomparable::Told),
+            (Value::Bool(a), Value::Bool(b)) => return Ok(a == b),
+            (Value::Text(a), Value::Text(b)) => return Ok(a == b),
+            // A zero has two signs.
+            (Value::Number(x, dx), Value::Number(y, dy)) if dx == dy => {
+                return Ok(x <= y && y <= x);
+            }
+            _ => {}
+        }
+        let (Some(n), Some(m)) = (length(a), length(b)) else { return kinds() };
+        if n != m {
+            return Ok(false);
+        }
+        if depth == 0 {
+            return kinds();
+        }
+        if !self.tick(n as u64, span) {
+            return Err(Incomparable::Told);
+        }
+        if let (Value::Numbers(v), Value::Numbers(w)) = (a, b) {
+            let names = || Incomparable::Kinds(v.dimension.name(), w.dimension.name());
+            return (v.dimension == w.dimension).then(|| v.data == w.data).ok_or_else(names);
+        }
+        let mut all = true;
+        for i in 0..n {
+            all &= self.equal(&item(a, i), &item(b, i), span, depth - 1)?;
+        }
+        Ok(all)
     }
 
     fn numbers(
@@ -206,6 +248,35 @@ impl Evaluator<'_> {
             return Value::numbers(data, dimension, Form::Tuple);
         }
         self.poison("E0209", span, "the result is not finite")
+    }
+}
+
+/// How deep lists are compared.
+const COMPARED_DEPTH: usize = 64;
+
+/// Why two values are neither the same nor different.
+enum Incomparable {
+    /// A mistake that was told: in an item, or the budget is spent.
+    Told,
+    /// What the two are.
+    Kinds(String, String),
+}
+
+/// The number of items of a list or vector.
+fn length(value: &Value) -> Option<usize> {
+    match value {
+        Value::Numbers(n) => Some(n.data.len()),
+        Value::Items(i) => Some(i.items.len()),
+        _ => None,
+    }
+}
+
+/// An item of a list or vector; the index is in range.
+fn item(value: &Value, i: usize) -> Value {
+    match value {
+        Value::Numbers(n) => Value::Number(n.data[i], n.dimension),
+        Value::Items(items) => items.items[i].clone(),
+        _ => Value::Poison,
     }
 }
 

@@ -9,7 +9,7 @@ use crate::report;
 
 /// Interrupts within this time of the first are taken for the same one (a double press, a signal
 /// sent to the whole group as well): most renders have ended in order by then.
-const SAME: Duration = Duration::from_secs(1);
+const SAME: Duration = Duration::from_secs(2);
 
 /// How far the picture has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,7 +94,7 @@ impl Guard {
                 Answer::Wait => report::note("the picture is being written: one moment"),
                 Answer::GiveUp(word) => {
                     report::note(word);
-                    #[expect(clippy::exit, clippy::disallowed_methods, reason = "asked for twice")]
+                    #[expect(clippy::disallowed_methods, reason = "asked for twice")]
                     std::process::exit(Exit::Incomplete as i32);
                 }
             }

@@ -18,8 +18,8 @@ use crate::{interrupt, picture};
 ///
 /// The EXR holds linear sRGB radiance (R, G, B), its standard error (SE.R, SE.G, SE.B) and the
 /// number of samples (N) of each pixel, with the settings as an attribute. The PNG shows it exposed.
-/// Ctrl-C ends early with a valid picture of what was measured and exit code 3; once more, a second
-/// later, gives up what has not been saved by then. No file is ever left half written.
+/// Ctrl-C ends early with a valid picture of what was measured and exit code 3; once more, two
+/// seconds later, gives up what has not been saved by then. No file is ever left half written.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -58,7 +58,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let control = Arc::new(Control::default());
     let stop = control.clone();
     let guard = interrupt::Guard::default();
-    guard.on_ctrl_c(move || stop.cancel())?;
+    guard.on_ctrl_c(move || {
+        stop.cancel();
+        report::aside("interrupted: what was measured will be written; Ctrl-C again gives it up");
+    })?;
     output.check(&files)?;
     let line = !args.quiet;
     let measured = measure::measure((&args.file, &stage), &options, &control, line)?;

@@ -42,6 +42,14 @@ pub(crate) fn note(text: &str) {
     tell(&format!("{}\n", plain::clean(text)));
 }
 
+/// Tells a person at the terminal, and nobody else, what is going on; takes the place of the line of
+/// progress.
+pub(crate) fn aside(text: &str) {
+    if io::stderr().is_terminal() {
+        tell(&format!("\r\x1b[K{}\n", plain::clean(text)));
+    }
+}
+
 /// Prints a warning that belongs to no place in a file.
 pub(crate) fn warning(message: &str) {
     tell(&format!("warning: {}\n", plain::clean(message)));

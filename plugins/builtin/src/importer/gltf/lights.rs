@@ -23,7 +23,7 @@ impl Builder<'_> {
         let name = camera.name.as_deref().unwrap_or("");
         let (class, param, x) = match (&camera.perspective, &camera.orthographic) {
             (Some(p), _) => ("perspective", "fov", f64::from(p.yfov)),
-            (None, Some(o)) => ("orthographic", "height", 2.0 * f64::from(o.ymag)),
+            (None, Some(o)) => ("orthographic", "height", 2.0 * f64::from(o.ymag) * self.unit),
             (None, None) => {
                 return Err(format!("cameras[{i}] is neither perspective nor orthographic"));
             }

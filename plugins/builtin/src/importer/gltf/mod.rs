@@ -70,7 +70,7 @@ impl Importer for Gltf<'_> {
         let bytes = context.read(path).map_err(|message| vec![Fault::file("file", message)])?;
         let source = Source::open(path, &bytes, context)
             .map_err(|messages| messages.into_iter().map(fault).collect::<Vec<_>>())?;
-        let mut build = Builder::new(&source);
+        let mut build = Builder::new(&source, self.unit);
         let base = DAffine3::from_mat3(self.up.turn() * self.unit);
         if let Err(message) = nodes::walk(&mut build, self.scene.get(), base) {
             build.faults.push(message);
@@ -85,6 +85,8 @@ impl Importer for Gltf<'_> {
 /// The import as far as it has come.
 struct Builder<'a> {
     source: &'a Source<'a>,
+    /// Length of one unit of the file, m.
+    unit: f64,
     out: Imported,
     /// All that is wrong with the file.
     faults: Vec<String>,
@@ -93,10 +95,10 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(source: &'a Source<'a>) -> Self {
+    fn new(source: &'a Source<'a>, unit: f64) -> Self {
         let out = Imported { nodes: vec![], placed: vec![], warnings: source.warnings() };
         let (materials, meshes) = (Materials::default(), Meshes::default());
-        Self { source, out, faults: vec![], materials, meshes }
+        Self { source, unit, out, faults: vec![], materials, meshes }
     }
 
     /// Adds a node; its place.

@@ -335,3 +335,13 @@ fn files_that_are_no_gltf_are_told_by_what_they_are() {
         assert!(faults[0].message.contains(expected), "{}", faults[0].message);
     }
 }
+
+#[test]
+fn what_an_orthographic_camera_shows_is_measured_in_the_files_unit() {
+    let json = r#""cameras":[{"type":"orthographic",
+        "orthographic":{"xmag":2,"ymag":1.5,"znear":0.1,"zfar":9}}],"nodes":[{"camera":0}]"#;
+    let found = import_with(Gltf { unit: 0.01, ..params() }, file(json).as_bytes()).unwrap();
+    // Half of the height stands in the file; 0.03 is rounded once.
+    let ImportValue::Number(height) = param(&found.nodes[0], "height") else { panic!() };
+    assert!((height - 0.03).abs() <= 0.03 * f64::EPSILON, "{height}");
+}

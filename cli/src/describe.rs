@@ -33,8 +33,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         (Some(word), None) if args.json => format!("{}\n", word.object()),
         (Some(word), None) => word.page(),
         (Some(word), Some(name)) => {
-            let message = format!("a `{}` has no kinds: there is no `{name}`", word.word);
-            let help = format!("luxel describe {}", word.word);
+            let message = format!("a `{}` has no kinds: there is no `{name}`", word.name);
+            let help = format!("luxel describe {}", word.name);
             return Err(Failure::new(Exit::Input, message).help(help));
         }
         (None, name) => {

@@ -48,7 +48,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         });
         let words = told.iter().map(|word| {
             json!({
-                "kind": word.word,
+                "kind": word.name,
                 "name": "",
                 "origin": "language",
                 "summary": summary(word.doc),
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             report::out(&format!("{kind:<11}{:<20} {summary}\n", class.name))?;
         }
         for word in told {
-            report::out(&format!("{:<11}{:<20} {}\n", word.word, "", summary(word.doc)))?;
+            report::out(&format!("{:<11}{:<20} {}\n", word.name, "", summary(word.doc)))?;
         }
     }
     Ok(Exit::Fine)
@@ -74,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 /// An unknown word, with the nearest and the known ones.
 pub(crate) fn kind(word: &str) -> Result<Kind, Failure> {
     Kind::of_word(word).ok_or_else(|| {
-        let own = WORDS.iter().map(|word| word.word);
+        let own = WORDS.iter().map(|word| word.name);
         let words: Vec<_> = Kind::ALL.iter().map(|(_, word)| *word).chain(own).collect();
         unknown("kind", word, &words)
     })

@@ -9,7 +9,7 @@ type Field = (&'static str, &'static str, &'static str);
 
 /// A word of the language.
 pub(crate) struct Word {
-    pub(crate) word: &'static str,
+    pub(crate) name: &'static str,
     pub(crate) doc: &'static str,
     pub(crate) fields: &'static [Field],
 }
@@ -25,7 +25,7 @@ const MATERIAL: Field =
 /// All of them.
 pub(crate) const WORDS: [Word; 2] = [
     Word {
-        word: "group",
+        name: "group",
         doc: "\
 Objects in their places, in a frame of their own. Has no class: `group \"label\" { … }` holds shapes,
 lights, assets, places and other groups, with names, loops and functions as in a file. At statement
@@ -42,10 +42,10 @@ place pair { transform = rotate((0, 1, 0), 90 deg) }
         fields: &[TRANSFORM, MATERIAL],
     },
     Word {
-        word: "place",
+        name: "place",
         doc: "\
-Puts an object, group or asset that has a name (`let`) into the scene, again or for the first time:
-`place name \"label\" { … }`.
+Puts a named object, group or asset into the scene. `place name \"label\" { … }`, any number of times,
+where `let name = …` has named it.
 
 place tree { transform = [scale(2), move((0, 0, -4) m)] }
 ",
@@ -72,13 +72,13 @@ pub(crate) fn fields_of(kind: Kind) -> &'static [Field] {
 
 /// The word, if it is one of these.
 pub(crate) fn find(word: &str) -> Option<&'static Word> {
-    WORDS.iter().find(|known| known.word == word)
+    WORDS.iter().find(|known| known.name == word)
 }
 
 impl Word {
     /// The manual page.
     pub(crate) fn page(&self) -> String {
-        let mut page = format!("{} (language)\n\n{}\nFields:\n", self.word, self.doc);
+        let mut page = format!("{} (language)\n\n{}\nFields:\n", self.name, self.doc);
         describe(&mut page, self.fields);
         page
     }
@@ -86,7 +86,7 @@ impl Word {
     /// The manual page for programs, in the form of a plugin's.
     pub(crate) fn object(&self) -> Value {
         json!({
-            "kind": self.word,
+            "kind": self.name,
             "name": "",
             "origin": "language",
             "doc": self.doc.trim(),

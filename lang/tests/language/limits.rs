@@ -80,8 +80,9 @@ fn loops_lists_and_nodes_end_at_their_budgets() {
     check("let list = [for i in 0..100000 if true => i]", "E0503");
     check("for i in 0..100000 { shape sphere { radius = 1 m } }", "E0501");
     // Lists that share their items: 2^40 comparisons of 40 short statements.
-    let doubled: String = (0..40).map(|i| format!("let x{} = [x{i}, x{i}]\n", i + 1)).collect();
-    check(&format!("let x0 = [true]\n{doubled}let same = x40 == x40"), "E0502");
+    let doubled: Vec<_> = (0..40).map(|i| format!("let x{} = [x{i}, x{i}]", i + 1)).collect();
+    let doubled = doubled.join("\n");
+    check(&format!("let x0 = [true]\n{doubled}\nlet same = x40 == x40"), "E0502");
     let list = format!("let list = [{}]", "1, ".repeat(1001));
     check(&list, "E0503");
 }

@@ -132,6 +132,7 @@ fn article(name: &str) -> &'static str {
 /// What a decoder's complaint means, as the end of a sentence that begins with the picture.
 fn wrong(bytes: &[u8], error: &ImageError) -> String {
     let detail = causes(error).last().map(ToString::to_string).unwrap_or_default();
+    let detail = detail.trim_end_matches('.');
     match error {
         ImageError::Limits(_) => format!(
             "that claims more pixels than are read: at most {MAX_SIDE} on a side, and as many as its \

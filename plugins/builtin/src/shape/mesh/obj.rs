@@ -78,7 +78,7 @@ fn line_of(text: &[u8], p: DVec3) -> Option<usize> {
         let is_point = words.next() == Some(b"v");
         // Compared by their bits, as no NaN equals itself.
         let same = |x: f64| words.next().and_then(number).is_some_and(|y| alike(x, y));
-        is_point && p.to_array().into_iter().map(same).all(|same| same)
+        is_point && p.to_array().into_iter().all(same)
     };
     text.split(|b| *b == b'\n').position(given).map(|i| i + 1)
 }

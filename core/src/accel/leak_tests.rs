@@ -34,9 +34,9 @@ fn no_ray_leaves_a_closed_mesh_through_an_edge_or_a_vertex() {
             let o = if i % 2 == 0 { Vec3::ZERO } else { rng.point() * 0.4 * scale };
             let towards = target(&arrays, i, &mut rng) - o;
             for d in [towards, towards / scale, (towards / scale).normalize()] {
-                let hit = tree.intersect(o, d, f32::INFINITY);
+                let hit = tree.hit(o, d, f32::INFINITY);
                 assert!(hit.is_some(), "leak at scale 1e{exponent}: o {o} d {d}");
-                assert!(tree.occluded(o, d, f32::INFINITY));
+                assert!(tree.is_hit(o, d, f32::INFINITY));
             }
         }
     }
@@ -52,7 +52,7 @@ fn no_ray_enters_the_far_side_without_the_near_one() {
             let p = target(&arrays, i, &mut rng);
             // From outside straight above the target, within 30° of its normal.
             let o = p * (1.2 + 3.0 * rng.next()) + rng.point() * 0.1 * scale;
-            let hit = tree.intersect(o, p - o, f32::INFINITY);
+            let hit = tree.hit(o, p - o, f32::INFINITY);
             let t = hit.unwrap_or_else(|| panic!("leak at scale 1e{exponent}")).t;
             // The near side is at t = 1, the far one beyond 1.3: half a chord of at least 0.9 lies
             // behind the target, on rays of at most 3.4.
@@ -72,7 +72,7 @@ fn rays_along_the_axes_do_not_leak() {
                 // Start on the plane through the centre, straight below or above a vertex.
                 let o = p - p * d.abs();
                 if o.length() < 0.99 {
-                    assert!(tree.occluded(o, d, f32::INFINITY), "o {o} d {d}");
+                    assert!(tree.is_hit(o, d, f32::INFINITY), "o {o} d {d}");
                 }
             }
         }
@@ -89,7 +89,7 @@ fn far_origins_do_not_leak() {
         let o = rng.point() * 10f32.powi(i32::try_from(i % 6).unwrap());
         if o.length() > 2.0 {
             // The direction's rounding moves the ray at the mesh by at most u·|o|·√3 < 0.02.
-            assert!(tree.occluded(o, p - o, f32::INFINITY), "o {o} p {p}");
+            assert!(tree.is_hit(o, p - o, f32::INFINITY), "o {o} p {p}");
         }
     }
 }
@@ -118,7 +118,7 @@ fn slivers_of_a_million_to_one_close_a_prism() {
         if p.y.abs() < 0.9e-3 && p.z.abs() < 0.999 {
             shot += 1;
             let o = Vec3::new(0.1, 0.3, -0.2) * rng.next();
-            assert!(tree.occluded(o, p - o, f32::INFINITY), "p {p}");
+            assert!(tree.is_hit(o, p - o, f32::INFINITY), "p {p}");
         }
     }
     assert!(shot > 1000, "{shot}");

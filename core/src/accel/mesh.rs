@@ -7,7 +7,7 @@ use super::build::{Tree, Triangles};
 use super::error::BuildError;
 use super::node::{Block, Bounds, Child, Node};
 use super::partition::PART;
-use super::ray::{MeshRay, cull};
+use super::ray::{Direction, Shear, Slabs, cull};
 use super::triangle::Nearest;
 
 /// A mesh's triangles in a four-wide tree, in f32 about the mesh's own centre.
@@ -25,6 +25,7 @@ pub struct MeshBvh {
     stack: usize,
     /// Power of two from the caller's frame to the tree's.
     unit: f32,
+    per_unit: f32,
     /// Largest |coordinate| in the tree's frame.
     reach: f32,
     bounds: Option<(Vec3, Vec3)>,
@@ -36,7 +37,7 @@ pub struct MeshBvh {
 /// The point is `(1 − b1 − b2)·p0 + b1·p1 + b2·p2`, better known than `o + t·d`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshHit {
-    /// Ray parameter in units of the direction's length, 0 < t <= `t_max`.
+    /// Ray parameter in lengths of the scaled direction, 0 < t <= `t_max`.
     pub t: f32,
     /// Position in the array of triangles that the tree was built from.
     pub triangle: u32,
@@ -74,6 +75,7 @@ impl MeshBvh {
             root: root.map(|root| root.child),
             stack,
             unit,
+            per_unit: 1.0 / unit,
             reach: size.min.abs().max(size.max.abs()).max_element(),
             bounds: root.map(|_| (size.min / unit, size.max / unit)),
             dropped,
@@ -95,63 +97,66 @@ impl MeshBvh {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
     }
 
-    /// The nearest hit with 0 < t <= `t_max`; of equally near triangles the one that comes first.
+    /// The nearest hit with 0 < t <= `t_max`, of equally near triangles the one that comes first;
+    /// and how many nodes and triangle blocks were looked at.
     ///
-    /// `o` and `d` are in the frame of the points and `d` has any length but zero; `t_max` may be
-    /// infinite. A ray that is not finite (or a `t_max` of NaN), has no direction, or starts more than 2¹⁰⁰ mesh sizes
-    /// away hits nothing.
-    pub fn intersect(&self, o: Vec3, d: Vec3, t_max: f32) -> Option<MeshHit> {
-        self.trace::<false, false>(o, d, t_max, NONE).0
-    }
-
-    /// True if anything is hit with 0 < t <= `t_max`; the same answer as
-    /// `intersect(..).is_some()`, sooner.
-    pub fn occluded(&self, o: Vec3, d: Vec3, t_max: f32) -> bool {
-        self.trace::<true, false>(o, d, t_max, NONE).0.is_some()
-    }
-
-    /// [`MeshBvh::occluded`] for a ray that leaves the triangle `skip`, which a straight ray cannot
-    /// meet again: rounding would let it, where the triangle is a sliver.
-    pub fn occluded_from(&self, o: Vec3, d: Vec3, t_max: f32, skip: Option<u32>) -> bool {
-        self.trace::<true, false>(o, d, t_max, skip.unwrap_or(NONE)).0.is_some()
-    }
-
-    /// [`MeshBvh::intersect`] for a ray that leaves the triangle `skip`, and how many nodes and
-    /// triangle blocks it looked at.
-    pub fn intersect_counted(
+    /// `o` is in the frame of the points and `t` is along the scaled direction; `t_max` may be
+    /// infinite. A ray that leaves the triangle `skip` does not meet it: a straight ray cannot, but
+    /// rounding would let it where the triangle is a sliver. An origin that is not finite and a
+    /// `t_max` of NaN hit nothing.
+    #[inline]
+    pub fn intersect(
         &self,
         o: Vec3,
-        d: Vec3,
+        direction: &Direction,
         t_max: f32,
         skip: Option<u32>,
     ) -> (Option<MeshHit>, u32) {
-        self.trace::<false, true>(o, d, t_max, skip.unwrap_or(NONE))
+        self.trace::<false>(o, direction, t_max, skip)
     }
 
-    #[inline(always)]
-    fn trace<const ANY: bool, const COUNT: bool>(
+    /// True if anything is hit with 0 < t <= `t_max`; the same answer as that of `intersect`, sooner.
+    #[inline]
+    pub fn occluded(
         &self,
         o: Vec3,
-        d: Vec3,
+        direction: &Direction,
         t_max: f32,
-        skip: u32,
+        skip: Option<u32>,
+    ) -> bool {
+        self.trace::<true>(o, direction, t_max, skip).0.is_some()
+    }
+
+    #[inline]
+    fn trace<const ANY: bool>(
+        &self,
+        o: Vec3,
+        direction: &Direction,
+        t_max: f32,
+        skip: Option<u32>,
     ) -> (Option<MeshHit>, u32) {
         let Some(root) = self.root else { return (None, 0) };
-        if t_max.is_nan() {
+        let o = o * self.unit;
+        if t_max.is_nan() || !o.is_finite() {
             return (None, 0);
         }
-        let Some((ray, t_unit)) = self.prepare(o, d, skip) else { return (None, 0) };
         // An infinite limit would let a ray "enter" the boxes that it misses at infinity.
-        let limit = (t_max / t_unit).min(f32::MAX);
+        let limit = (t_max * self.unit).min(f32::MAX);
         let mut best = Nearest { t: limit, id: u32::MAX, b1: 0.0, b2: 0.0 };
-        // A stack is cleared for each ray, so small trees get small ones.
-        let steps = match self.stack {
-            0..=16 => self.walk::<ANY, COUNT, 16>(root, &ray, &mut best),
-            17..=64 => self.walk::<ANY, COUNT, 64>(root, &ray, &mut best),
-            _ => self.walk::<ANY, COUNT, 256>(root, &ray, &mut best),
+        let shear = Shear::new(direction, o, skip.unwrap_or(u32::MAX));
+        let steps = if root.is_leaf() {
+            self.leaf::<ANY>(root, &shear, &mut best).1
+        } else {
+            let ray = (shear, Slabs::new(o, direction.d, self.reach));
+            // A stack is cleared for each ray, so small trees get small ones.
+            match self.stack {
+                0..=16 => self.walk::<ANY, 16>(root, &ray, &mut best),
+                17..=64 => self.walk::<ANY, 64>(root, &ray, &mut best),
+                _ => self.walk::<ANY, 256>(root, &ray, &mut best),
+            }
         };
         let hit = (best.id != u32::MAX).then(|| MeshHit {
-            t: (best.t * t_unit).min(t_max),
+            t: (best.t * self.per_unit).min(t_max),
             triangle: best.id,
             b1: best.b1,
             b2: best.b2,
@@ -159,29 +164,25 @@ impl MeshBvh {
         (hit, steps)
     }
 
-    /// The ray in the tree's frame with a direction of moderate length, and the power of two by
-    /// which a parameter of that ray is multiplied to be one of the caller's.
+    /// Whether a leaf has a hit, which `best` takes, and how many blocks were looked at.
     #[inline(always)]
-    fn prepare(&self, o: Vec3, d: Vec3, skip: u32) -> Option<(MeshRay, f32)> {
-        let o = o * self.unit;
-        let mut d = d * self.unit;
-        let mut t_unit = 1.0;
-        let mut largest = d.abs().max_element();
-        // Within these bounds no product of the tests overflows or loses digits below.
-        if !(f32::from_bits(0x3000_0000)..f32::from_bits(0x4f00_0000)).contains(&largest) {
-            t_unit = 1.0 / power_of_two_below(largest);
-            d *= t_unit;
-            largest = d.abs().max_element();
+    fn leaf<const ANY: bool>(&self, leaf: Child, ray: &Shear, best: &mut Nearest) -> (bool, u32) {
+        let mut steps = 0;
+        for block in &self.blocks[leaf.blocks()] {
+            steps += 1;
+            if block.intersect::<ANY>(ray, best) && ANY {
+                best.id = 0;
+                return (true, steps);
+            }
         }
-        let valid = o.is_finite() && d.is_finite() && largest > 0.0;
-        valid.then(|| (MeshRay::new(o, d, self.reach).skipping(skip), t_unit))
+        (false, steps)
     }
 
     /// Visits nodes near to far by octant; `LEN` is a power of two not below `self.stack`.
-    fn walk<const ANY: bool, const COUNT: bool, const LEN: usize>(
+    fn walk<const ANY: bool, const LEN: usize>(
         &self,
         root: Child,
-        ray: &MeshRay,
+        (shear, slabs): &(Shear, Slabs),
         best: &mut Nearest,
     ) -> u32 {
         let (mut children, mut enters) = ([Child::default(); LEN], [0.0f32; LEN]);
@@ -190,23 +191,20 @@ impl MeshBvh {
         let mut steps = 0;
         loop {
             if current.is_leaf() {
-                for block in &self.blocks[current.blocks()] {
-                    steps += u32::from(COUNT);
-                    if block.intersect::<ANY>(ray, best) && ANY {
-                        best.id = 0;
-                        return steps;
-                    }
+                let (found, n) = self.leaf::<ANY>(current, shear, best);
+                steps += n;
+                if found && ANY {
+                    return steps;
                 }
             } else {
                 let node = &self.nodes[current.index()];
-                steps += u32::from(COUNT);
-                let (entered, t) = ray.enter(node, best.t);
+                steps += 1;
+                let (entered, t) = slabs.enter(node, best.t);
                 if entered != 0 {
                     // Writes all four, keeps those that are entered; the nearest comes last. The
                     // mask on the index changes nothing, as `self.stack` bounds it, but tells so.
                     let t = t.to_array();
-                    for place in (0..4).rev() {
-                        let slot = node.order.slot(ray.octant, place);
+                    for slot in node.order.far_to_near(slabs.octant) {
                         children[top & (LEN - 1)] = node.children[slot];
                         enters[top & (LEN - 1)] = t[slot];
                         top += entered as usize >> slot & 1;
@@ -229,9 +227,6 @@ impl MeshBvh {
         }
     }
 }
-
-/// The number of no triangle.
-const NONE: u32 = u32::MAX;
 
 /// The power of two at or below `x`, within 2^±100; 1 for zero.
 fn power_of_two_below(x: f32) -> f32 {

@@ -25,9 +25,9 @@ fn check(
         let d = d * length(rng);
         let t_max = if rng.next() < 0.5 { FAR } else { rng.next() * 2.0 / d.length() };
         let expected = list.intersect(o, d, t_max);
-        assert_eq!(tree.intersect(o, d, t_max), expected, "o {o} d {d} t_max {t_max}");
-        assert_eq!(tree.occluded(o, d, t_max), expected.is_some());
-        let (counted, steps) = tree.intersect_counted(o, d, t_max, None);
+        assert_eq!(tree.hit(o, d, t_max), expected, "o {o} d {d} t_max {t_max}");
+        assert_eq!(tree.is_hit(o, d, t_max), expected.is_some());
+        let (counted, steps) = tree.shoot(o, d, t_max);
         assert_eq!(counted, expected);
         assert!(steps > 0);
         hits += usize::from(expected.is_some());
@@ -57,10 +57,10 @@ fn direction_length_changes_nothing_over_twelve_decades() {
 fn parameter_scales_with_direction_even_at_the_ends_of_f32() {
     let tree = build(&icosphere(1, 1.0));
     let d = Vec3::new(0.5, 0.25, 0.125);
-    let one = tree.intersect(Vec3::ZERO, d, FAR).unwrap();
+    let one = tree.hit(Vec3::ZERO, d, FAR).unwrap();
     for exponent in [-120, -60, -30, 30, 60, 120] {
         let k = 2f32.powi(exponent);
-        let hit = tree.intersect(Vec3::ZERO, d * k, FAR).unwrap();
+        let hit = tree.hit(Vec3::ZERO, d * k, FAR).unwrap();
         assert_eq!(hit, MeshHit { t: one.t / k, ..one });
     }
 }
@@ -79,7 +79,7 @@ fn zero_components_of_either_sign_agree_with_brute_force() {
     for i in 0..4000 {
         let o = (rng.point() * 6.0).round() / 4.0;
         let d = Vec3::new(parts[i % 4], parts[i / 4 % 4], parts[i / 16 % 4]);
-        assert_eq!(tree.intersect(o, d, FAR), list.intersect(o, d, FAR), "o {o} d {d}");
+        assert_eq!(tree.hit(o, d, FAR), list.intersect(o, d, FAR), "o {o} d {d}");
     }
 }
 
@@ -91,7 +91,7 @@ fn distance_and_barycentrics_agree_with_double_precision() {
     let mut hits = 0;
     for _ in 0..3000 {
         let (o, d) = (rng.point(), rng.point());
-        let Some(hit) = tree.intersect(o, d, FAR) else { continue };
+        let Some(hit) = tree.hit(o, d, FAR) else { continue };
         let [a, b, c] = arrays.1[hit.triangle as usize].map(|i| arrays.0[i as usize].as_dvec3());
         let (b1, b2) = (f64::from(hit.b1), f64::from(hit.b2));
         let on_triangle = a * (1.0 - b1 - b2) + b * b1 + c * b2;
@@ -114,11 +114,11 @@ fn distance_and_barycentrics_agree_with_double_precision() {
 fn twenty_thousand_identical_triangles_give_the_first_in_few_steps() {
     let points = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let tree = build(&(points, vec![[0, 1, 2]; 20_000]));
-    let (hit, steps) = tree.intersect_counted(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z, FAR, None);
+    let (hit, steps) = tree.shoot(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z, FAR);
     assert_eq!(hit.unwrap().triangle, 0);
     // All must be looked at, four at a time, and a third as many nodes again.
     assert!(steps < 20_000, "{steps}");
-    assert!(!tree.occluded(Vec3::new(0.6, 0.6, 1.0), Vec3::NEG_Z, FAR));
+    assert!(!tree.is_hit(Vec3::new(0.6, 0.6, 1.0), Vec3::NEG_Z, FAR));
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn nearly_equal_boxes_do_not_make_a_chain() {
         let arrays = (points, indices);
         let tree = build(&arrays);
         let o = Vec3::new(0.5, 0.01, 0.001);
-        let hit = tree.intersect(o, Vec3::new(0.5, 0.01, 0.02), FAR);
+        let hit = tree.hit(o, Vec3::new(0.5, 0.01, 0.02), FAR);
         assert_eq!(hit, BruteForce::new(&arrays).intersect(o, Vec3::new(0.5, 0.01, 0.02), FAR));
     }
 }
@@ -160,12 +160,12 @@ fn flat_mesh_is_hit_everywhere_and_nowhere_beside() {
     for i in 0..=400 {
         for j in 0..=400 {
             let o = Vec3::new(i as f32 * 0.1, 3.0, j as f32 * 0.1).min(Vec3::splat(n as f32));
-            let hit = tree.intersect(o, Vec3::new(0.0, -2.0, -0.0), FAR).unwrap();
+            let hit = tree.hit(o, Vec3::new(0.0, -2.0, -0.0), FAR).unwrap();
             assert!((hit.t - 1.5).abs() <= f32::EPSILON * 4.0, "{o} {hit:?}");
         }
     }
-    assert_eq!(tree.intersect(Vec3::new(-1.0, 0.0, 3.5), Vec3::X, FAR), None, "within the plane");
-    assert!(!tree.occluded(Vec3::new(40.1, 1.0, 3.0), Vec3::NEG_Y, FAR));
+    assert_eq!(tree.hit(Vec3::new(-1.0, 0.0, 3.5), Vec3::X, FAR), None, "within the plane");
+    assert!(!tree.is_hit(Vec3::new(40.1, 1.0, 3.0), Vec3::NEG_Y, FAR));
 }
 
 #[test]
@@ -180,9 +180,9 @@ fn huge_and_tiny_together_are_both_hit() {
     ]);
     indices.push([base, base + 1, base + 2]);
     let tree = build(&(points, indices));
-    let down = tree.intersect(Vec3::new(1.0, 0.0, 0.0), Vec3::NEG_Y, FAR).unwrap();
+    let down = tree.hit(Vec3::new(1.0, 0.0, 0.0), Vec3::NEG_Y, FAR).unwrap();
     assert_eq!(down.triangle, 320);
-    let ball = tree.intersect(Vec3::new(1.0, 0.0, 0.0), Vec3::NEG_X, FAR).unwrap();
+    let ball = tree.hit(Vec3::new(1.0, 0.0, 0.0), Vec3::NEG_X, FAR).unwrap();
     assert!(ball.triangle < 320);
 }
 
@@ -194,7 +194,7 @@ fn coincident_faces_give_the_lowest_index_from_both_sides() {
     let mut rng = Rng(6);
     for _ in 0..3000 {
         let (o, d) = (rng.point() * 2.0, rng.point());
-        assert_eq!(twice.intersect(o, d, FAR), once.intersect(o, d, FAR));
+        assert_eq!(twice.hit(o, d, FAR), once.hit(o, d, FAR));
     }
 }
 
@@ -203,30 +203,30 @@ fn limit_is_included_and_the_origin_is_not() {
     let points = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(3.0, -1.0, 0.0), Vec3::new(-1.0, 3.0, 0.0)];
     let tree = MeshBvh::build(&points, &[[0, 1, 2]]).unwrap();
     let o = Vec3::new(0.0, 0.0, 2.0);
-    assert_eq!(tree.intersect(o, Vec3::NEG_Z, 2.0).unwrap().t.to_bits(), 2f32.to_bits());
-    assert!(tree.intersect(o, Vec3::NEG_Z, 2f32.next_down()).is_none());
-    assert!(tree.intersect(Vec3::ZERO, Vec3::NEG_Z, FAR).is_none());
-    assert!(tree.intersect(o, Vec3::Z, FAR).is_none());
+    assert_eq!(tree.hit(o, Vec3::NEG_Z, 2.0).unwrap().t.to_bits(), 2f32.to_bits());
+    assert!(tree.hit(o, Vec3::NEG_Z, 2f32.next_down()).is_none());
+    assert!(tree.hit(Vec3::ZERO, Vec3::NEG_Z, FAR).is_none());
+    assert!(tree.hit(o, Vec3::Z, FAR).is_none());
 }
 
 #[test]
 fn rays_that_are_not_finite_hit_nothing() {
     let tree = build(&icosphere(1, 1.0));
     for bad in [f32::NAN, FAR, -FAR] {
-        assert_eq!(tree.intersect(Vec3::ZERO, Vec3::new(1.0, bad, 0.0), FAR), None);
-        assert_eq!(tree.intersect(Vec3::new(bad, 0.0, 0.0), Vec3::X, FAR), None);
+        assert_eq!(tree.hit(Vec3::ZERO, Vec3::new(1.0, bad, 0.0), FAR), None);
+        assert_eq!(tree.hit(Vec3::new(bad, 0.0, 0.0), Vec3::X, FAR), None);
     }
-    assert_eq!(tree.intersect(Vec3::ZERO, Vec3::ZERO, FAR), None);
+    assert_eq!(tree.hit(Vec3::ZERO, Vec3::ZERO, FAR), None);
     for t_max in [f32::NAN, 0.0, -1.0, -FAR] {
-        assert_eq!(tree.intersect(Vec3::ZERO, Vec3::X, t_max), None);
+        assert_eq!(tree.hit(Vec3::ZERO, Vec3::X, t_max), None);
     }
-    assert!(tree.occluded(Vec3::ZERO, Vec3::X, f32::MAX));
+    assert!(tree.is_hit(Vec3::ZERO, Vec3::X, f32::MAX));
 }
 
 #[test]
 fn nothing_to_hit_is_a_mesh_too() {
     let tree = MeshBvh::build(&[], &[]).unwrap();
-    assert_eq!(tree.intersect(Vec3::ZERO, Vec3::X, FAR), None);
+    assert_eq!(tree.hit(Vec3::ZERO, Vec3::X, FAR), None);
     assert_eq!((tree.bounds(), tree.dropped(), tree.bytes()), (None, 0, 0));
 }
 
@@ -236,7 +236,7 @@ fn triangles_without_area_are_dropped_and_counted() {
     let indices = [[0, 1, 2], [0, 0, 3], [0, 1, 3], [3, 3, 3]];
     let tree = MeshBvh::build(&points, &indices).unwrap();
     assert_eq!(tree.dropped(), 3);
-    let hit = tree.intersect(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z, FAR).unwrap();
+    let hit = tree.hit(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z, FAR).unwrap();
     assert_eq!(hit.triangle, 2);
     assert_eq!(tree.bounds(), Some((Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0))));
 }
@@ -263,7 +263,7 @@ fn many_parts_agree_with_the_nearest_of_their_triangles() {
     let mut rng = Rng(8);
     for _ in 0..5000 {
         let (o, d) = (rng.point(), rng.point());
-        let hit = tree.intersect(o, d, FAR).unwrap();
+        let hit = tree.hit(o, d, FAR).unwrap();
         let [a, b, c] = arrays.1[hit.triangle as usize].map(|i| arrays.0[i as usize].as_dvec3());
         let p = o.as_dvec3() + d.as_dvec3() * f64::from(hit.t);
         let off = (b - a).cross(c - a).normalize().dot(p - a);

@@ -29,4 +29,5 @@ mod soup;
 
 pub use error::BuildError;
 pub use mesh::{MeshBvh, MeshHit};
+pub use ray::Direction;
 pub use top::TopBvh;

@@ -109,10 +109,11 @@ impl Order {
         Self(orders)
     }
 
-    /// The slot in this place, 0 the nearest, for a direction of this octant.
+    /// The slots from far to near, for a direction of this octant.
     #[inline(always)]
-    pub(super) fn slot(self, octant: usize, place: usize) -> usize {
-        usize::from(self.0[octant & 7] >> (2 * place) & 3)
+    pub(super) fn far_to_near(self, octant: usize) -> [usize; WIDTH] {
+        let slots = usize::from(self.0[octant & 7]);
+        [slots >> 6, slots >> 4 & 3, slots >> 2 & 3, slots & 3]
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Source: PBR4 §6.8.2 (slabs) with the bound of §6.8.3; Woop, Benthin and Wald 2013 (the shear).
 
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::node::Node;
 
@@ -13,9 +13,78 @@ const U: f32 = f32::EPSILON / 2.0;
 /// plane this much farther is never before a near plane that it touches.
 const FAR: f32 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f32::EPSILON;
 
-/// A ray in a mesh's scaled frame, with all that the box and the triangle test need of it.
-pub(super) struct MeshRay {
-    /// Origins for the near and the far planes: `o` moved apart by the slack of [`MeshRay::new`].
+/// A direction in the frame of meshes, made ready for their triangles: once per ray and frame.
+///
+/// It is scaled by a power of two, so that no product of the tests overflows or loses digits below.
+#[derive(Clone, Copy, Debug)]
+pub struct Direction {
+    /// Its largest |component| is in [1, 2].
+    pub(super) d: Vec3,
+    /// Axes with the largest component last; each is below 3.
+    pub(super) axes: [usize; 3],
+    /// `d[kx]/d[kz]`, `d[ky]/d[kz]`, `1/d[kz]`.
+    pub(super) shear: [f32; 3],
+    scale: f64,
+    per_scale: f64,
+}
+
+impl Direction {
+    /// `None` for a direction that is zero, not finite, or within 2² of the ends of f64's range.
+    #[inline]
+    pub fn new(d: DVec3) -> Option<Self> {
+        let a = d.abs();
+        // Without branches: which axis it is cannot be foreseen.
+        let of_yz = a.y.max(a.z);
+        let largest = a.x.max(of_yz);
+        let kz = (1 + usize::from(a.y <= a.z)) * usize::from(a.x <= of_yz);
+        let scale = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
+        let per_scale = 1.0 / scale;
+        if !(per_scale.is_normal() && d.is_finite()) {
+            return None;
+        }
+        let d = (d * per_scale).as_vec3();
+        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][kz];
+        let rz = 1.0 / d[kz];
+        let shear = [d[axes[0]] * rz, d[axes[1]] * rz, rz];
+        Some(Self { d, axes, shear, scale, per_scale })
+    }
+
+    /// Length of the direction that was given in lengths of the scaled one: what a parameter `t`
+    /// along the given one is multiplied with to be one along the scaled one.
+    #[inline]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// 1 / [`Direction::scale`], exactly: at least 1 over the largest |component|.
+    #[inline]
+    pub fn per_scale(&self) -> f64 {
+        self.per_scale
+    }
+}
+
+/// A ray in a mesh's scaled frame, as the triangle test wants it.
+pub(super) struct Shear {
+    pub(super) axes: [usize; 3],
+    /// Origin in the order of `axes`.
+    pub(super) o: [f32; 3],
+    pub(super) factors: [f32; 3],
+    /// A triangle that is passed; `u32::MAX` for none.
+    pub(super) skip: u32,
+}
+
+impl Shear {
+    #[inline(always)]
+    pub(super) fn new(direction: &Direction, o: Vec3, skip: u32) -> Self {
+        let axes = direction.axes;
+        let o = [o[axes[0]], o[axes[1]], o[axes[2]]];
+        Self { axes, o, factors: direction.shear, skip }
+    }
+}
+
+/// The same ray, as the box test wants it.
+pub(super) struct Slabs {
+    /// Origins for the near and the far planes: `o` moved apart by the slack of [`Slabs::new`].
     near_o: [Vec4; 3],
     far_o: [Vec4; 3],
     rdir: [Vec4; 3],
@@ -23,17 +92,9 @@ pub(super) struct MeshRay {
     near: [usize; 3],
     /// One bit per negative component.
     pub(super) octant: usize,
-    /// Axes with the largest component last; each is below 3.
-    pub(super) axes: [usize; 3],
-    /// Origin in the order of `axes`.
-    pub(super) o: [f32; 3],
-    /// `d[kx]/d[kz]`, `d[ky]/d[kz]`, `1/d[kz]`.
-    pub(super) shear: [f32; 3],
-    /// A triangle that is passed; `u32::MAX` for none.
-    pub(super) skip: u32,
 }
 
-impl MeshRay {
+impl Slabs {
     /// A finite origin and a finite, non-zero direction whose largest component is neither tiny nor
     /// huge; `reach` is the largest |coordinate| of the mesh.
     ///
@@ -48,16 +109,6 @@ impl MeshRay {
         let sign = |c: f32| usize::from(c.is_sign_negative());
         let near = [sign(d.x), sign(d.y), sign(d.z)];
         let apart = slack * Vec3::ONE.copysign(d);
-        let a = d.abs();
-        let kz = if a.x > a.y && a.x > a.z {
-            0
-        } else if a.y > a.z {
-            1
-        } else {
-            2
-        };
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][kz];
-        let rz = 1.0 / d[kz];
         let splat = |v: Vec3| [Vec4::splat(v.x), Vec4::splat(v.y), Vec4::splat(v.z)];
         Self {
             near_o: splat(o + apart),
@@ -65,17 +116,7 @@ impl MeshRay {
             rdir: splat(rdir),
             near,
             octant: near[0] | near[1] << 1 | near[2] << 2,
-            axes,
-            o: [o[axes[0]], o[axes[1]], o[axes[2]]],
-            shear: [d[axes[0]] * rz, d[axes[1]] * rz, rz],
-            skip: u32::MAX,
         }
-    }
-
-    /// The same ray, passing the triangle of that number.
-    #[inline(always)]
-    pub(super) fn skipping(self, skip: u32) -> Self {
-        Self { skip, ..self }
     }
 
     /// Which of the node's four boxes the ray may enter at or before `t_max`, and where.

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use super::{MeshBvh, MeshHit};
+use super::{Direction, MeshBvh, MeshHit};
+use crate::cast::narrow;
 
 /// Points and triangles.
 pub(super) type Arrays = (Vec<Vec3>, Vec<[u32; 3]>);
@@ -87,6 +88,30 @@ pub(super) fn icosphere(level: u32, radius: f32) -> Arrays {
     (points.iter().map(|p| p.normalize() * radius).collect(), triangles)
 }
 
+impl MeshBvh {
+    /// The nearest hit along a direction of any length, its `t` in that length, and the steps taken.
+    pub(super) fn shoot(&self, o: Vec3, d: Vec3, t_max: f32) -> (Option<MeshHit>, u32) {
+        let Some(direction) = Direction::new(d.as_dvec3()) else { return (None, 0) };
+        let (hit, steps) = self.intersect(o, &direction, scaled(t_max, &direction), None);
+        let t = |t: f32| narrow(f64::from(t) * direction.per_scale()).min(t_max);
+        (hit.map(|hit| MeshHit { t: t(hit.t), ..hit }), steps)
+    }
+
+    pub(super) fn hit(&self, o: Vec3, d: Vec3, t_max: f32) -> Option<MeshHit> {
+        self.shoot(o, d, t_max).0
+    }
+
+    pub(super) fn is_hit(&self, o: Vec3, d: Vec3, t_max: f32) -> bool {
+        Direction::new(d.as_dvec3()).is_some_and(|direction| {
+            self.occluded(o, &direction, scaled(t_max, &direction), None)
+        })
+    }
+}
+
+fn scaled(t_max: f32, direction: &Direction) -> f32 {
+    narrow(f64::from(t_max) * direction.scale())
+}
+
 /// One tree per triangle: a single leaf, so no box is ever tested.
 pub(super) struct BruteForce(Vec<MeshBvh>);
 
@@ -100,7 +125,7 @@ impl BruteForce {
     pub(super) fn intersect(&self, o: Vec3, d: Vec3, t_max: f32) -> Option<MeshHit> {
         let mut best: Option<MeshHit> = None;
         for (tree, triangle) in self.0.iter().zip(0..) {
-            if let Some(hit) = tree.intersect(o, d, t_max)
+            if let Some(hit) = tree.hit(o, d, t_max)
                 && best.is_none_or(|b| hit.t < b.t)
             {
                 best = Some(MeshHit { triangle, ..hit });

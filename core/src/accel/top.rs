@@ -125,28 +125,32 @@ impl TopBvh {
         mut leaf: impl FnMut(u32, f64, f64) -> Step,
     ) {
         let (mut children, mut enters) = ([Child::default(); LEN], [0.0f64; LEN]);
-        children[0] = root;
-        let mut top = 1;
-        while top > 0 {
-            top -= 1;
-            let (current, t_enter) = (children[top & (LEN - 1)], enters[top & (LEN - 1)]);
-            if t_enter > t_max * FAR {
-                continue;
-            }
+        let (mut current, mut t_enter, mut top) = (root, 0.0, 0);
+        loop {
             if current.is_leaf() {
                 match leaf(narrow(current.blocks().start), t_enter, t_max) {
                     Step::Go(limit) => t_max = limit,
                     Step::Stop => return,
                 }
-                continue;
+            } else {
+                let node = &self.nodes[current.index()];
+                let (near, far) = ray.enter(node, t_max);
+                // Writes all four, keeps those that are entered; the nearest comes last.
+                for slot in node.order.far_to_near(ray.octant) {
+                    children[top & (LEN - 1)] = node.children[slot];
+                    enters[top & (LEN - 1)] = near[slot];
+                    top += usize::from(near[slot] <= far[slot]);
+                }
             }
-            let node = &self.nodes[current.index()];
-            let (near, far) = ray.enter(node, t_max);
-            for place in (0..WIDTH).rev() {
-                let slot = node.order.slot(ray.octant, place);
-                children[top & (LEN - 1)] = node.children[slot];
-                enters[top & (LEN - 1)] = near[slot];
-                top += usize::from(near[slot] <= far[slot]);
+            loop {
+                if top == 0 {
+                    return;
+                }
+                top -= 1;
+                (current, t_enter) = (children[top & (LEN - 1)], enters[top & (LEN - 1)]);
+                if t_enter <= t_max * FAR {
+                    break;
+                }
             }
         }
     }

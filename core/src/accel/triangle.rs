@@ -8,7 +8,7 @@
 use glam::{BVec4A, Vec4};
 
 use super::node::{Block, WIDTH};
-use super::ray::MeshRay;
+use super::ray::Shear;
 
 /// The nearest hit so far; `id` is `u32::MAX` while there is none and `t` is then the limit.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +39,7 @@ impl Block {
     /// Takes the nearest hit of this block into `best` if it is nearer, or as near with a lower
     /// number. True if any of its triangles is hit with 0 < t <= `best.t`.
     #[inline(always)]
-    pub(super) fn intersect<const ANY: bool>(&self, ray: &MeshRay, best: &mut Nearest) -> bool {
+    pub(super) fn intersect<const ANY: bool>(&self, ray: &Shear, best: &mut Nearest) -> bool {
         let Some(lanes) = self.lanes(ray, best.t) else { return false };
         if ANY {
             return true;
@@ -59,12 +59,12 @@ impl Block {
     }
 
     #[inline(always)]
-    fn lanes(&self, ray: &MeshRay, t_max: f32) -> Option<Lanes> {
+    fn lanes(&self, ray: &Shear, t_max: f32) -> Option<Lanes> {
         // The bound is known to the compiler here, so indexing costs nothing below.
         let [kx, ky, kz] = ray.axes;
         let (kx, ky, kz) = (kx.min(2), ky.min(2), kz.min(2));
         let (ox, oy, oz) = (Vec4::splat(ray.o[0]), Vec4::splat(ray.o[1]), Vec4::splat(ray.o[2]));
-        let [sx, sy, sz] = ray.shear;
+        let [sx, sy, sz] = ray.factors;
         let (sx, sy, sz) = (Vec4::splat(sx), Vec4::splat(sy), Vec4::splat(sz));
 
         // Translate to the ray's origin, shear its direction onto the z axis.

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Arrival, ArrivalKind, Direct, Lobe, Phase, Sample, Samples, Scatter, Surface, Wants,
+    Arrival, ArrivalKind, Direct, Lobe, Needs, Phase, Sample, Samples, Scatter, Surface, Wants,
 };
 use luxel_sdk::num::{Frame, Ray};
 
@@ -42,10 +42,11 @@ impl Shader<'_, '_> {
         self.path.from = p;
         self.scratch.reset();
         let scratch: &Scratch = self.scratch;
+        let numbers = Numbers::draw(self.stage, self.wants, self.samples);
         if self.wants.has(Wants::DIRECT) {
             let origin = Origin { p, p_err: DVec3::ZERO, ng: DVec3::ZERO };
-            let u = light_numbers(self.samples);
-            let found = self.stage.sample_light(&origin, &self.path.palette, u, scratch);
+            let found =
+                self.stage.sample_light(&origin, &self.path.palette, numbers.light, scratch);
             at.direct = found.map(|found| {
                 let eval = phase.eval(wo.as_vec3(), found.ray.d.as_vec3());
                 let f_le = eval.f * found.le_over_pdf * self.flight;
@@ -53,8 +54,7 @@ impl Shader<'_, '_> {
             });
         }
         if self.wants.has(Wants::SCATTER) {
-            let u = self.samples.next_2d();
-            at.scatter = phase.sample(wo.as_vec3(), u).map(|sample| Scatter {
+            at.scatter = phase.sample(wo.as_vec3(), numbers.scatter).map(|sample| Scatter {
                 weight: sample.weight * self.flight,
                 wi: sample.wi.as_dvec3().normalize(),
                 pdf: density(&sample),
@@ -66,6 +66,7 @@ impl Shader<'_, '_> {
     /// The ray met a surface.
     pub(super) fn surface(mut self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
         let stage = self.stage;
+        let numbers = Numbers::draw(stage, self.wants, self.samples);
         let surface = stage.surface(ray, hit);
         let placement = &stage.placements[hit.placement as usize];
         let wo = -ray.d;
@@ -86,25 +87,26 @@ impl Shader<'_, '_> {
         self.path.on = Some(Standing { leaving: hit.into(), ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
-            self.scatter(at, &surface, material);
+            self.scatter(at, &surface, &numbers);
         }
     }
 
     /// The light sample and the scattering sample at a surface.
-    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, material: u32) {
+    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, numbers: &Numbers) {
         if !self.wants.has(Wants::DIRECT) && !self.wants.has(Wants::SCATTER) {
             return;
         }
         self.scratch.reset();
         let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette };
         let scratch: &Scratch = self.scratch;
-        let object = &self.stage.materials[material as usize];
+        let object = &self.stage.materials[at.material as usize];
         let material = object.resolve(&site, scratch).material();
-        let local = Local::new(at, surface);
-        if self.wants.has(Wants::DIRECT) && !material.is_delta() {
+        let needs = material.needs();
+        let local = Local::new(at, surface, needs);
+        if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
             let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };
-            let u = light_numbers(self.samples);
-            let found = self.stage.sample_light(&origin, &self.path.palette, u, scratch);
+            let found =
+                self.stage.sample_light(&origin, &self.path.palette, numbers.light, scratch);
             at.direct = found.and_then(|found| {
                 let wi = local.of_world(found.ray.d)?;
                 let eval = material.eval(local.wo, wi);
@@ -118,8 +120,8 @@ impl Shader<'_, '_> {
             });
         }
         if self.wants.has(Wants::SCATTER) {
-            let [u0, u1] = self.samples.next_2d();
-            let u2 = self.samples.next_1d();
+            let [u0, u1] = numbers.scatter;
+            let u2 = self.samples.next_1d_if(needs.has(Needs::CHOICE));
             let sample = material.sample(local.wo, [u0, u1, u2]);
             at.scatter = sample.and_then(|sample| self.scattered(&local, &sample));
         }
@@ -145,11 +147,28 @@ fn begin(at: &mut Arrival, kind: ArrivalKind, ray: &Ray, t: f64, steps: u32) {
     (at.direct, at.scatter) = (None, None);
 }
 
-/// A number to choose a light by, and two to choose light from it.
-fn light_numbers(samples: &mut Samples<'_>) -> [f32; 3] {
-    let choice = samples.next_1d();
-    let [u, v] = samples.next_2d();
-    [choice, u, v]
+/// The random numbers of one arrival. They are drawn before anything else is done there: each takes
+/// a long chain of multiplications, during which the processor finds the surface.
+struct Numbers {
+    /// To choose a light by, and light from it.
+    light: [f32; 3],
+    /// To choose a direction by.
+    scatter: [f32; 2],
+}
+
+impl Numbers {
+    fn draw(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
+        let mut numbers = Self { light: [0.0; 3], scatter: [0.0; 2] };
+        if wants.has(Wants::DIRECT) {
+            let choice = samples.next_1d_if(stage.lights.is_choice());
+            let [u, v] = samples.next_2d();
+            numbers.light = [choice, u, v];
+        }
+        if wants.has(Wants::SCATTER) {
+            numbers.scatter = samples.next_2d();
+        }
+        numbers
+    }
 }
 
 /// Density for comparing with light sampling, which cannot find a delta lobe.
@@ -167,15 +186,19 @@ struct Local {
 }
 
 impl Local {
-    fn new(at: &Arrival, surface: &Surface) -> Self {
+    fn new(at: &Arrival, surface: &Surface, needs: Needs) -> Self {
         let outside = at.wo.dot(at.ng) > 0.0;
         // Where the viewer is above one normal and below the other, the shading normal shows a side
         // that the surface does not have: the geometric one counts.
         let agree = (at.wo.dot(at.ns) > 0.0) == outside;
         let normal = if agree { at.ns } else { at.ng };
-        // Of any length, but in the range of single precision.
-        let tangent = (surface.dp_du / surface.dp_du.abs().max_element()).as_vec3();
-        let frame = Frame::from_z_and_tangent(normal.as_vec3(), tangent);
+        let frame = if needs.has(Needs::TANGENT) {
+            // Of any length, but in the range of single precision.
+            let tangent = (surface.dp_du / surface.dp_du.abs().max_element()).as_vec3();
+            Frame::from_z_and_tangent(normal.as_vec3(), tangent)
+        } else {
+            Frame::from_z(normal.as_vec3())
+        };
         Self { wo: frame.to_local(at.wo.as_vec3()), frame, ng: at.ng, outside }
     }
 

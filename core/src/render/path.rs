@@ -1,9 +1,11 @@
 //! What the host remembers of a path in flight.
 
 use glam::DVec3;
-use luxel_sdk::color::{Palette, Spectrum};
+use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
+use luxel_sdk::kind::CameraRay;
 use luxel_sdk::num::Ray;
 
+use crate::object::ColorMode;
 use crate::stage::{Leaving, MediumStack, Stage};
 
 /// One path, beside the integrator's own state.
@@ -34,9 +36,22 @@ pub(super) struct Standing {
 }
 
 impl Path {
-    pub(super) fn new(job: u32, weight: f32, palette: Palette, stage: &Stage) -> Self {
-        let media = stage.camera_media;
-        Self { job, weight, palette, ended: false, from: DVec3::ZERO, on: None, media }
+    /// No path yet.
+    pub(super) fn new(stage: &Stage) -> Self {
+        let (palette, media) = (Palette::rgb(), stage.camera_media);
+        Self { job: 0, weight: 0.0, palette, ended: false, from: DVec3::ZERO, on: None, media }
+    }
+
+    /// A path begins at the camera; `u` chooses the wavelengths, if there are any.
+    pub(super) fn start(&mut self, job: u32, found: &CameraRay, u: f32, stage: &Stage) {
+        if stage.mode == ColorMode::Spectral {
+            self.palette = Palette::new(Wavelengths::sample(u));
+        }
+        (self.job, self.weight, self.from) = (job, found.weight, found.ray.o);
+        (self.ended, self.on) = (false, None);
+        if stage.features.media {
+            self.media = stage.camera_media;
+        }
     }
 
     /// The surface that a ray from here leaves.

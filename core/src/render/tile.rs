@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::{DVec3, UVec2};
-use luxel_sdk::color::{Observer, Palette, RgbSpace, Spectrum, Wavelengths, to_xyz};
+use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
     Arrival, Erased, Host, Job, Lane, Output, Raster, Requests, SampleAt, Samples, Wants,
 };
@@ -16,7 +16,7 @@ use super::{Control, shadow};
 use crate::cast;
 use crate::film::Tile;
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Leaving, Skin, Stage};
+use crate::stage::{Leaving, SceneHit, Skin, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
 const LANES: usize = 128;
@@ -33,6 +33,8 @@ pub(super) struct Worker<'s> {
     /// What the running round answers, and what it asks for.
     now: Requests,
     next: Requests,
+    hits: Vec<(Option<SceneHit>, u32)>,
+    arrived: Vec<u32>,
     results: Vec<DVec3>,
     scratch: Scratch,
     /// For a medium's parameters while its phase function is asked.
@@ -43,16 +45,21 @@ pub(super) struct Worker<'s> {
 impl<'s> Worker<'s> {
     pub(super) fn new(stage: &'s Stage, seed: u32) -> Self {
         let integrator = stage.integrator.fixed().integrator();
+        let at = SampleAt { stream: 0, index: 0, dimension: 0 };
+        let samples = Samples::new(stage.sampler.fixed().sampler(), at);
+        let lane = Lane { at: Arrival::default(), l: Spectrum::ZERO, samples };
         Self {
             stage,
             seed,
             wants: integrator.wants(),
             states: integrator.lanes(LANES),
-            lanes: Vec::with_capacity(LANES),
-            paths: Vec::with_capacity(LANES),
+            lanes: vec![lane; LANES],
+            paths: vec![Path::new(stage); LANES],
             free: vec![],
             now: Requests::default(),
             next: Requests::default(),
+            hits: vec![],
+            arrived: vec![],
             results: vec![],
             scratch: Scratch::default(),
             medium_scratch: Scratch::default(),
@@ -81,9 +88,8 @@ impl<'s> Worker<'s> {
     /// Rounds until every job is done; false when cancelled.
     fn run(&mut self, jobs: &Jobs, control: &Control) -> bool {
         let mut started = 0;
-        self.lanes.clear();
-        self.paths.clear();
         self.free.clear();
+        self.free.extend((0..cast::index(LANES)).rev());
         self.next.clear();
         loop {
             self.refill(jobs, &mut started);
@@ -104,56 +110,38 @@ impl<'s> Worker<'s> {
     /// Starts jobs in the lanes that are free.
     fn refill(&mut self, jobs: &Jobs, started: &mut usize) {
         while *started < jobs.len() {
-            let fresh = self.free.is_empty() && self.lanes.len() < LANES;
-            let lane = match self.free.pop() {
-                Some(lane) => lane as usize,
-                None if fresh => self.lanes.len(),
-                None => return,
-            };
+            let Some(lane) = self.free.pop() else { return };
             let job = *started;
             *started += 1;
-            let Some((path, samples, ray)) = self.begin(jobs, job) else {
-                if !fresh {
-                    self.free.push(cast::index(lane));
-                }
+            let Some(ray) = self.begin(jobs, job, lane as usize) else {
+                self.free.push(lane);
                 continue;
             };
-            if fresh {
-                self.lanes.push(Lane { at: Arrival::default(), l: Spectrum::ZERO, samples });
-                self.paths.push(path);
-            } else {
-                (self.lanes[lane].l, self.lanes[lane].samples) = (Spectrum::ZERO, samples);
-                self.paths[lane] = path;
-            }
             let asked = self.next.rays.len() + self.next.shadows.len();
-            let job = Job { ray };
-            self.states.start(cast::index(lane), &job, &mut self.lanes[lane].l, &mut self.next);
+            self.states.start(lane, &Job { ray }, &mut self.lanes[lane as usize].l, &mut self.next);
             if asked == self.next.rays.len() + self.next.shadows.len() {
-                self.finish(lane);
+                self.finish(lane as usize);
             }
         }
     }
 
-    /// The camera's ray of a job; `None` where the camera sees nothing.
-    fn begin(&self, jobs: &Jobs, job: usize) -> Option<(Path, Samples<'s>, Ray)> {
+    /// Puts a job into a lane: the camera's ray; `None` where the camera sees nothing.
+    fn begin(&mut self, jobs: &Jobs, job: usize, lane: usize) -> Option<Ray> {
         let (pixel, index) = jobs.at(job);
         let stream = hash_combine(hash_combine(self.seed, pixel.x), pixel.y);
         let source = self.stage.sampler.fixed().sampler();
         let mut samples = Samples::new(source, SampleAt { stream, index, dimension: 0 });
         let [dx, dy] = self.stage.filter.fixed().filter().sample(samples.next_2d());
         let lens = samples.next_2d();
-        let palette = match (self.stage.mode, samples.next_1d()) {
-            (ColorMode::Spectral, u) => Palette::new(Wavelengths::sample(u)),
-            (ColorMode::Rgb, _) => Palette::rgb(),
-        };
+        let u = samples.next_1d_if(self.stage.mode == ColorMode::Spectral);
         let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
         let p = pixel.as_dvec2() + 0.5 + offset;
         let raster = Raster { size: self.stage.film.resolution };
         let camera = self.stage.camera.fixed().camera();
         let found = camera.ray(raster, p, lens)?;
-        let mut path = Path::new(cast::index(job), found.weight, palette, self.stage);
-        path.from = found.ray.o;
-        Some((path, samples, found.ray))
+        self.paths[lane].start(cast::index(job), &found, u, self.stage);
+        (self.lanes[lane].l, self.lanes[lane].samples) = (Spectrum::ZERO, samples);
+        Some(found.ray)
     }
 
     /// Light that depended on shadow rays, in asking order.
@@ -167,18 +155,42 @@ impl<'s> Worker<'s> {
         }
     }
 
-    /// Traces the paths that go on, shades where they arrive, and asks what now.
+    /// Traces the paths that go on, shades where they arrive, and asks what now. One thing at a time
+    /// for all: neighbours in time do not wait for each other.
     fn arrivals(&mut self) {
-        for i in 0..self.now.rays.len() {
-            let (ray, lane) = self.now.rays[i];
-            self.fly(ray, lane as usize);
-            let host = StageHost(self.stage);
-            self.states.arrive_n(&mut self.lanes, &[lane], &host, &mut self.next);
+        let stage = self.stage;
+        if stage.features.media || stage.features.open_surfaces {
+            for i in 0..self.now.rays.len() {
+                let (ray, lane) = self.now.rays[i];
+                self.fly_through(ray, lane as usize);
+            }
+        } else {
+            self.hits.clear();
+            for (ray, lane) in &self.now.rays {
+                let mut steps = 0;
+                let from = self.paths[*lane as usize].leaving();
+                let hit = stage.intersect(ray, from, &mut steps);
+                self.hits.push((hit, steps));
+            }
+            for ((ray, lane), (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
+                let path = &mut self.paths[*lane as usize];
+                let Lane { at, samples, .. } = &mut self.lanes[*lane as usize];
+                let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
+                let shader = Shader { stage, wants: self.wants, path, samples, scratch, flight };
+                match hit {
+                    Some(hit) => shader.surface(ray, hit, *steps, at),
+                    None => shader.escaped(ray, *steps, at),
+                }
+            }
         }
+        self.arrived.clear();
+        self.arrived.extend(self.now.rays.iter().map(|(_, lane)| *lane));
+        let host = StageHost(stage);
+        self.states.arrive_n(&mut self.lanes, &self.arrived, &host, &mut self.next);
     }
 
-    /// Follows a ray through media and open surfaces to where the path arrives.
-    fn fly(&mut self, mut ray: Ray, lane: usize) {
+    /// The same through media and open surfaces.
+    fn fly_through(&mut self, mut ray: Ray, lane: usize) {
         let stage = self.stage;
         let mut media = self.paths[lane].media_along(&ray, stage);
         let mut from = self.paths[lane].leaving();

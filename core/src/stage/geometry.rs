@@ -5,12 +5,12 @@ mod tests;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32};
 
 use super::closed::is_closed;
-use crate::accel::MeshBvh;
+use crate::accel::{Direction, MeshBvh};
 use crate::cast::narrow;
 use crate::object::Object;
 
@@ -70,14 +70,16 @@ impl Mesh {
     /// Where a ray that enters the box at `t_enter` is taken up: a diagonal before, so that little is
     /// lost by rounding, and triangles on the box's faces stay ahead however their distance is
     /// rounded.
-    fn start(&self, ray: &Ray, t_enter: f64) -> f64 {
-        (t_enter - self.diagonal / ray.d.abs().max_element()).max(0.0)
+    fn start(&self, direction: &Direction, t_enter: f64) -> f64 {
+        (t_enter - self.diagonal * direction.per_scale()).max(0.0)
     }
 
-    /// The local ray from `start` on in single precision about the mesh's centre.
-    fn narrow(&self, ray: &Ray, start: f64) -> (glam::Vec3, glam::Vec3, f32) {
+    /// The local ray from `start` on in single precision about the mesh's centre: its origin, and
+    /// its end along the scaled direction, rounded up.
+    fn narrow(&self, ray: &Ray, direction: &Direction, start: f64) -> (Vec3, f32) {
         let o = ray.at(start) - self.centre;
-        (o.as_vec3(), ray.d.as_vec3(), narrow(ray.t_max - start).next_up())
+        let t_max = (ray.t_max - start) * direction.scale();
+        (o.as_vec3(), narrow(t_max * (1.0 + f64::from(f32::EPSILON))))
     }
 
     /// The nearest hit. A ray that leaves this mesh may seem to meet a sliver beside the triangle
@@ -85,17 +87,18 @@ impl Mesh {
     fn intersect(
         &self,
         ray: &Ray,
+        direction: &Direction,
         t_enter: f64,
         from: Option<u32>,
         steps: &mut u32,
     ) -> Option<Hit> {
-        let mut start = self.start(ray, t_enter);
+        let mut start = self.start(direction, t_enter);
         for left in (0..MOST_BEHIND).rev() {
-            let (o, d, t_max) = self.narrow(ray, start);
-            let (hit, n) = self.bvh.intersect_counted(o, d, t_max, from);
+            let (o, t_max) = self.narrow(ray, direction, start);
+            let (hit, n) = self.bvh.intersect(o, direction, t_max, from);
             *steps += n;
             let hit = hit?;
-            let t = start + f64::from(hit.t);
+            let t = start + f64::from(hit.t) * direction.per_scale();
             if from.is_none() || left == 0 || !self.is_behind(hit.triangle, ray) {
                 let at = DVec2::new(f64::from(hit.b1), f64::from(hit.b2));
                 return (t <= ray.t_max).then_some(Hit { t, at, face: hit.triangle });
@@ -105,10 +108,16 @@ impl Mesh {
         None
     }
 
-    fn occluded(&self, ray: &Ray, t_enter: f64, from: Option<u32>) -> bool {
-        let (o, d, t_max) = self.narrow(ray, self.start(ray, t_enter));
-        self.bvh.occluded_from(o, d, t_max, from)
-            && (from.is_none() || self.intersect(ray, t_enter, from, &mut 0).is_some())
+    fn occluded(
+        &self,
+        ray: &Ray,
+        direction: &Direction,
+        t_enter: f64,
+        from: Option<u32>,
+    ) -> bool {
+        let (o, t_max) = self.narrow(ray, direction, self.start(direction, t_enter));
+        self.bvh.occluded(o, direction, t_max, from)
+            && (from.is_none() || self.intersect(ray, direction, t_enter, from, &mut 0).is_some())
     }
 
     /// Whether the plane of a triangle lies behind the origin of a ray, in double precision.
@@ -201,25 +210,35 @@ impl Geometry {
     }
 
     /// The nearest hit of a ray in the geometry's frame; it enters the box at `t_enter`, and leaves
-    /// the triangle `from` if it starts on one.
+    /// the triangle `from` if it starts on one. A mesh is missed by a ray whose direction cannot be
+    /// made ready.
     pub fn intersect(
         &self,
         ray: &Ray,
+        direction: Option<&Direction>,
         t_enter: f64,
         from: Option<u32>,
         steps: &mut u32,
     ) -> Option<Hit> {
         match self {
             Self::Analytic(object) => object.fixed().shape().intersect(ray),
-            Self::Mesh(mesh) => mesh.intersect(ray, t_enter, from, steps),
+            Self::Mesh(mesh) => mesh.intersect(ray, direction?, t_enter, from, steps),
         }
     }
 
     /// Whether anything is hit.
-    pub fn occluded(&self, ray: &Ray, t_enter: f64, from: Option<u32>) -> bool {
+    pub fn occluded(
+        &self,
+        ray: &Ray,
+        direction: Option<&Direction>,
+        t_enter: f64,
+        from: Option<u32>,
+    ) -> bool {
         match self {
             Self::Analytic(object) => object.fixed().shape().intersect(ray).is_some(),
-            Self::Mesh(mesh) => mesh.occluded(ray, t_enter, from),
+            Self::Mesh(mesh) => {
+                direction.is_some_and(|direction| mesh.occluded(ray, direction, t_enter, from))
+            }
         }
     }
 

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
-use luxel_sdk::kind::{Light, LightQuery, Output, Surface};
+use luxel_sdk::kind::{Light, LightQuery, Output, ShapeSample, Surface};
 use luxel_sdk::num::{Ray, Transform, offset_origin};
 use luxel_sdk::sampling::Alias;
 
+use super::placement::carried;
 use super::{Geometry, Placement, Stage};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
@@ -94,6 +95,11 @@ impl Lights {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.sources.is_empty()
+    }
+
+    /// Whether there are several to choose from.
+    pub fn is_choice(&self) -> bool {
+        self.sources.len() > 1
     }
 
     fn chance(&self, light: u32) -> f64 {
@@ -202,21 +208,29 @@ impl Stage {
     ) -> Option<FoundLight> {
         let placement = &self.placements[light.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
-        let (surface, pdf_area) = match (&**geometry, light.triangle) {
+        let mut sample = match (&**geometry, light.triangle) {
             (Geometry::Mesh(mesh), Some(triangle)) => {
                 let at = luxel_sdk::sampling::uniform_triangle(u);
                 let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                (placement.to_world(mesh.surface(triangle, at)), 1.0 / light.area)
+                let surface = mesh.surface(triangle, at);
+                // The world's density in the mesh's own frame.
+                let pdf = placement.area_scale(surface.ng) / light.area;
+                Some(ShapeSample { surface, pdf })
             }
             (Geometry::Analytic(shape), _) => {
                 let local = placement.point_to_local(from.p);
-                let sample = shape.fixed().shape().sample(Some(local), u)?;
-                let scale = placement.area_scale(sample.surface.ng);
-                (placement.to_world(sample.surface), sample.pdf / scale)
+                shape.fixed().shape().sample(Some(local), u)
             }
-            (Geometry::Mesh(_), None) => return None,
+            (Geometry::Mesh(_), None) => None,
         };
-        let ray = ray_between(from, &surface);
+        // By reference: a surface is large to copy.
+        let sample = sample.as_mut()?;
+        let pdf_area = sample.pdf / placement.area_scale(sample.surface.ng);
+        if let Some(transform) = &placement.transform {
+            sample.surface = carried(transform, &sample.surface);
+        }
+        let surface = &sample.surface;
+        let ray = ray_between(from, surface);
         let to = surface.p - from.p;
         let distance2 = to.length_squared();
         let cos_o = -surface.ng.dot(ray.d);

@@ -4,6 +4,7 @@ use glam::DVec3;
 use luxel_sdk::kind::{Hit, Surface};
 use luxel_sdk::num::{Ray, Transform};
 
+use crate::accel::Direction;
 use crate::scene::NodeId;
 
 /// What a placement's surface scatters with.
@@ -37,12 +38,20 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// A ray of the world in the geometry's frame; its parameter `t` stays.
-    #[inline]
-    pub fn to_local(&self, ray: &Ray) -> Ray {
+    /// Asks about a ray of the world, with its direction made ready, in the geometry's frame.
+    #[inline(always)]
+    pub fn with_local<T>(
+        &self,
+        ray: &Ray,
+        direction: Option<&Direction>,
+        ask: impl FnOnce(&Ray, Option<&Direction>) -> T,
+    ) -> T {
         match &self.transform {
-            Some(transform) => transform.inverse_ray(ray),
-            None => *ray,
+            Some(transform) => {
+                let local = transform.inverse_ray(ray);
+                ask(&local, Direction::new(local.d).as_ref())
+            }
+            None => ask(ray, direction),
         }
     }
 
@@ -55,25 +64,23 @@ impl Placement {
         }
     }
 
-    /// A surface point in the world.
-    #[inline]
-    pub fn to_world(&self, s: Surface) -> Surface {
-        let Some(transform) = &self.transform else { return s };
-        let (p, p_err) = transform.point_with_error(s.p, s.p_err);
-        Surface {
-            p,
-            p_err,
-            ng: transform.normal(s.ng).normalize(),
-            ns: transform.normal(s.ns).normalize(),
-            uv: s.uv,
-            dp_du: transform.vector(s.dp_du),
-            dp_dv: transform.vector(s.dp_dv),
-        }
-    }
-
     /// How much larger an area whose local unit normal is `ng` is in the world.
     pub fn area_scale(&self, ng: DVec3) -> f64 {
         self.transform.as_ref().map_or(1.0, |transform| transform.area_scale(ng))
+    }
+}
+
+/// A surface point in the world.
+pub(super) fn carried(transform: &Transform, s: &Surface) -> Surface {
+    let (p, p_err) = transform.point_with_error(s.p, s.p_err);
+    Surface {
+        p,
+        p_err,
+        ng: transform.normal(s.ng).normalize(),
+        ns: transform.normal(s.ns).normalize(),
+        uv: s.uv,
+        dp_du: transform.vector(s.dp_du),
+        dp_dv: transform.vector(s.dp_dv),
     }
 }
 

@@ -3,18 +3,26 @@
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::{Ray, sphere_roots};
 
+use crate::accel::Direction;
+
+use super::placement::carried;
 use super::{Leaving, MediumStack, SceneHit, Skin, Stage};
 
 impl Stage {
     /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
     pub fn intersect(&self, ray: &Ray, from: Option<Leaving>, steps: &mut u32) -> Option<SceneHit> {
+        let world = Direction::new(ray.d);
         let mut nearest = None;
+        let mut ray = *ray;
         self.top.intersect(ray.o, ray.d, ray.t_max, |index, t_enter, t_max| {
             *steps += 1;
+            ray.t_max = t_max;
             let placement = &self.placements[index as usize];
-            let local = placement.to_local(&Ray { t_max, ..*ray });
             let geometry = &self.geometries[placement.geometry as usize];
-            let hit = geometry.intersect(&local, t_enter, Leaving::face_on(from, index), steps)?;
+            let from = Leaving::face_on(from, index);
+            let hit = placement.with_local(&ray, world.as_ref(), |ray, direction| {
+                geometry.intersect(ray, direction, t_enter, from, steps)
+            })?;
             nearest = Some(SceneHit { placement: index, hit });
             Some(hit.t)
         });
@@ -23,12 +31,16 @@ impl Stage {
 
     /// Whether a surface that stops light lies along a ray that leaves `from`.
     pub fn occluded(&self, ray: &Ray, from: Option<Leaving>) -> bool {
-        self.top.any(ray.o, ray.d, ray.t_max, |index, t_enter, t_max| {
+        let world = Direction::new(ray.d);
+        // What is asked keeps its end, so the limit stays that of the ray.
+        self.top.any(ray.o, ray.d, ray.t_max, |index, t_enter, _| {
             let placement = &self.placements[index as usize];
-            let local = placement.to_local(&Ray { t_max, ..*ray });
             let geometry = &self.geometries[placement.geometry as usize];
+            let from = Leaving::face_on(from, index);
             placement.skin != Skin::Open
-                && geometry.occluded(&local, t_enter, Leaving::face_on(from, index))
+                && placement.with_local(ray, world.as_ref(), |ray, direction| {
+                    geometry.occluded(ray, direction, t_enter, from)
+                })
         })
     }
 
@@ -36,11 +48,13 @@ impl Stage {
     pub fn surface(&self, ray: &Ray, hit: &SceneHit) -> Surface {
         let placement = &self.placements[hit.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
-        let local = match (&**geometry, &placement.transform) {
-            (super::Geometry::Mesh(mesh), _) => mesh.surface(hit.hit.face, hit.hit.at),
-            (geometry, _) => geometry.surface(&placement.to_local(ray), &hit.hit),
-        };
-        placement.to_world(local)
+        match &placement.transform {
+            None => geometry.surface(ray, &hit.hit),
+            Some(transform) => {
+                let local = geometry.surface(&transform.inverse_ray(ray), &hit.hit);
+                carried(transform, &local)
+            }
+        }
     }
 
     /// The medium that a ray is in at its origin, and how far along the ray it may reach: what fills

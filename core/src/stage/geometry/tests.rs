@@ -10,7 +10,7 @@ use luxel_sdk::params::{Build, BuildContext, Fault, Shared, Table};
 use luxel_sdk::sampling::Rng;
 
 use super::Mesh;
-use crate::accel::MeshBvh;
+use crate::accel::{Direction, MeshBvh};
 use crate::diag::{SourceId, Span};
 use crate::files::MemoryFiles;
 use crate::object::{Builder, ColorMode, Objects};
@@ -120,7 +120,8 @@ fn rays_from_a_flat_quad_do_not_meet_it_whatever_its_place_and_shape() {
                 let d = direction(&mut rng, surface.ng);
                 let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
                 let ray = Ray { o, d, t_max: f64::INFINITY };
-                hits += u32::from(mesh.intersect(&ray, 0.0, Some(0), &mut 0).is_some());
+                let direction = Direction::new(d).unwrap();
+                hits += u32::from(mesh.intersect(&ray, &direction, 0.0, Some(0), &mut 0).is_some());
             }
             assert_eq!(hits, 0, "triangle {index} at scale {scale}");
         }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use luxel_sdk::Params;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Eval, Lobe, Material, Sample, reflect};
+use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample, reflect};
 use luxel_sdk::params::ComplexIor;
 use luxel_sdk::scattering::{Ggx, SMOOTH_ALPHA, conductor_reflectance, same_side};
 
@@ -75,8 +75,12 @@ impl Material for Conductor {
         Some(Sample { weight, wi, pdf, eta: 1.0, lobe: Lobe::NONE })
     }
 
-    fn is_delta(&self) -> bool {
-        self.is_smooth()
+    fn needs(&self) -> Needs {
+        match (self.is_smooth(), self.anisotropy == 0.0) {
+            (true, _) => Needs::NOTHING,
+            (false, true) => Needs::LIGHT,
+            (false, false) => Needs::LIGHT.with(Needs::TANGENT),
+        }
     }
 }
 

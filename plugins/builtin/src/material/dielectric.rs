@@ -3,7 +3,7 @@
 use glam::Vec3;
 use luxel_sdk::Params;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Eval, Lobe, Material, Sample};
+use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample};
 use luxel_sdk::scattering::{Ggx, SMOOTH_ALPHA, dielectric_reflectance, refract};
 
 use super::conductor::upright;
@@ -162,8 +162,8 @@ impl Material for Dielectric {
         (sample.pdf > 0.0).then_some(sample)
     }
 
-    fn is_delta(&self) -> bool {
-        self.is_smooth()
+    fn needs(&self) -> Needs {
+        if self.is_smooth() { Needs::CHOICE } else { Needs::LIGHT.with(Needs::CHOICE) }
     }
 }
 
@@ -227,7 +227,7 @@ mod tests {
         let nothing = glass(1.0, 0.5);
         let wo = Vec3::new(0.6, 0.0, 0.8);
         let sample = nothing.sample(wo, [0.2, 0.3, 0.0]).unwrap();
-        assert!((sample.wi + wo).length() < 1e-6 && nothing.is_delta());
+        assert!((sample.wi + wo).length() < 1e-6 && !nothing.needs().has(Needs::LIGHT));
         assert_eq!(
             (sample.weight.to_array(), sample.lobe.has(Lobe::TRANSMISSION)),
             ([1.0; 4], true)

@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 use luxel_sdk::Params;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Eval, Lobe, Material, Sample};
+use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample};
 use luxel_sdk::sampling::cosine_hemisphere;
 use luxel_sdk::scattering::same_side;
 
@@ -43,6 +43,10 @@ impl Material for Diffuse {
             eta: 1.0,
             lobe: Lobe::NONE,
         })
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::LIGHT
     }
 }
 

@@ -9,7 +9,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::Vec3;
 use luxel_sdk::Params;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Eval, Lobe, Material, Sample};
+use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample};
 use luxel_sdk::params::Maybe;
 use luxel_sdk::sampling::cosine_hemisphere;
 use luxel_sdk::scattering::{Ggx, SMOOTH_ALPHA, same_side};
@@ -143,8 +143,8 @@ impl Material for MetallicRoughness {
         (pdf > 0.0).then_some(sample)
     }
 
-    fn is_delta(&self) -> bool {
-        self.opacity() <= 0.0
+    fn needs(&self) -> Needs {
+        if self.opacity() > 0.0 { Needs::LIGHT.with(Needs::CHOICE) } else { Needs::CHOICE }
     }
 }
 
@@ -181,7 +181,7 @@ mod tests {
         let wo = Vec3::new(0.6, 0.0, 0.8);
         let through = leaf.sample(wo, [0.5, 0.5, 0.0]).unwrap();
         assert_eq!((through.wi, through.weight.to_array()), (-wo, [1.0; 4]));
-        assert!(leaf.is_delta() && through.lobe.has(Lobe::DELTA.with(Lobe::TRANSMISSION)));
+        assert!(!leaf.needs().has(Needs::LIGHT) && through.lobe.has(Lobe::DELTA.with(Lobe::TRANSMISSION)));
         leaf.alpha = 0.5;
         assert!(!leaf.sample(wo, [0.5, 0.5, 1.0f32.next_down()]).unwrap().lobe.has(Lobe::DELTA));
     }

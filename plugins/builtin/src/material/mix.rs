@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Eval, Lobe, Material, MaterialRef, Sample};
+use luxel_sdk::kind::{Eval, Lobe, Material, MaterialRef, Needs, Sample};
 
 /// Two materials side by side, too fine to see: at each point a share `weight` is `b`, the rest `a`.
 /// A mask texture as weight makes rust on steel, or labels on glass.
@@ -49,8 +49,8 @@ impl Material for Mix<'_> {
         (pdf > 0.0).then_some(Sample { weight: f / pdf, pdf, ..sample })
     }
 
-    fn is_delta(&self) -> bool {
-        self.a.is_delta() && self.b.is_delta()
+    fn needs(&self) -> Needs {
+        self.a.needs().with(self.b.needs()).with(Needs::CHOICE)
     }
 }
 
@@ -84,7 +84,7 @@ mod tests {
         let matt = Diffuse { reflectance: Spectrum::ONE };
         let clear = Dielectric { ior: Spectrum::splat(1.5), roughness: 0.0 };
         let mix = Mix { a: MaterialRef::new(&matt), b: MaterialRef::new(&clear), weight: 0.25 };
-        assert!(!mix.is_delta());
+        assert!(mix.needs().has(Needs::LIGHT));
         for i in 0..64u8 {
             let choice = (f32::from(i) + 0.5) / 64.0;
             let sample = mix.sample(Vec3::Z, [0.3, 0.4, choice]).unwrap();

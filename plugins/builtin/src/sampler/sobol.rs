@@ -2,7 +2,7 @@
 
 use luxel_sdk::Params;
 use luxel_sdk::kind::{SampleAt, Sampler};
-use luxel_sdk::sampling::{hash_combine, sobol_owen_1d, sobol_owen_2d};
+use luxel_sdk::sampling::{sobol_owen_1d, sobol_owen_2d};
 
 /// Well-spread numbers: each pair of dimensions is a scrambled (0, 2)-sequence (Owen 1997, Burley
 /// 2020), so that the error often falls faster than with independent ones. Powers of two are best.
@@ -31,12 +31,17 @@ impl Sampler for Sobol {
     }
 
     fn get_1d(&self, at: SampleAt) -> f32 {
-        sobol_owen_1d(at.index, hash_combine(at.stream, at.dimension))
+        sobol_owen_1d(at.index, seed(at))
     }
 
     fn get_2d(&self, at: SampleAt) -> [f32; 2] {
-        sobol_owen_2d(at.index, hash_combine(at.stream, at.dimension))
+        sobol_owen_2d(at.index, seed(at))
     }
+}
+
+/// A seed of its own for each dimension of each pixel.
+fn seed(at: SampleAt) -> u64 {
+    u64::from(at.stream) << 32 | u64::from(at.dimension)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 
 use glam::{DVec3, Vec2};
 
+use super::flags::flag_set;
 use super::{Output, Samples};
 use crate::color::Spectrum;
 use crate::num::{Ray, offset_origin};
@@ -24,18 +25,8 @@ impl Wants {
     pub const DIRECT: Self = Self(2);
     /// One scattering sample.
     pub const SCATTER: Self = Self(4);
-
-    /// Both sets together.
-    #[must_use]
-    pub const fn with(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Whether every flag of `other` is set.
-    pub const fn has(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
 }
+flag_set!(Wants);
 
 /// One path to be followed.
 #[derive(Clone, Copy, Debug)]

@@ -4,6 +4,7 @@ use std::ops::Deref;
 
 use glam::Vec3;
 
+use super::flags::flag_set;
 use crate::color::Spectrum;
 use crate::params::Fault;
 
@@ -36,18 +37,27 @@ impl Lobe {
     pub const TRANSMISSION: Self = Self(2);
     /// `wi` depends on the wavelength: it holds for the first lane alone.
     pub const DISPERSIVE: Self = Self(4);
-
-    /// Both sets together.
-    #[must_use]
-    pub const fn with(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Whether every flag of `other` is set.
-    pub const fn has(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
 }
+flag_set!(Lobe);
+
+/// What a material looks at: a set of flags.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Needs(pub u32);
+
+impl Needs {
+    /// Nothing but `wo` and two random numbers.
+    pub const NOTHING: Self = Self(0);
+    /// Light that is looked for: `eval` is not zero everywhere.
+    pub const LIGHT: Self = Self(1);
+    /// The third random number, to choose between lobes; 0 where it is not needed.
+    pub const CHOICE: Self = Self(2);
+    /// The direction of dp/du; where it is not needed, x is any direction along the surface.
+    pub const TANGENT: Self = Self(4);
+    /// All of them.
+    pub const ALL: Self = Self(7);
+}
+flag_set!(Needs);
 
 /// A sampled direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,9 +110,9 @@ pub trait Material: Send + Sync {
     /// A direction, `u` uniform in [0, 1)³. `None` when nothing is scattered.
     fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Sample>;
 
-    /// Whether `eval` is zero everywhere, so that light need not be looked for.
-    fn is_delta(&self) -> bool {
-        false
+    /// What it looks at here; the host leaves out the rest.
+    fn needs(&self) -> Needs {
+        Needs::ALL
     }
 }
 

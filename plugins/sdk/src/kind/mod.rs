@@ -2,6 +2,7 @@
 
 mod camera;
 mod filter;
+mod flags;
 mod importer;
 mod integrator;
 mod light;
@@ -20,7 +21,7 @@ pub use integrator::{
     Requests, Scatter, Shadow, Wants, mis,
 };
 pub use light::{Escaped, Light, LightForm, LightQuery, LightSample};
-pub use material::{Eval, Lobe, Material, MaterialRef, Sample, reflect};
+pub use material::{Eval, Lobe, Material, MaterialRef, Needs, Sample, reflect};
 pub use medium::{FreeFlight, Medium};
 pub use phase::{Phase, PhaseRef};
 pub use sampler::{SampleAt, Sampler, Samples};

@@ -67,6 +67,15 @@ impl<'a> Samples<'a> {
         u
     }
 
+    /// The next number where somebody looks at it, else 0: those after it are the same either way.
+    pub fn next_1d_if(&mut self, wanted: bool) -> f32 {
+        if wanted {
+            return self.next_1d();
+        }
+        self.at.dimension += 1;
+        0.0
+    }
+
     /// Where it stands.
     pub fn at(&self) -> SampleAt {
         self.at

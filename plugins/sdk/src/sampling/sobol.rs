@@ -10,8 +10,8 @@ use super::hash::{hash32, hash64, u32_to_unit};
 /// Any 2ᵏ points with indices from an aligned block have one in each interval of length 2⁻ᵏ.
 /// Sequences of different seeds are shuffled independently.
 #[inline]
-pub fn sobol_owen_1d(index: u32, seed: u32) -> f32 {
-    let (shuffle, scramble) = seeds(seed);
+pub fn sobol_owen_1d(index: u32, seed: u64) -> f32 {
+    let (shuffle, scramble) = halves(hash64(seed));
     let index = owen_reversed(index.reverse_bits(), shuffle).reverse_bits();
     u32_to_unit(owen_reversed(index, scramble).reverse_bits())
 }
@@ -22,21 +22,22 @@ pub fn sobol_owen_1d(index: u32, seed: u32) -> f32 {
 /// 2⁻ᵏ. The order within every block is shuffled by `seed`, so pairs with different seeds are
 /// independent; within a seed, consecutive indices are the samples of one pixel.
 #[inline]
-pub fn sobol_owen_2d(index: u32, seed: u32) -> [f32; 2] {
-    let (shuffle, scramble) = seeds(seed);
+pub fn sobol_owen_2d(index: u32, seed: u64) -> [f32; 2] {
+    let (shuffle, scramble) = halves(hash64(seed));
     let index = owen_reversed(index.reverse_bits(), shuffle).reverse_bits();
     // The first Sobol' dimension is the reversed index: already in the order that the hash wants.
-    let x = owen_reversed(index, scramble).reverse_bits();
-    let y = owen_reversed(pascal(index), hash32(scramble)).reverse_bits();
+    let x = owen_reversed(index, scramble);
+    let y = owen_reversed(pascal(index), hash32(scramble));
+    // One reversal for both swaps them.
+    let (y, x) = halves((u64::from(x) << 32 | u64::from(y)).reverse_bits());
     [u32_to_unit(x), u32_to_unit(y)]
 }
 
-/// Seeds of the order and of the first dimension.
-#[expect(clippy::cast_possible_truncation, reason = "the hash is split into its two halves")]
+/// The upper and the lower half.
+#[expect(clippy::cast_possible_truncation, reason = "the number is split into its two halves")]
 #[inline]
-const fn seeds(seed: u32) -> (u32, u32) {
-    let h = hash64(seed as u64);
-    (h as u32, (h >> 32) as u32)
+const fn halves(x: u64) -> (u32, u32) {
+    ((x >> 32) as u32, x as u32)
 }
 
 /// Owen's nested uniform scramble of a bit-reversed number: each bit is flipped by a hash of the
@@ -90,7 +91,7 @@ mod tests {
 
     #[test]
     fn aligned_blocks_fill_every_elementary_interval() {
-        for (k, block, seed) in [(2, 5, 1), (6, 0, 2), (8, 3, 3), (10, 77, 4), (12, 0, 5)] {
+        for (k, block, seed) in [(2, 5, 1u64), (6, 0, 2), (8, 3, 3), (10, 77, 4), (12, 0, 5)] {
             let n = 1usize << k;
             let first = block << k;
             for split in 0..=k {
@@ -113,7 +114,7 @@ mod tests {
     fn points_stay_below_one_at_any_index_and_seed() {
         let mut rng = Rng::new(9);
         for _ in 0..100_000 {
-            let [x, y] = sobol_owen_2d(rng.u32(), rng.u32());
+            let [x, y] = sobol_owen_2d(rng.u32(), u64::from(rng.u32()) << 32 | u64::from(rng.u32()));
             assert!((0.0..1.0).contains(&x) && (0.0..1.0).contains(&y));
         }
     }

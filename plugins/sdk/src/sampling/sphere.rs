@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_1_PI, TAU};
 
 use glam::Vec3;
 
-use super::disk::disk_polar;
+use super::disk::disk_concentric;
 
 /// Density of [`uniform_sphere`], sr⁻¹.
 pub const SPHERE_PDF: f32 = 0.25 * FRAC_1_PI;
@@ -20,9 +20,9 @@ pub const HEMISPHERE_PDF: f32 = 0.5 * FRAC_1_PI;
 /// Malley's method, PBR4 §A.5.3; z = √((1 − r)(1 + r)).
 #[inline]
 pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
-    let (r, phi) = disk_polar(u);
-    let (sin, cos) = phi.sin_cos();
-    Vec3::new(r * cos, r * sin, ((1.0 - r) * (1.0 + r)).sqrt())
+    let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
+    let r = a.abs().max(b.abs());
+    disk_concentric(u).extend(((1.0 - r) * (1.0 + r)).sqrt())
 }
 
 /// Density of [`cosine_hemisphere`] at a direction with cosine `cos` to +z; 0 below the horizon.

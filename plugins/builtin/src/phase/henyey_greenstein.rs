@@ -26,37 +26,40 @@ pub(crate) struct HenyeyGreenstein {
 }
 
 impl HenyeyGreenstein {
-    /// The phase function where 1 − cos of the turn is `versine` in [0, 2] and 1 + cos is `other`:
-    /// with both, nothing cancels for lobes as narrow as you like. PBR4 §11.3.1.
-    fn value(self, versine: f32, other: f32) -> f32 {
+    /// The phase function where 1 − cos of the angle to the middle of the lobe is `versine` in
+    /// [0, 2]: nothing cancels for lobes as narrow as you like. PBR4 §11.3.1.
+    fn value(self, versine: f32) -> f32 {
         let g = self.g.abs();
-        let nearest = if self.g < 0.0 { other } else { versine };
-        let base = (1.0 - g) * (1.0 - g) + 2.0 * g * nearest;
+        let base = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;
         SPHERE_PDF * (1.0 - g) * (1.0 + g) / (base * base.sqrt())
+    }
+
+    /// The middle of the lobe: ahead, or back for `g` below 0.
+    fn middle(self, wo: Vec3) -> Vec3 {
+        if self.g < 0.0 { wo } else { -wo }
     }
 }
 
 impl Phase for HenyeyGreenstein {
     fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
-        // The light travels along −wi and leaves along wo: 1 − cos is |wo + wi|²/2.
-        let versine = 0.5 * (wo + wi).length_squared();
-        let pdf = self.value(versine, 0.5 * (wo - wi).length_squared());
+        // 1 − cos is |wi − middle|²/2.
+        let pdf = self.value(0.5 * (wi - self.middle(wo)).length_squared());
         if pdf.is_finite() { Eval { f: Spectrum::splat(pdf), pdf } } else { Eval::ZERO }
     }
 
-    /// Inverts the distribution of cosines for 1 − cos, without the division by `g`:
-    /// (1 − g)²(1 − u)(2 + g + gξ)/(1 + gξ)² with ξ = 2u − 1.
+    /// Inverts the distribution of cosines to the lobe's middle for 1 − cos, without the division
+    /// by `g`, here its magnitude: (1 − g)²(1 − u)(2 + g + gξ)/(1 + gξ)² with ξ = 2u − 1.
     fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<Sample> {
-        let g = self.g;
+        let g = self.g.abs();
         let turned = 1.0 + g * (2.0 * u[0] - 1.0);
         let versine = (1.0 - g) * (1.0 - g) * (1.0 - u[0]) * (1.0 + g + turned) / (turned * turned);
         let versine = versine.clamp(0.0, 2.0);
         let sin_theta = (versine * (2.0 - versine)).sqrt();
         let (sin, cos) = (TAU * u[1]).sin_cos();
-        let ahead = Frame::from_z(-wo);
-        let wi = ahead.to_world(Vec3::new(sin_theta * cos, sin_theta * sin, 1.0 - versine));
+        let around = Frame::from_z(self.middle(wo));
+        let wi = around.to_world(Vec3::new(sin_theta * cos, sin_theta * sin, 1.0 - versine));
         let wi = wi.normalize();
-        let pdf = self.value(versine, 2.0 - versine);
+        let pdf = self.value(versine);
         let sample = Sample { weight: Spectrum::ONE, wi, pdf, eta: 1.0, lobe: Lobe::NONE };
         (wi.is_finite() && pdf > 0.0).then_some(sample)
     }
@@ -115,8 +118,7 @@ mod tests {
                     let s = (f64::from(i) + 0.5) / f64::from(n);
                     #[expect(clippy::cast_possible_truncation, reason = "test input")]
                     let x = (2.0 * s.powi(4)) as f32;
-                    let p = if g > 0.0 { phase.value(x, 2.0 - x) } else { phase.value(2.0 - x, x) };
-                    f64::from(p) * f64::from(TAU) * 8.0 * s.powi(3) / f64::from(n)
+                    f64::from(phase.value(x)) * f64::from(TAU) * 8.0 * s.powi(3) / f64::from(n)
                 })
                 .sum();
             assert!((sum - 1.0).abs() < 1e-5, "{g} {sum}");

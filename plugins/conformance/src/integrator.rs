@@ -1,0 +1,213 @@
+//! Integrators: closed furnaces, a scene against the suite's own path tracer, and the same picture
+//! on any number of threads.
+
+use std::num::NonZeroUsize;
+
+use glam::{DAffine3, DVec3, UVec2};
+use luxel_core::diag::{SourceId, Span};
+use luxel_core::film::Film;
+use luxel_core::render::{Control, Options, render};
+use luxel_core::scene::{Color, NodeId, Placed, Scene, Target, Value};
+use luxel_core::stage::{Stage, build};
+use luxel_sdk::kind::{Kind, Output, Wants};
+use luxel_sdk::params::{Dimension, Unit};
+
+use crate::report::Judge;
+use crate::statistics::deviation;
+use crate::subject::Subject;
+use crate::sweep::{Bench, Given, Set, node};
+use crate::values::LOOK;
+
+/// Side of the pictures, pixels, and of the tiles that are compared.
+const SIDE: u32 = 24;
+const TILE: u32 = 6;
+
+/// Samples of a pixel.
+const SPP: u32 = 32;
+
+/// Albedo of the furnace.
+const ALBEDO: f64 = 0.5;
+
+/// What f32 rounds in a sum of a few dozen terms.
+const ROUNDING: f64 = 1e-5;
+
+pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
+    let name = subject.class.name;
+    for (i, (set, _)) in subject.usual().enumerate().take(12) {
+        let makes_light = set.ask(|resolved| {
+            let integrator = resolved.integrator();
+            integrator.wants().has(Wants::EMISSION) && integrator.output() == Output::Value
+        });
+        let Some(stage) = stage(subject.bench, &open_scene, name, &set.given) else {
+            judge.skip("pictures", "the suite's scene cannot be built with it");
+            return;
+        };
+        let one = picture(&stage, 1, 1);
+        is_deterministic(&stage, &one, set, judge);
+        let bad = one.bad_samples();
+        judge.holds("samples are finite", bad == 0, || format!("{}: {bad}", set.label));
+        if !makes_light {
+            judge.skip("light", "it shows something else");
+            continue;
+        }
+        if let Some(reference) = self::stage(subject.bench, &open_scene, "reference_walk", &vec![])
+        {
+            agrees(&one, &picture(&reference, 2, 2), i == 0, set, judge);
+        }
+        if let Some(closed) = self::stage(subject.bench, &furnace, name, &set.given) {
+            is_a_sum_of_bounces(&picture(&closed, 3, 2), i == 0, set, judge);
+        }
+    }
+}
+
+fn picture(stage: &Stage, seed: u32, threads: usize) -> Film {
+    let threads = NonZeroUsize::new(threads);
+    let options = Options { spp: Some(SPP), seed: Some(seed), crop: None, threads };
+    render(stage, &options, &Control::default()).0
+}
+
+/// A scene around an integrator; `None` if it cannot be built.
+fn stage(
+    bench: &Bench,
+    fill: &dyn Fn(&mut Scene),
+    integrator: &str,
+    given: &Given,
+) -> Option<Stage> {
+    let mut scene = bench.scene();
+    fill(&mut scene);
+    let side = f64::from(SIDE);
+    let size = ("resolution", Value::Vector(vec![side, side]));
+    scene.film = Some(node(&mut scene, Kind::Film, "rgb", &[size]));
+    scene.sampler = Some(node(&mut scene, Kind::Sampler, "reference_numbers", &[]));
+    scene.filter = Some(node(&mut scene, Kind::Filter, "reference_block", &[]));
+    scene.integrator = Some(node(&mut scene, Kind::Integrator, integrator, given));
+    Some(build(&scene, &bench.registry, bench.files(), None).ok()?.stage)
+}
+
+fn place(scene: &mut Scene, id: NodeId, at: DVec3) {
+    let transform = DAffine3::from_translation(at);
+    let span = Span::new(SourceId(0), 0, 0);
+    scene.root.items.push(Placed { target: Target::Node(id), transform, material: None, span });
+}
+
+fn plain(x: f64) -> Value {
+    Value::Color(Color::Constant(x), Dimension::NONE)
+}
+
+fn number(x: f64, unit: &str) -> Value {
+    let dimension = Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension);
+    Value::Number(x, dimension)
+}
+
+fn matt(scene: &mut Scene, albedo: f64) -> Value {
+    Value::Node(node(scene, Kind::Material, "reference_matt", &[("reflectance", plain(albedo))]))
+}
+
+fn ball(scene: &mut Scene, radius: f64, material: Option<Value>) -> NodeId {
+    let mut given = vec![("radius", number(radius, "m"))];
+    given.extend(material.map(|material| ("material", material)));
+    node(scene, Kind::Shape, "reference_ball", &given)
+}
+
+/// A matt ball and a lamp, each convex, under a sky: what arrives was scattered once at most.
+fn open_scene(scene: &mut Scene) {
+    let look = ("look", Value::Look(LOOK));
+    scene.camera = Some(node(scene, Kind::Camera, "reference_pinhole", &[look]));
+    let material = matt(scene, 0.6);
+    let body = ball(scene, 1.0, Some(material));
+    place(scene, body, DVec3::new(-0.4, 0.0, 0.0));
+    let shape = ball(scene, 0.4, None);
+    let radiance = ("radiance", number(4.0, "W/m^2/sr"));
+    let spectrum = ("spectrum", Value::Color(Color::Rgb([1.0; 3]), Dimension::NONE));
+    let given = [("shape", Value::Node(shape)), radiance.clone(), spectrum.clone()];
+    let lamp = node(scene, Kind::Light, "reference_lamp", &given);
+    place(scene, lamp, DVec3::new(1.3, 0.9, 0.5));
+    let dim = ("radiance", number(0.3, "W/m^2/sr"));
+    let sky = node(scene, Kind::Light, "reference_sky", &[dim, spectrum]);
+    place(scene, sky, DVec3::ZERO);
+}
+
+/// The inside of a ball that shines with radiance 1 and reflects: everywhere Σ albedoᵏ.
+fn furnace(scene: &mut Scene) {
+    let look = ("look", Value::Look(luxel_sdk::params::Look { from: DVec3::X, ..LOOK }));
+    scene.camera = Some(node(scene, Kind::Camera, "reference_pinhole", &[look]));
+    let material = matt(scene, ALBEDO);
+    let shape = ball(scene, 5.0, Some(material));
+    let white = Value::Color(Color::Rgb([1.0; 3]), Dimension::NONE);
+    let given = [
+        ("shape", Value::Node(shape)),
+        ("scale", number(1.0, "")),
+        ("spectrum", white),
+        ("inside", Value::Bool(true)),
+    ];
+    let lamp = node(scene, Kind::Light, "reference_lamp", &given);
+    place(scene, lamp, DVec3::ZERO);
+}
+
+/// The same seed gives the same bits on one thread and on several, and again.
+fn is_deterministic(stage: &Stage, one: &Film, set: &Set, judge: &mut Judge) {
+    for threads in [1, 3] {
+        let other = picture(stage, 1, threads);
+        let same = one.pixels().zip(other.pixels()).all(|((_, a), (_, b))| {
+            a.n == b.n && a.mean.to_array().map(f64::to_bits) == b.mean.to_array().map(f64::to_bits)
+        });
+        judge.holds("same bits on all threads", same, || format!("{}: {threads}", set.label));
+    }
+}
+
+/// Sum over a tile of means and of squared standard errors.
+fn tile(film: &Film, tile: UVec2) -> (f64, f64) {
+    let mut out = (0.0, 0.0);
+    for i in 0..TILE * TILE {
+        let pixel = film.pixel(tile * TILE + UVec2::new(i % TILE, i / TILE));
+        let error = pixel.standard_error().y;
+        out = (out.0 + pixel.mean.y, out.1 + error * error);
+    }
+    out
+}
+
+/// Tile by tile against the suite's own path tracer (Welch 1947). With other parameters than its
+/// defaults an integrator may leave light out, but not add any.
+fn agrees(found: &Film, truth: &Film, nominal: bool, set: &Set, judge: &mut Judge) {
+    let tiles = SIDE / TILE;
+    for i in 0..tiles * tiles {
+        let at = UVec2::new(i % tiles, i / tiles);
+        let ((a, va), (b, vb)) = (tile(found, at), tile(truth, at));
+        let sigma = (va + vb).sqrt().max(b / f64::from(TILE * TILE * SPP));
+        let shown = || format!("{}: tile {at}: {a} instead of {b}", set.label);
+        if nominal {
+            let z = deviation(a - b, ROUNDING * b, sigma);
+            judge.statistic("the picture is right", z, shown);
+        }
+        let z = deviation((a - b).max(0.0), ROUNDING * b, sigma);
+        judge.statistic("no light is added", z, shown);
+    }
+}
+
+/// What a furnace of albedo ½ shows: all bounces, or the first few where the integrator says so by
+/// leaving the others out entirely.
+fn is_a_sum_of_bounces(film: &Film, nominal: bool, set: &Set, judge: &mut Judge) {
+    let (mean, error) = film.mean();
+    // By its defaults it tells all bounces or the first; parameters may cut it off anywhere.
+    let known = if nominal { 1..2 } else { 0..16 };
+    let sums = known.map(|n| (1.0 - ALBEDO.powi(n + 1)) / (1.0 - ALBEDO));
+    let all = (1.0 - ALBEDO).recip();
+    let sigma = error.y.max(mean.y / f64::from(SIDE * SIDE * SPP));
+    let z = sums
+        .chain([all])
+        .map(|sum| deviation(mean.y - sum, ROUNDING * sum, sigma))
+        .fold(f64::INFINITY, f64::min);
+    judge.statistic("a furnace is a sum of bounces", z, || {
+        format!("{}: {} ± {}", set.label, mean.y, error.y)
+    });
+    // Every place of it looks alike.
+    let tiles = SIDE / TILE;
+    for i in 0..tiles * tiles {
+        let at = UVec2::new(i % tiles, i / tiles);
+        let (sum, variance) = tile(film, at);
+        let area = f64::from(TILE * TILE);
+        let sigma = (variance / area / area + sigma * sigma).sqrt();
+        let z = deviation(sum / area - mean.y, ROUNDING, sigma);
+        judge.statistic("a furnace is even", z, || format!("{}: tile {at}", set.label));
+    }
+}

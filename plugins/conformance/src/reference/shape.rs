@@ -1,0 +1,78 @@
+//! A sphere about the origin.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DVec2, DVec3};
+use luxel_sdk::Params;
+use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::num::{Bounds3, Ray, gamma64, sphere_roots};
+use luxel_sdk::params::Fault;
+
+/// A sphere about the origin, sampled evenly over its area.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+pub(crate) struct Ball {
+    /// From the middle to the surface.
+    #[param(default = 1.0, unit = "m", min = 1e-9, max = 1e9)]
+    pub(crate) radius: f64,
+}
+
+impl Ball {
+    pub(crate) fn surface_at(self, n: DVec3) -> Surface {
+        let p = n * self.radius;
+        // At a pole any direction along the surface will do.
+        let east = DVec3::new(-n.y, n.x, 0.0);
+        let dp_du = if east.length_squared() > 0.0 { east } else { DVec3::X } * self.radius * TAU;
+        let turn = (n.y.atan2(n.x) / TAU).rem_euclid(1.0);
+        let uv = DVec2::new(turn, n.z.clamp(-1.0, 1.0).acos() / PI);
+        let dp_dv = -n.cross(dp_du);
+        // As for any sphere: the point, and what the next ray's roots round.
+        let p_err = p.abs() * gamma64(12);
+        Surface { p, p_err, ng: n, ns: n, uv, dp_du, dp_dv }
+    }
+}
+
+impl Shape for Ball {
+    fn check(&self) -> Result<(), Fault> {
+        if self.radius > 0.0 {
+            return Ok(());
+        }
+        Err(Fault::range("radius", "a radius exceeds 0"))
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        let r = self.radius * (1.0 + gamma64(8));
+        Bounds3 { min: DVec3::splat(-r), max: DVec3::splat(r) }
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let (t0, t1) = sphere_roots(ray.o, ray.d, self.radius)?;
+        let t = if t0 > 0.0 { t0 } else { t1 };
+        (t > 0.0 && t <= ray.t_max).then_some(Hit { t, at: DVec2::ZERO, face: 0 })
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.surface_at(ray.at(hit.t).normalize_or(DVec3::Y))
+    }
+
+    fn area(&self) -> f64 {
+        4.0 * PI * self.radius * self.radius
+    }
+
+    fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let [u, v] = u.map(f64::from);
+        let z = 1.0 - 2.0 * u;
+        let (sin, cos) = (TAU * v).sin_cos();
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        let surface = self.surface_at(DVec3::new(r * cos, r * sin, z).normalize());
+        Some(ShapeSample { surface, pdf: self.area().recip() })
+    }
+
+    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
+        self.area().recip()
+    }
+
+    fn is_closed(&self) -> bool {
+        true
+    }
+}

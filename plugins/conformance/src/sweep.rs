@@ -1,0 +1,305 @@
+//! Parameter sets: from a class's schema to objects.
+//!
+//! Each class is tried at its defaults, with each parameter at the ends of its range and at every
+//! choice, with textures, and at random places of all ranges at once.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec2};
+use luxel_core::diag::{Diagnostic, SourceId, Span};
+use luxel_core::files::MemoryFiles;
+use luxel_core::object::{Builder, ColorMode, Object, Objects, Resolved, Scratch, Site};
+use luxel_core::registry::Registry;
+use luxel_core::scene::{Argument, Color, Node, NodeId, Scene, Value};
+use luxel_sdk::abi::Class;
+use luxel_sdk::color::{Palette, Wavelengths};
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::Param;
+use luxel_sdk::sampling::Rng;
+
+use crate::values::Level;
+use crate::{files, reference, values};
+
+/// Parameters that are given, by name.
+pub(crate) type Given = Vec<(&'static str, Value)>;
+
+/// Where objects are made: the registry under test with the suite's own plugins beside it.
+pub(crate) struct Bench {
+    pub(crate) registry: Registry,
+    files: MemoryFiles,
+    /// Holds what parameters may refer to, and nothing else.
+    props: Scene,
+}
+
+/// An object and how it was made.
+pub(crate) struct Set {
+    pub(crate) label: String,
+    pub(crate) given: Given,
+    pub(crate) object: Arc<Object>,
+    pub(crate) level: Level,
+    pub(crate) mode: ColorMode,
+}
+
+impl Set {
+    /// Asks the object at one place, for as long as the closure runs.
+    pub(crate) fn ask<R>(&self, f: impl FnOnce(Resolved<'_>) -> R) -> R {
+        let palette = match self.mode {
+            ColorMode::Rgb => Palette::rgb(),
+            ColorMode::Spectral => Palette::new(Wavelengths::sample(0.37)),
+        };
+        let scratch = Scratch::default();
+        let site =
+            Site { p: DVec3::new(0.3, -0.2, 0.7), uv: Vec2::new(0.3, 0.7), palette: &palette };
+        f(self.object.resolve(&site, &scratch))
+    }
+
+    /// A number that was given, or the default.
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+        let given = self.given.iter().find(|(given, _)| *given == name);
+        match given.map(|(_, value)| value) {
+            Some(Value::Number(x, _) | Value::Color(Color::Constant(x), _)) => Some(*x),
+            Some(_) => None,
+            None => {
+                let params = self.object.class().params;
+                let param = params.iter().find(|param| param.name == name)?;
+                values::preset(param)
+            }
+        }
+    }
+}
+
+impl Bench {
+    /// A bench around a registry. Where a name is taken, the registry's own plugin stays.
+    pub(crate) fn new(registry: &Registry) -> Self {
+        let mut registry = registry.clone();
+        for class in reference::CLASSES {
+            // A conflict leaves the plugin that was there.
+            registry.add("conformance", &[*class]).ok();
+        }
+        let mut props = Scene::default();
+        for (kind, class) in PROPS {
+            node(&mut props, kind, class, &[]);
+        }
+        Self { registry, files: files::memory(), props }
+    }
+
+    /// A scene that holds the props and nothing else.
+    pub(crate) fn scene(&self) -> Scene {
+        self.props.clone()
+    }
+
+    /// Files that scenes may read.
+    pub(crate) fn files(&self) -> &MemoryFiles {
+        &self.files
+    }
+
+    /// An object of a class.
+    pub(crate) fn build(
+        &self,
+        class: &Class,
+        given: &Given,
+        mode: ColorMode,
+    ) -> Result<Arc<Object>, Vec<Diagnostic>> {
+        let mut scene = self.props.clone();
+        let id = node(&mut scene, class.kind, class.name, given);
+        let before = Objects::new();
+        let mut builder = Builder::new(&self.registry, &scene, &self.files, mode, &before);
+        let object = builder.build(id);
+        object.ok_or(builder.diagnostics)
+    }
+
+    /// The sets of a class, the first of which is nominal; or why none can be made.
+    pub(crate) fn sets(&self, class: &Class, seed: u64, n: usize) -> Result<Vec<Set>, String> {
+        let nominal = self.nominal(class)?;
+        let mut sweep = Sweep { bench: self, class, nominal, sets: vec![] };
+        sweep.push("as by default", Level::Usual, sweep.nominal.clone());
+        for param in own(class) {
+            sweep.extremes(param);
+        }
+        sweep.textures();
+        sweep.spectra();
+        let mut rng = Rng::new(seed);
+        for i in 0..n {
+            sweep.random(&mut rng, &format!("random {i}"), i % 3 == 2);
+        }
+        Ok(sweep.sets)
+    }
+
+    /// The least that an object of the class needs.
+    fn nominal(&self, class: &Class) -> Result<Given, String> {
+        let mut why = String::new();
+        for member in 0..4 {
+            for optional in [false, true] {
+                for file in files::NAMES {
+                    let given = least(class, member, optional, file);
+                    match self.build(class, &given, ColorMode::Rgb) {
+                        Ok(_) => return Ok(given),
+                        Err(found) if why.is_empty() => why = said(&found),
+                        Err(_) => {}
+                    }
+                }
+            }
+        }
+        Err(format!("no parameters are known with which it can be made: {why}"))
+    }
+}
+
+/// Kinds and classes of the props, in the order of their nodes.
+const PROPS: [(Kind, &str); 4] = [
+    (Kind::Texture, "reference_gradient"),
+    (Kind::Material, "reference_matt"),
+    (Kind::Phase, "isotropic"),
+    (Kind::Shape, "reference_ball"),
+];
+
+/// The prop of a kind.
+pub(crate) fn prop(kind: Kind) -> Option<Value> {
+    let index = PROPS.iter().position(|(known, _)| *known == kind)?;
+    Some(Value::Node(NodeId(u32::try_from(index).expect("there are four"))))
+}
+
+/// What was found wrong, in one line.
+pub(crate) fn said(found: &[Diagnostic]) -> String {
+    let messages: Vec<&str> = found.iter().map(|d| d.message.as_str()).collect();
+    messages.join("; ")
+}
+
+/// Adds a node whose arguments each have a place of their own.
+pub(crate) fn node(
+    scene: &mut Scene,
+    kind: Kind,
+    class: &str,
+    given: &[(&'static str, Value)],
+) -> NodeId {
+    let span = |i: usize| Span::new(SourceId(0), i, i + 1);
+    let arguments = given.iter().enumerate();
+    let params = arguments
+        .map(|(i, (name, value))| Argument { name, value: value.clone(), span: span(i + 1) })
+        .collect();
+    let (class, label, overrides) = (class.into(), None, vec![]);
+    let (span, hash) = (span(0), [0; 32]);
+    scene.add(Node { kind, class, label, params, overrides, span, hash })
+}
+
+/// The parameters that the class itself reads.
+pub(crate) fn own(class: &Class) -> impl Iterator<Item = &'static Param> + use<> {
+    class.params.iter().filter(|param| param.offset != usize::MAX && param.deprecated.is_empty())
+}
+
+/// What is required; of each group the given member; and the optional numbers, if wanted.
+fn least(class: &Class, member: usize, optional: bool, file: &str) -> Given {
+    let mut given = vec![];
+    for (i, param) in own(class).enumerate() {
+        let wanted = if param.group.is_empty() {
+            let absent = values::preset(param).is_none();
+            param.required || (absent && values::is_needed(param)) || (optional && absent)
+        } else {
+            let members: Vec<&str> =
+                own(class).filter(|p| p.group == param.group).map(|p| p.name).collect();
+            members[member.min(members.len() - 1)] == param.name
+        };
+        if wanted && let Some(value) = values::sensible(param, i, file, prop) {
+            given.push((param.name, value));
+        }
+    }
+    given
+}
+
+struct Sweep<'a> {
+    bench: &'a Bench,
+    class: &'a Class,
+    nominal: Given,
+    sets: Vec<Set>,
+}
+
+impl Sweep<'_> {
+    /// Adds a set if it can be made. Combinations that the plugin refuses are no sets.
+    fn push(&mut self, label: impl Into<String>, level: Level, given: Given) -> bool {
+        self.push_in(label, level, given, ColorMode::Rgb)
+    }
+
+    fn push_in(
+        &mut self,
+        label: impl Into<String>,
+        level: Level,
+        given: Given,
+        mode: ColorMode,
+    ) -> bool {
+        let label = label.into();
+        let Ok(object) = self.bench.build(self.class, &given, mode) else { return false };
+        self.sets.push(Set { label, given, object, level, mode });
+        true
+    }
+
+    /// The nominal set with one parameter changed; the others of its group go.
+    fn with(&self, param: &Param, value: Value) -> Given {
+        let rival = |name: &str| {
+            let same = |p: &&Param| p.name == name && p.group == param.group;
+            !param.group.is_empty() && own(self.class).any(|p| same(&p))
+        };
+        let mut given = self.nominal.clone();
+        given.retain(|(name, _)| *name != param.name && !rival(name));
+        given.push((param.name, value));
+        given
+    }
+
+    fn extremes(&mut self, param: &'static Param) {
+        for (value, level) in values::extremes(param) {
+            let label = format!("{} = {}", param.name, values::show(&value));
+            let given = self.with(param, value);
+            self.push(label, level, given);
+        }
+    }
+
+    /// Every parameter that may be textured, so.
+    fn textures(&mut self) {
+        let mut given = self.nominal.clone();
+        let mut any = false;
+        for param in own(self.class).filter(|param| param.textured && param.group.is_empty()) {
+            given.retain(|(name, _)| *name != param.name);
+            given.extend(prop(Kind::Texture).map(|value| (param.name, value)));
+            any = true;
+        }
+        if any {
+            self.push("textured", Level::Usual, given);
+        }
+    }
+
+    /// Measured indices of refraction, at wavelengths.
+    fn spectra(&mut self) {
+        for param in own(self.class) {
+            if let Some(value) = values::measured(param) {
+                let mut given = self.with(param, value);
+                given.retain(|(name, _)| *name != "k");
+                self.push_in("measured", Level::Usual, given, ColorMode::Spectral);
+            }
+        }
+    }
+
+    /// Everything anywhere in its range; with `bright`, colours at the end of theirs. Some
+    /// combinations are refused, so that several are tried.
+    fn random(&mut self, rng: &mut Rng, label: &str, bright: bool) {
+        for _ in 0..8 {
+            let mut given = self.nominal.clone();
+            for param in own(self.class) {
+                let at = given.iter().position(|(name, _)| *name == param.name);
+                let stays = at.is_none() && !param.group.is_empty();
+                if stays || (rng.f32() < 0.3 && !bright) {
+                    continue;
+                }
+                let Some(value) = values::draw(param, rng, bright) else { continue };
+                match at {
+                    Some(at) => given[at].1 = value,
+                    None => given.push((param.name, value)),
+                }
+            }
+            let shown: Vec<String> = given
+                .iter()
+                .map(|(name, value)| format!("{name} = {}", values::show(value)))
+                .collect();
+            if self.push(format!("{label}: {}", shown.join(", ")), Level::Usual, given) {
+                return;
+            }
+        }
+    }
+}

@@ -13,7 +13,8 @@ const ARROWS: [(&str, &[&str]); 7] = [
     ("lang", &["luxel-core", "luxel-sdk"]),
     ("core", &["luxel-sdk"]),
     ("plugins/builtin", &["luxel-sdk"]),
-    ("plugins/conformance", &["luxel-core", "luxel-sdk"]),
+    // The built-ins are for its tests alone.
+    ("plugins/conformance", &["luxel-core", "luxel-sdk", "luxel-builtin"]),
     ("plugins/sdk", &["luxel-sdk-derive"]),
     ("plugins/sdk-derive", &[]),
 ];

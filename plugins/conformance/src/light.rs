@@ -252,6 +252,7 @@ impl View<'_> {
             let density = found.pdf >= 0.0 && found.pdf.is_finite();
             judge.holds("finite and not negative", legal && density, || self.at());
         }
+        self.facing(rng, judge);
         if deltas > 0 {
             self.amount_is(Quantity::Illuminance, &irradiance, judge);
         } else {
@@ -272,6 +273,31 @@ impl View<'_> {
         let disk = PI * SCENE * SCENE;
         (power.mean, power.m2) = (power.mean * disk, power.m2 * disk * disk);
         self.power_is(&power, judge);
+    }
+
+    /// Irradiance of a surface that faces the light, and radiance, against what the scene said.
+    fn facing(&self, rng: &mut Rng, judge: &mut Judge) {
+        let mut ask = || self.light.sample(&LightQuery { p: DVec3::ZERO, u: rng.pair() });
+        let found: Vec<LightSample> = (0..self.n).filter_map(|_| ask()).collect();
+        let flow = |s: &LightSample| luminance(s.le) / f64::from(s.pdf);
+        let to: DVec3 = found.iter().map(|s| s.wi * flow(s)).sum();
+        let to = to.normalize_or_zero();
+        let mut irradiance = Moments::default();
+        for s in &found {
+            irradiance.push(flow(s) * s.wi.dot(to).max(0.0));
+        }
+        // The direction is that of the samples' mean: off by an angle whose cosine is second order.
+        if irradiance.standard_error() < 0.01 * irradiance.mean {
+            self.amount_is(Quantity::Illuminance, &irradiance, judge);
+        }
+        let brightest = found.iter().filter(|s| !s.delta).map(|s| luminance(s.le));
+        let brightest = brightest.fold(0.0, f64::max);
+        if let Some((Quantity::Radiance, value)) = self.amount().filter(|_| self.is_grey())
+            && brightest > 0.0
+        {
+            let off = (brightest / value - 1.0).abs();
+            judge.within("radiance is what was asked", off, ROUNDING, || self.at());
+        }
     }
 
     /// A sample against what a ray along it finds.

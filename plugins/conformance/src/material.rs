@@ -218,6 +218,9 @@ fn scatters(
             format!("{}: lane {lane}: {}", at(), moments.mean)
         });
     }
+    if !m.needs().has(Needs::LIGHT) {
+        refracts(m, wo, rng, judge, &at);
+    }
     if deltas == n {
         let black = (0..200).all(|_| m.eval(wo, uniform_sphere(rng.pair())) == Eval::ZERO);
         judge.holds("eval is 0 for a delta", black, at);
@@ -227,11 +230,34 @@ fn scatters(
         let s = m.sample(wo, u).filter(|s| !s.lobe.has(Lobe::DELTA))?;
         Some(Drawn { wi: s.wi.as_dvec3(), weight: f64::from(s.weight.mean()) })
     };
+    // Quadrature looks into every corner: what it sees there must be legal too.
+    let illegal = std::cell::Cell::new(None);
     let eval = |wi: glam::DVec3| {
         let eval = m.eval(wo, wi.as_vec3());
+        if !is_legal(eval) {
+            illegal.set(Some((wi, eval)));
+        }
         [f64::from(eval.pdf), f64::from(eval.f.mean())]
     };
     Lobes { sample: &sample, eval: &eval }.judge(judge, rng, n, &at);
+    judge.holds("finite and not negative", illegal.get().is_none(), || {
+        format!("{}: {:?}", at(), illegal.get())
+    });
+}
+
+/// A specular surface bends light by the relative index that it states (Snell's law).
+fn refracts(m: &dyn Material, wo: Vec3, rng: &mut Rng, judge: &mut Judge, at: &dyn Fn() -> String) {
+    for _ in 0..64 {
+        let [u, v] = rng.pair();
+        let Some(s) = m.sample(wo, [u, v, rng.f32()]) else { continue };
+        let off = f64::from((wo.truncate() + s.wi.truncate() * s.eta).length());
+        // A dozen roundings of lengths up to eta. Reflection and straight passage fulfil it as well.
+        let mirror = f64::from((wo + s.wi).truncate().length());
+        let off = if s.lobe.has(Lobe::TRANSMISSION) { off } else { mirror };
+        judge.within("Snell's law", off / f64::from(s.eta.max(1.0)), 4e-6, || {
+            format!("{}: {s:?}", at())
+        });
+    }
 }
 
 /// Energy over energy per lane; where the direction holds for the first lane alone, only that counts.

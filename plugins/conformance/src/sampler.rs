@@ -82,6 +82,19 @@ fn is_even(sampler: &dyn Sampler, set: &Set, n: u32, judge: &mut Judge) {
             &mut (0..n).map(|k| [sampler.get_2d(at(k))[1], sampler.get_1d(next(at(k), 2))]),
         );
     }
+    // What a path takes one after the other, and what it takes many dimensions later.
+    let (_, at) = WALKS[0];
+    for apart in [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 32, 64] {
+        let later = |k| next(at(k), apart);
+        let one = &mut (0..n).map(|k| [sampler.get_1d(at(k)), sampler.get_2d(later(k))[0]]);
+        test("dimensions are independent", one);
+        let other = &mut (0..n).map(|k| [sampler.get_1d(at(k)), sampler.get_2d(later(k))[1]]);
+        test("dimensions are independent", other);
+        if apart > 1 {
+            let second = |k| [sampler.get_2d(at(k))[1], sampler.get_2d(later(k))[0]];
+            test("dimensions are independent", &mut (0..n).map(second));
+        }
+    }
     for k in 0..2000 {
         for (_, at) in WALKS {
             let (one, two) = (sampler.get_1d(at(k)), sampler.get_2d(at(k)));

@@ -145,17 +145,19 @@ impl Bench {
 }
 
 /// Kinds and classes of the props, in the order of their nodes.
-const PROPS: [(Kind, &str); 4] = [
+const PROPS: [(Kind, &str); 5] = [
     (Kind::Texture, "reference_gradient"),
     (Kind::Material, "reference_matt"),
+    (Kind::Material, "reference_veil"),
     (Kind::Phase, "isotropic"),
     (Kind::Shape, "reference_ball"),
 ];
 
-/// The prop of a kind.
-pub(crate) fn prop(kind: Kind) -> Option<Value> {
-    let index = PROPS.iter().position(|(known, _)| *known == kind)?;
-    Some(Value::Node(NodeId(u32::try_from(index).expect("there are four"))))
+/// The prop of a kind; where there are several, `index` tells which, so that two children differ.
+fn prop(kind: Kind, index: usize) -> Option<Value> {
+    let props: Vec<u32> = (0..).zip(PROPS).filter(|(_, p)| p.0 == kind).map(|(i, _)| i).collect();
+    let id = props.get(index % props.len().max(1))?;
+    Some(Value::Node(NodeId(*id)))
 }
 
 /// What was found wrong, in one line.
@@ -257,7 +259,7 @@ impl Sweep<'_> {
         let mut any = false;
         for param in own(self.class).filter(|param| param.textured && param.group.is_empty()) {
             given.retain(|(name, _)| *name != param.name);
-            given.extend(prop(Kind::Texture).map(|value| (param.name, value)));
+            given.extend(prop(Kind::Texture, 0).map(|value| (param.name, value)));
             any = true;
         }
         if any {

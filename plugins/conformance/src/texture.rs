@@ -92,6 +92,15 @@ fn keeps_lanes(texture: &dyn Texture, rng: &mut Rng, set: &Set, judge: &mut Judg
         return;
     }
     for _ in 0..100 {
+        let mut at = point(rng);
+        at.lambda.lambda = Spectrum::splat(at.lambda.lambda.lane(1));
+        let value = texture.eval(&at);
+        let off = (value - Spectrum::splat(value.lane(0))).0.abs().max_element();
+        judge.within("equal wavelengths, equal lanes", f64::from(off), ROUNDING, || {
+            format!("{}: {at:?}", set.label)
+        });
+    }
+    for _ in 0..100 {
         let at = point(rng);
         let mut other = at;
         let [a, b, c, d] = at.lambda.lambda.to_array();

@@ -95,7 +95,7 @@ pub(crate) fn sensible(
     param: &Param,
     index: usize,
     file: &str,
-    prop: impl Fn(Kind) -> Option<Value>,
+    prop: impl Fn(Kind, usize) -> Option<Value>,
 ) -> Option<Value> {
     if is_number(param) {
         return Some(number(param, typical(param)));
@@ -115,7 +115,7 @@ pub(crate) fn sensible(
         Type::File => Some(Value::Path(PathBuf::from(file))),
         Type::Table => Some(Value::Table(Arc::from([0.0; 9]))),
         Type::Look => Some(Value::Look(LOOK)),
-        Type::Object(kind) => prop(kind),
+        Type::Object(kind) => prop(kind, index),
         _ => None,
     }
 }

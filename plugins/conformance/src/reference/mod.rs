@@ -15,13 +15,14 @@ pub(crate) use field::{Even, Fog, Gradient};
 pub(crate) use light::{Lamp, Sky};
 pub(crate) use settings::{Block, Numbers, Pinhole, Walk, Way};
 pub(crate) use shape::Ball;
-pub(crate) use surface::Matt;
+pub(crate) use surface::{Matt, Veil};
 
 /// All of them. A medium without a phase function asks the registry for `isotropic`, so that one
 /// has the name that the host expects.
 pub const CLASSES: &[Class] = &[
     Class::shape::<Ball>("reference_ball"),
     Class::material::<Matt>("reference_matt"),
+    Class::material::<Veil>("reference_veil"),
     Class::texture::<Gradient>("reference_gradient"),
     Class::light::<Sky>("reference_sky"),
     Class::light::<Lamp>("reference_lamp"),

@@ -25,7 +25,7 @@ impl Ball {
         let dp_du = if east.length_squared() > 0.0 { east } else { DVec3::X } * self.radius * TAU;
         let turn = (n.y.atan2(n.x) / TAU).rem_euclid(1.0);
         let uv = DVec2::new(turn, n.z.clamp(-1.0, 1.0).acos() / PI);
-        let dp_dv = -n.cross(dp_du);
+        let dp_dv = n.cross(dp_du.normalize()) * (-PI * self.radius);
         // As for any sphere: the point, and what the next ray's roots round.
         let p_err = p.abs() * gamma64(12);
         Surface { p, p_err, ng: n, ns: n, uv, dp_du, dp_dv }

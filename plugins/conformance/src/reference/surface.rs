@@ -42,3 +42,27 @@ impl Material for Matt {
         Needs::LIGHT
     }
 }
+
+/// Lets light through, and spreads it alike over the other side.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+pub(crate) struct Veil {
+    /// Fraction of light that passes.
+    #[param(default = 0.8, role = reflectance, textured)]
+    pub(crate) transmittance: Spectrum,
+}
+
+impl Material for Veil {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
+        Matt { reflectance: self.transmittance }.eval(wo, -wi)
+    }
+
+    fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Sample> {
+        let s = Matt { reflectance: self.transmittance }.sample(wo, u)?;
+        Some(Sample { wi: -s.wi, lobe: Lobe::TRANSMISSION, ..s })
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::LIGHT
+    }
+}

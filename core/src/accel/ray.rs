@@ -28,20 +28,26 @@ pub struct Direction {
     per_scale: f64,
 }
 
+/// Exponents of normal numbers whose inverse is normal too, where they stand in an f64.
+const EXPONENTS: std::ops::Range<u64> = 1 << 52..2046 << 52;
+
 impl Direction {
-    /// `None` for a direction that is zero, not finite, or within 2² of the ends of f64's range.
+    /// `None` for a direction whose largest component is zero, not finite, or so large or small that
+    /// its inverse is not a normal number. With a NaN beside it no triangle is hit.
     #[inline]
     pub fn new(d: DVec3) -> Option<Self> {
         let a = d.abs();
         // Without branches: which axis it is cannot be foreseen.
-        let of_yz = a.y.max(a.z);
-        let largest = a.x.max(of_yz);
+        let of_yz = if a.y > a.z { a.y } else { a.z };
+        let largest = if a.x > of_yz { a.x } else { of_yz };
         let kz = (1 + usize::from(a.y <= a.z)) * usize::from(a.x <= of_yz);
-        let scale = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
-        let per_scale = 1.0 / scale;
-        if !(per_scale.is_normal() && d.is_finite()) {
+        let exponent = largest.to_bits() & f64::INFINITY.to_bits();
+        if !EXPONENTS.contains(&exponent) {
             return None;
         }
+        // Powers of two, whose exponents add up to that of 1.
+        let scale = f64::from_bits(exponent);
+        let per_scale = f64::from_bits(2 * 1f64.to_bits() - exponent);
         let d = (d * per_scale).as_vec3();
         let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][kz];
         let rz = 1.0 / d[kz];

@@ -158,13 +158,17 @@ struct Numbers {
 
 impl Numbers {
     fn draw(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
+        if wants.has(Wants::DIRECT) && wants.has(Wants::SCATTER) {
+            let choice = samples.next_1d_if(stage.lights.is_choice());
+            let [[u, v], scatter] = samples.next_2d_pair();
+            return Self { light: [choice, u, v], scatter };
+        }
         let mut numbers = Self { light: [0.0; 3], scatter: [0.0; 2] };
         if wants.has(Wants::DIRECT) {
             let choice = samples.next_1d_if(stage.lights.is_choice());
             let [u, v] = samples.next_2d();
             numbers.light = [choice, u, v];
-        }
-        if wants.has(Wants::SCATTER) {
+        } else if wants.has(Wants::SCATTER) {
             numbers.scatter = samples.next_2d();
         }
         numbers

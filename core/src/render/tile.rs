@@ -131,8 +131,8 @@ impl<'s> Worker<'s> {
         let stream = hash_combine(hash_combine(self.seed, pixel.x), pixel.y);
         let source = self.stage.sampler.fixed().sampler();
         let mut samples = Samples::new(source, SampleAt { stream, index, dimension: 0 });
-        let [dx, dy] = self.stage.filter.fixed().filter().sample(samples.next_2d());
-        let lens = samples.next_2d();
+        let [in_pixel, lens] = samples.next_2d_pair();
+        let [dx, dy] = self.stage.filter.fixed().filter().sample(in_pixel);
         let u = samples.next_1d_if(self.stage.mode == ColorMode::Spectral);
         let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
         let p = pixel.as_dvec2() + 0.5 + offset;

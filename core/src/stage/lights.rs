@@ -337,5 +337,5 @@ fn ray_between(from: &Origin, to: &Surface) -> Ray {
     let end = offset_origin(to.p, to.p_err, to.ng, -d);
     let d = end - o;
     let distance = d.length();
-    Ray { o, d: d / distance, t_max: distance }
+    Ray { o, d: d * distance.recip(), t_max: distance }
 }

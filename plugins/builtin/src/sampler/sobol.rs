@@ -2,7 +2,7 @@
 
 use luxel_sdk::Params;
 use luxel_sdk::kind::{SampleAt, Sampler};
-use luxel_sdk::sampling::{sobol_owen_1d, sobol_owen_2d};
+use luxel_sdk::sampling::{sobol_owen_1d, sobol_owen_2d, sobol_owen_2d_pair};
 
 /// Well-spread numbers: each pair of dimensions is a scrambled (0, 2)-sequence (Owen 1997, Burley
 /// 2020), so that the error often falls faster than with independent ones. Powers of two are best.
@@ -36,6 +36,10 @@ impl Sampler for Sobol {
 
     fn get_2d(&self, at: SampleAt) -> [f32; 2] {
         sobol_owen_2d(at.index, seed(at))
+    }
+
+    fn get_2d_pair(&self, at: SampleAt) -> [[f32; 2]; 2] {
+        sobol_owen_2d_pair(at.index, [seed(at), seed(at) + 2])
     }
 }
 

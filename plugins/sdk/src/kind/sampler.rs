@@ -38,6 +38,12 @@ pub trait Sampler: Send + Sync {
 
     /// Two numbers that are spread over the square together.
     fn get_2d(&self, at: SampleAt) -> [f32; 2];
+
+    /// Two such pairs, the second two dimensions on: the same numbers as two calls, perhaps sooner.
+    fn get_2d_pair(&self, at: SampleAt) -> [[f32; 2]; 2] {
+        let next = SampleAt { dimension: at.dimension + 2, ..at };
+        [self.get_2d(at), self.get_2d(next)]
+    }
 }
 
 /// The numbers of one path, taken in order.
@@ -74,6 +80,13 @@ impl<'a> Samples<'a> {
         }
         self.at.dimension += 1;
         0.0
+    }
+
+    /// The next four numbers, as two calls of `next_2d` would give them.
+    pub fn next_2d_pair(&mut self) -> [[f32; 2]; 2] {
+        let u = self.source.get_2d_pair(self.at);
+        self.at.dimension += 4;
+        u
     }
 
     /// Where it stands.

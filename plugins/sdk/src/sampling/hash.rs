@@ -40,14 +40,14 @@ pub const fn hash_combine64(seed: u64, x: u64) -> u64 {
     hash64(seed ^ hash64(x))
 }
 
-/// The f32 of [0, 1) at or just below `x` · 2⁻³².
+/// An f32 of [0, 1) at or just below `x` · 2⁻³²: exact below 2⁻⁸, a multiple of 2⁻²⁴ above.
 ///
-/// Rounds down, so that a point never leaves its elementary interval and 1 is never reached;
-/// small results keep all 32 bits, so the lowest above zero is 2⁻³².
+/// Rounds down, so that a point never leaves its elementary interval and 1 is never reached; the
+/// lowest above zero is 2⁻³².
 #[inline]
 pub const fn u32_to_unit(x: u32) -> f32 {
-    let beyond_24_bits = 0xff_u32.unbounded_shr(x.leading_zeros());
-    (x & !beyond_24_bits) as f32 / (1u64 << 32) as f32
+    let kept = if x < 1 << 24 { x } else { x & !0xff };
+    kept as f32 * (1.0 / (1u64 << 32) as f32)
 }
 
 /// A multiple of 2⁻⁵³ in [0, 1) from the upper 53 bits of `x`.
@@ -94,7 +94,9 @@ mod tests {
             let x = hash32(i);
             let exact = f64::from(x) / 4_294_967_296.0;
             let found = f64::from(u32_to_unit(x));
-            assert!(found <= exact && exact - found <= exact * f64::from(f32::EPSILON));
+            assert!(found <= exact && exact - found < 1.0 / 16_777_216.0);
+            let small = f64::from(u32_to_unit(x >> 8));
+            assert!((small - f64::from(x >> 8) / 4_294_967_296.0).abs() <= 0.0);
         }
     }
 }

@@ -32,14 +32,6 @@ impl Patch {
         (PI * v * (2.0 - v)) as f32
     }
 
-    /// Irradiance of a surface that faces it, from what the scene gave.
-    fn irradiance(self, emission: &Emission) -> Spectrum {
-        match emission.quantity {
-            Quantity::Radiance => emission.spectrum * self.projected(),
-            _ => emission.spectrum,
-        }
-    }
-
     /// Radiance; for a delta the irradiance.
     fn le(self, emission: &Emission) -> Spectrum {
         let is_radiance = emission.quantity == Quantity::Radiance;
@@ -49,10 +41,12 @@ impl Patch {
         emission.spectrum / self.projected()
     }
 
-    /// Power through a disk of the given radius (m), W.
+    /// Power through a sphere of the given radius (m), W: from each direction through a disk.
     #[expect(clippy::cast_possible_truncation, reason = "rounds; only guides sampling")]
     pub(super) fn power(self, emission: &Emission, radius: f64) -> f32 {
-        self.irradiance(emission).mean() * (PI * radius * radius) as f32
+        let versine = self.versine();
+        let solid_angle = if versine > 0.0 { 2.0 * PI * versine } else { 1.0 };
+        self.le(emission).mean() * (solid_angle * PI * radius * radius) as f32
     }
 
     /// Light from a direction of the patch.

@@ -90,7 +90,8 @@ fn meets_in_focus(
     let Some(other) = nearest(a, c) else { return };
     // The angle between the rays magnifies what rounds.
     let sine = a.d.cross(b.d).length().min(a.d.cross(c.d).length());
-    let rounds = 1e-13 * (distance + a.o.length() + 1.0) / sine;
+    let far = a.o.length() + b.o.length() + c.o.length();
+    let rounds = 1e-13 * (distance + far + 1.0) / sine;
     let off = (met - other).length();
     judge.within("rays of a pixel meet in focus", off / rounds, 1.0, at);
     let off = camera.project(raster, met).map_or(f64::INFINITY, |back| (back - p).length());

@@ -186,7 +186,15 @@ pub(crate) fn draw(param: &Param, rng: &mut Rng, bright: bool) -> Option<Value> 
         return Some(number(param, anywhere(param, rng)));
     }
     if let Some(n) = lanes(param.ty) {
-        return Some(Value::Vector((0..n).map(|_| anywhere(param, rng)).collect()));
+        // Of one order of magnitude: needles and plates say little of a shape.
+        let scale = anywhere(param, rng).abs();
+        let signed = param.min < 0.0;
+        let mut part = || {
+            let sign = if signed && rng.f32() < 0.5 { -1.0 } else { 1.0 };
+            sign * scale * (0.2 + 0.8 * rng.f64())
+        };
+        let vector = (0..n).map(|_| part().clamp(param.min, param.max)).collect();
+        return Some(Value::Vector(vector));
     }
     match param.ty {
         Type::Bool => Some(Value::Bool(rng.f32() < 0.5)),

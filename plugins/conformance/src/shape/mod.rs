@@ -7,7 +7,7 @@ use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Moments, Ray, offset_origin};
 use luxel_sdk::sampling::{Rng, uniform_sphere};
 
-use self::sampling::Sampling;
+use self::sampling::{LEAST_LINES, Sampling, effective};
 use crate::report::Judge;
 use crate::statistics::{deviation, mean_error};
 use crate::subject::Subject;
@@ -337,6 +337,10 @@ impl<'a> Look<'a> {
         let mut area = Moments::default();
         for (_, found) in &chords {
             area.push(found.len() as f64 * per_area);
+        }
+        // Few lines meet a needle: what they say of it is not normal.
+        if effective(&area) < LEAST_LINES {
+            return;
         }
         let z = deviation(area.mean - self.shape.area(), 0.0, mean_error(&area));
         judge.statistic("area by lines", z, || {

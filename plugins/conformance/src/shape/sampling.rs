@@ -19,7 +19,12 @@ pub(super) struct Sampling<'a> {
 }
 
 /// Lines that must count, in effect, for a mean over them to be normal.
-const LEAST_LINES: f64 = 2500.0;
+pub(super) const LEAST_LINES: f64 = 1000.0;
+
+/// How many equal terms would give a mean of this relative error; 0 where all are 0.
+pub(super) fn effective(m: &Moments) -> f64 {
+    if m.mean > 0.0 { (m.mean / m.standard_error()).powi(2) } else { 0.0 }
+}
 
 /// Functions of a surface whose means tell samplings apart.
 const FEATURES: usize = 1 + 3 + 6 + 3 + 8;
@@ -94,7 +99,7 @@ impl Sampling<'_> {
                 self.one(s, sample.pdf, judge, &at);
             }
         }
-        let counted = by_lines[0].standard_error().powi(-2).min(f64::from(n));
+        let counted = effective(&by_lines[0]).min(f64::from(n));
         let smooth = |k: usize| k < FEATURES - 8;
         for (k, (lines, samples)) in by_lines.iter().zip(&by_samples).enumerate() {
             let sigma = mean_error(lines).hypot(mean_error(samples));
@@ -102,7 +107,7 @@ impl Sampling<'_> {
                 if k == 0 { "pdf integrates to P(sample)" } else { "samples follow their pdf" };
             // Of a part that few lines meet, or few samples, the mean is not normal.
             let share = if smooth(k) { 1.0 } else { lines.mean.max(samples.mean) };
-            if counted < LEAST_LINES || share * counted < 100.0 {
+            if counted < LEAST_LINES || share * counted < LEAST_LINES / 10.0 {
                 continue;
             }
             let z = deviation(lines.mean - samples.mean, 1e-9, sigma);
@@ -179,8 +184,8 @@ impl Sampling<'_> {
         }
         let cone = std::f64::consts::TAU * versine;
         let sigma = (mean_error(&hits) * cone).hypot(mean_error(found));
-        // The mean of few large samples is not normal.
-        if found.standard_error() > 0.05 * found.mean {
+        // The mean of few large samples, or of few rays that hit, is not normal.
+        if effective(found).min(hits.mean * f64::from(n)) < LEAST_LINES / 2.0 {
             return;
         }
         let z = deviation(hits.mean * cone - found.mean, 1e-9, sigma);

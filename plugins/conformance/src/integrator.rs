@@ -22,8 +22,9 @@ use crate::values::LOOK;
 const SIDE: u32 = 24;
 const TILE: u32 = 6;
 
-/// Samples of a pixel.
+/// Samples of a pixel, and for an integrator as it is by default: 1 % of its light shows.
 const SPP: u32 = 32;
+const MANY: u32 = 512;
 
 /// Albedo of the furnace.
 const ALBEDO: f64 = 0.5;
@@ -42,7 +43,8 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
             judge.skip("pictures", "the suite's scene cannot be built with it");
             return;
         };
-        let one = picture(&stage, 1, 1);
+        let spp = if i == 0 { MANY } else { SPP };
+        let one = picture(&stage, 1, 1, SPP);
         is_deterministic(&stage, &one, set, judge);
         let bad = one.bad_samples();
         judge.holds("samples are finite", bad == 0, || format!("{}: {bad}", set.label));
@@ -52,17 +54,19 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
         }
         if let Some(reference) = self::stage(subject.bench, &open_scene, "reference_walk", &vec![])
         {
-            agrees(&one, &picture(&reference, 2, 2), i == 0, set, judge);
+            let [found, truth] =
+                [(&stage, 4), (&reference, 2)].map(|(s, seed)| picture(s, seed, 2, spp));
+            agrees(&found, &truth, i == 0, set, judge);
         }
         if let Some(closed) = self::stage(subject.bench, &furnace, name, &set.given) {
-            is_a_sum_of_bounces(&picture(&closed, 3, 2), i == 0, set, judge);
+            is_a_sum_of_bounces(&picture(&closed, 3, 2, spp), i == 0, set, judge);
         }
     }
 }
 
-fn picture(stage: &Stage, seed: u32, threads: usize) -> Film {
+fn picture(stage: &Stage, seed: u32, threads: usize, spp: u32) -> Film {
     let threads = NonZeroUsize::new(threads);
-    let options = Options { spp: Some(SPP), seed: Some(seed), crop: None, threads };
+    let options = Options { spp: Some(spp), seed: Some(seed), crop: None, threads };
     render(stage, &options, &Control::default()).0
 }
 
@@ -147,7 +151,7 @@ fn furnace(scene: &mut Scene) {
 /// The same seed gives the same bits on one thread and on several, and again.
 fn is_deterministic(stage: &Stage, one: &Film, set: &Set, judge: &mut Judge) {
     for threads in [1, 3] {
-        let other = picture(stage, 1, threads);
+        let other = picture(stage, 1, threads, SPP);
         let same = one.pixels().zip(other.pixels()).all(|((_, a), (_, b))| {
             a.n == b.n && a.mean.to_array().map(f64::to_bits) == b.mean.to_array().map(f64::to_bits)
         });
@@ -169,6 +173,13 @@ fn tile(film: &Film, tile: UVec2) -> (f64, f64) {
 /// Tile by tile against the suite's own path tracer (Welch 1947). With other parameters than its
 /// defaults an integrator may leave light out, but not add any.
 fn agrees(found: &Film, truth: &Film, nominal: bool, set: &Set, judge: &mut Judge) {
+    let ((a, ea), (b, eb)) = (found.mean(), truth.mean());
+    if nominal {
+        let z = deviation(a.y - b.y, ROUNDING * b.y, ea.y.hypot(eb.y));
+        judge.statistic("the picture is right", z, || {
+            format!("{}: {} instead of {}", set.label, a.y, b.y)
+        });
+    }
     let tiles = SIDE / TILE;
     for i in 0..tiles * tiles {
         let at = UVec2::new(i % tiles, i / tiles);

@@ -221,7 +221,7 @@ impl View<'_> {
         let Some(far) = self.light.sample(&query) else { return };
         // At the edge of a cone, rounding decides.
         let ratio = luminance(far.le) * 9.0 / luminance(near.le);
-        let dim = luminance(near.le) < 1e-3 * f64::from(self.light.power(AREA, SCENE));
+        let dim = !(luminance(near.le) > 1e-3 * f64::from(self.light.power(AREA, SCENE)));
         if !dim {
             judge.within("falls with the square", (ratio - 1.0).abs(), 1e-4, || {
                 format!("{}: along {d}: {ratio}", self.at())

@@ -117,13 +117,7 @@ impl MeshBvh {
 
     /// True if anything is hit with 0 < t <= `t_max`; the same answer as that of `intersect`, sooner.
     #[inline]
-    pub fn occluded(
-        &self,
-        o: Vec3,
-        direction: &Direction,
-        t_max: f32,
-        skip: Option<u32>,
-    ) -> bool {
+    pub fn occluded(&self, o: Vec3, direction: &Direction, t_max: f32, skip: Option<u32>) -> bool {
         self.trace::<true>(o, direction, t_max, skip).0.is_some()
     }
 

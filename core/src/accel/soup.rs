@@ -102,9 +102,8 @@ impl MeshBvh {
     }
 
     pub(super) fn is_hit(&self, o: Vec3, d: Vec3, t_max: f32) -> bool {
-        Direction::new(d.as_dvec3()).is_some_and(|direction| {
-            self.occluded(o, &direction, scaled(t_max, &direction), None)
-        })
+        Direction::new(d.as_dvec3())
+            .is_some_and(|direction| self.occluded(o, &direction, scaled(t_max, &direction), None))
     }
 }
 

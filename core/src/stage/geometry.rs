@@ -108,13 +108,7 @@ impl Mesh {
         None
     }
 
-    fn occluded(
-        &self,
-        ray: &Ray,
-        direction: &Direction,
-        t_enter: f64,
-        from: Option<u32>,
-    ) -> bool {
+    fn occluded(&self, ray: &Ray, direction: &Direction, t_enter: f64, from: Option<u32>) -> bool {
         let (o, t_max) = self.narrow(ray, direction, self.start(direction, t_enter));
         self.bvh.occluded(o, direction, t_max, from)
             && (from.is_none() || self.intersect(ray, direction, t_enter, from, &mut 0).is_some())

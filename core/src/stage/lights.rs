@@ -97,14 +97,36 @@ impl Lights {
         self.sources.is_empty()
     }
 
-    /// Whether there are several to choose from.
+    /// Whether there are several to choose from: sources, or triangles of a source.
     pub fn is_choice(&self) -> bool {
-        self.sources.len() > 1
+        let single = |source: &LightSource| match source {
+            LightSource::Surface { triangles, .. } => triangles.is_none(),
+            LightSource::Free { .. } => true,
+        };
+        !matches!(self.sources.as_slice(), [source] if single(source))
     }
 
     fn chance(&self, light: u32) -> f64 {
         self.choice.as_ref().map_or(0.0, |choice| choice.pmf(light as usize))
     }
+
+    /// A source and its chance; `None` if there is none. `u` uniform in [0, 1).
+    fn choose(&self, u: f32) -> Option<Chosen<'_>> {
+        let choice = self.choice.as_ref()?;
+        if let [source] = self.sources.as_slice() {
+            return Some(Chosen { source, chance: 1.0, u: f64::from(u) });
+        }
+        let drawn = choice.sample(f64::from(u));
+        Some(Chosen { source: &self.sources[drawn.index], chance: narrow(drawn.pmf), u: drawn.u })
+    }
+}
+
+/// A source that was chosen.
+struct Chosen<'a> {
+    source: &'a LightSource,
+    chance: f32,
+    /// What is left of the random number.
+    u: f64,
 }
 
 /// Places along each texture coordinate at which a light's power is asked for.
@@ -148,10 +170,9 @@ impl Stage {
         u: [f32; 3],
         scratch: &Scratch,
     ) -> Option<FoundLight> {
-        let chosen = self.lights.choice.as_ref()?.sample(f64::from(u[0]));
-        let source = &self.lights.sources[chosen.index];
+        let chosen = self.lights.choose(u[0])?;
         let u = [u[1], u[2]];
-        match source {
+        let found = match chosen.source {
             LightSource::Surface { object, placement, area, triangles } => {
                 let triangle =
                     triangles.as_ref().map(|choice| index(choice.sample(chosen.u).index));
@@ -163,8 +184,8 @@ impl Stage {
                 let light = object.resolve(&at, scratch).light();
                 self.sample_free(light, transform.as_deref(), from, palette, u)
             }
-        }
-        .map(|found| found.with_chance(narrow(chosen.pmf)))
+        }?;
+        Some(found.with_chance(chosen.chance))
     }
 
     fn sample_free(

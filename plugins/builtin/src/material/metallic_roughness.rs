@@ -181,7 +181,10 @@ mod tests {
         let wo = Vec3::new(0.6, 0.0, 0.8);
         let through = leaf.sample(wo, [0.5, 0.5, 0.0]).unwrap();
         assert_eq!((through.wi, through.weight.to_array()), (-wo, [1.0; 4]));
-        assert!(!leaf.needs().has(Needs::LIGHT) && through.lobe.has(Lobe::DELTA.with(Lobe::TRANSMISSION)));
+        assert!(
+            !leaf.needs().has(Needs::LIGHT)
+                && through.lobe.has(Lobe::DELTA.with(Lobe::TRANSMISSION))
+        );
         leaf.alpha = 0.5;
         assert!(!leaf.sample(wo, [0.5, 0.5, 1.0f32.next_down()]).unwrap().lobe.has(Lobe::DELTA));
     }

@@ -95,8 +95,7 @@ mod tests {
             let x = f32::from(i) / 1000.0 * FRAC_PI_4;
             let (sin, cos) = sin_cos_octant(x);
             let exact = f64::from(x).sin_cos();
-            let worst =
-                (f64::from(sin) - exact.0).abs().max((f64::from(cos) - exact.1).abs());
+            let worst = (f64::from(sin) - exact.0).abs().max((f64::from(cos) - exact.1).abs());
             assert!(worst <= f64::from(f32::EPSILON), "{x}: {worst:e}");
         }
     }

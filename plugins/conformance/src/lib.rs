@@ -28,6 +28,7 @@ mod values;
 
 pub mod mutants;
 
+use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use luxel_core::registry::Registry;
@@ -42,6 +43,9 @@ use sweep::Bench;
 pub use reference::CLASSES as REFERENCE_CLASSES;
 pub use report::{Report, Row, Verdict};
 pub use statistics::SIGNIFICANCE;
+
+/// The check that is skipped when no object of a class can be made.
+const UNMADE: &str = "parameters";
 
 /// How much is tried.
 #[derive(Clone, Copy, Debug)]
@@ -65,10 +69,34 @@ impl Default for Options {
 ///
 /// A panic of a plugin is caught and fails it; an endless loop is not.
 pub fn run(registry: &Registry, pick: impl Fn(&Class) -> bool, options: &Options) -> Report {
+    run_while(registry, pick, options, |_| ControlFlow::Continue(()))
+}
+
+/// A class is about to be judged.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// The class.
+    pub class: Class,
+    /// Classes that have been judged.
+    pub done: usize,
+    /// Classes that were chosen, this one among them.
+    pub total: usize,
+}
+
+/// As [`run`], asking `next` before each class; `Break` ends the run with what was judged so far.
+pub fn run_while(
+    registry: &Registry,
+    pick: impl Fn(&Class) -> bool,
+    options: &Options,
+    mut next: impl FnMut(Step) -> ControlFlow<()>,
+) -> Report {
     let bench = Bench::new(registry);
     let classes = registry.all().map(|entry| entry.class);
-    let chosen = classes.filter(|class| class.kind != Kind::Film && pick(class));
-    Report::of(chosen.map(|class| judge(&bench, class, options)).collect())
+    let chosen: Vec<_> = classes.filter(|c| c.kind != Kind::Film && pick(c)).collect();
+    let total = chosen.len();
+    let steps = chosen.into_iter().enumerate().map(|(done, class)| Step { class, done, total });
+    let wanted = steps.map_while(|step| next(step).is_continue().then_some(step.class));
+    Report::of(wanted.map(|class| judge(&bench, class, options)).collect())
 }
 
 fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
@@ -82,7 +110,7 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
                 let subject = Subject { bench, class, sets, options: *options };
                 by_kind(&subject, &mut judge);
             }
-            Err(why) => judge.skip("parameters", why),
+            Err(why) => judge.skip(UNMADE, why),
         }
     }));
     let message = caught.err().map(|payload| {
@@ -107,5 +135,26 @@ fn by_kind(subject: &Subject<'_>, judge: &mut Judge) {
         Kind::Integrator => integrator::judge(subject, judge),
         Kind::Importer => importer::judge(subject, judge),
         Kind::Film => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_that_is_ended_keeps_what_was_judged() {
+        let mut registry = Registry::new();
+        registry.add("conformance", REFERENCE_CLASSES).unwrap();
+        let pick = |class: &Class| [Kind::Filter, Kind::Texture].contains(&class.kind);
+        let options = Options { samples: 512, sets: 1, ..Options::default() };
+        let mut asked = vec![];
+        let report = run_while(&registry, pick, &options, |step| {
+            asked.push((step.class.name, step.done, step.total));
+            if step.done == 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert_eq!((asked[0].1, asked[0].2, asked.len()), (0, 2, 2));
+        assert!(!report.rows.is_empty(), "the first class was judged");
+        assert!(report.rows.iter().all(|row| row.class == asked[0].0), "{report}");
     }
 }

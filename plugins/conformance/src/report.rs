@@ -56,6 +56,19 @@ impl Report {
         self.failed().next().is_none()
     }
 
+    /// The rows of checks that could not be made, each with the reason.
+    pub fn skipped(&self) -> impl Iterator<Item = (&Row, &str)> {
+        self.rows.iter().filter_map(|row| match &row.verdict {
+            Verdict::Skip(why) => Some((row, why.as_str())),
+            _ => None,
+        })
+    }
+
+    /// The rows of classes of which no object could be made, so that next to nothing was judged.
+    pub fn unmade(&self) -> impl Iterator<Item = (&Row, &str)> {
+        self.skipped().filter(|(row, _)| row.check == crate::UNMADE)
+    }
+
     /// The report of what all judges found. Limits of statistics depend on how many there are.
     pub(crate) fn of(judges: Vec<Judge>) -> Self {
         let n = judges.iter().flat_map(|judge| judge.findings.values()).map(|f| f.tests).sum();

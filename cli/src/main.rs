@@ -12,6 +12,7 @@ mod load;
 mod measure;
 mod output;
 mod picture;
+mod plugin;
 mod progress;
 mod render;
 mod report;
@@ -50,6 +51,7 @@ enum Command {
     Check(check::Args),
     List(list::Args),
     Describe(describe::Args),
+    Plugin(plugin::Args),
 }
 
 fn main() -> ExitCode {
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),
+        Command::Plugin(args) => plugin::run(args),
     });
     done.unwrap_or_else(|failure| failed(&failure)).into()
 }
@@ -90,9 +93,12 @@ mod tests {
         let mut command = Cli::command();
         command.build();
         command.clone().debug_assert();
-        for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
-            let help = sub.clone().render_long_help().to_string();
-            assert!(help.contains("Examples:"), "{help}");
-        }
+        shows_examples(&command);
+    }
+
+    fn shows_examples(command: &clap::Command) {
+        let help = command.clone().render_long_help().to_string();
+        assert!(help.contains("Examples:"), "{help}");
+        command.get_subcommands().filter(|sub| sub.get_name() != "help").for_each(shows_examples);
     }
 }

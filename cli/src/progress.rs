@@ -1,4 +1,5 @@
-//! A line on the terminal while a render runs: rate, samples, share done, time left.
+//! A line on the terminal while something long runs: of a render the rate, samples, share done and
+//! time left; of other work the step.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -36,6 +37,48 @@ pub(crate) fn shown_while<T>(
         let _end = end;
         work()
     })
+}
+
+/// A line that tells which of some steps is being taken; wiped when dropped, also by a panic. No line
+/// is shown unless standard error is a terminal.
+pub(crate) struct Steps {
+    start: Instant,
+    shown: bool,
+}
+
+impl Steps {
+    pub(crate) fn new() -> Self {
+        Self { start: Instant::now(), shown: std::io::stderr().is_terminal() }
+    }
+
+    /// The step after `done` of `total` begins.
+    pub(crate) fn next(&self, done: usize, total: usize, what: &str) {
+        if self.shown {
+            report::progress(&step(done, total, what, self.seconds()));
+        }
+    }
+
+    /// Since the first.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+}
+
+impl Drop for Steps {
+    fn drop(&mut self) {
+        if self.shown {
+            report::progress("");
+        }
+    }
+}
+
+/// `3 of 12  filter gaussian  4.50 s left`, if the others take as long as those before.
+fn step(done: usize, total: usize, what: &str, seconds: f64) -> String {
+    let left = match done {
+        0 => "…".into(),
+        _ => duration(seconds / done as f64 * (total - done.min(total)) as f64),
+    };
+    format!("{} of {total}  {what}  {left} left", done + 1)
 }
 
 /// ` 42 %  3.20 Msamples/s  110.1 of 262.1 Msamples  48 s left`
@@ -76,6 +119,12 @@ mod tests {
         assert_eq!(told, " 25 %  0.50 Msamples/s  1.0 of 4.0 Msamples  6.00 s left");
         assert!(line(0, 10, 0.0).contains("… left"));
         assert!(line(11, 10, 1.0).starts_with("100 %"));
+    }
+
+    #[test]
+    fn a_step_tells_its_number_and_the_time_left() {
+        assert_eq!(step(0, 3, "filter box", 0.1), "1 of 3  filter box  … left");
+        assert_eq!(step(2, 3, "filter box", 3.0), "3 of 3  filter box  1.50 s left");
     }
 
     #[test]

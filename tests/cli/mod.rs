@@ -1,5 +1,6 @@
 //! The program as a person runs it: exit codes, files, interrupts.
 
+mod plugin;
 #[cfg(test)]
 mod program;
 mod watch;

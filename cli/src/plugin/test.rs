@@ -1,0 +1,212 @@
+//! `luxel plugin test`: whether plugins keep what their kind promises.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use luxel_conformance::{Options, Report, Row, run_while};
+use luxel_sdk::abi::Class;
+use luxel_sdk::kind::Kind;
+use serde_json::json;
+
+use super::course::Course;
+use super::mutants;
+use crate::exit::{Exit, Failure};
+use crate::progress::duration;
+use crate::{list, load, report, words};
+
+/// Judge plugins: does each keep what its kind promises?
+///
+/// Objects are made from each plugin's schema, at the ends of its ranges and at random inside, and
+/// asked for what every plugin of the kind must satisfy. Prints each check with the worst figure that
+/// was found and its limit; below a check that failed, the parameters and the place. Equal seeds give
+/// equal reports. Ctrl-C ends after the class in hand, with what was judged so far.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "\
+Exit codes: 0 no check failed, 1 one did (or a fault escaped), 2 no such plugin or option,
+3 interrupted, or no object of a plugin could be made.
+
+Examples:
+  luxel plugin test
+  luxel plugin test material
+  luxel plugin test filter box --json
+  luxel plugin test --mutants")]
+pub(crate) struct Args {
+    /// Only this kind, as `luxel list` shows it
+    pub(super) kind: Option<String>,
+    /// Only the plugin of this name
+    pub(super) name: Option<String>,
+    /// A JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Seed of the parameters and samples that are tried
+    #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
+    pub(super) seed: u64,
+    /// Judge plugins that are wrong on purpose, to see whether the checks notice
+    #[arg(long)]
+    mutants: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let options = Options { seed: args.seed, ..Options::default() };
+    if args.mutants {
+        return mutants::run(args, &options);
+    }
+    let registry = load::registry();
+    let known: Vec<_> = registry.all().map(|entry| entry.class).collect();
+    let choice = Choice::new(args, &known)?;
+    let mut course = Course::new()?;
+    let found = run_while(
+        &registry,
+        |class| choice.takes(class),
+        &options,
+        |step| course.next(&step.class, step.done, step.total),
+    );
+    tell(args, &found, course)
+}
+
+fn tell(args: &Args, found: &Report, course: Course) -> Result<Exit, Failure> {
+    let Course { begun, total, .. } = course;
+    let (time, complete) = (duration(course.seconds()), course.is_complete());
+    // The line of progress ends here.
+    drop(course);
+    if args.json {
+        let object = json!({
+            "luxel": env!("CARGO_PKG_VERSION"),
+            "seed": args.seed,
+            "complete": complete,
+            "classes": begun,
+            "failed": found.failed().count(),
+            "skipped": found.skipped().count(),
+            "rows": found.rows,
+        });
+        report::out(&format!("{object}\n"))?;
+    } else {
+        let judged = if complete {
+            format!("{} in {time}", count(begun, "class", "classes"))
+        } else {
+            format!("interrupted: {begun} of {total} classes in {time}")
+        };
+        report::out(&format!("{found}\n{judged}{}", summary(found, args.seed)))?;
+    }
+    Ok(exit(found, complete))
+}
+
+fn exit(found: &Report, complete: bool) -> Exit {
+    if !found.is_clean() {
+        Exit::Input
+    } else if complete && found.unmade().next().is_none() {
+        Exit::Fine
+    } else {
+        Exit::Incomplete
+    }
+}
+
+/// `: 20 checks passed, 1 failed`, what could not be judged, and how to judge the failures again.
+fn summary(found: &Report, seed: u64) -> String {
+    let (failed, skipped) = (found.failed().count(), found.skipped().count());
+    let passed = found.rows.len() - failed - skipped;
+    let mut text = format!(": {} passed, {failed} failed", count(passed, "check", "checks"));
+    if skipped > 0 {
+        let _ = write!(text, ", {skipped} could not be made");
+    }
+    text.push('\n');
+    for (Row { kind, class, check, .. }, why) in found.skipped() {
+        let _ = writeln!(text, "not judged: {kind} {class}, {check}: {why}");
+    }
+    let seed =
+        if seed == Options::default().seed { String::new() } else { format!(" --seed {seed}") };
+    let classes: BTreeSet<_> = found.failed().map(|row| (row.kind, &row.class)).collect();
+    for (kind, class) in classes {
+        let _ = writeln!(text, "failed: luxel plugin test {kind} {class}{seed}");
+    }
+    text
+}
+
+/// `1 class`, `2 classes`.
+pub(super) fn count(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+/// What the command line asks for.
+pub(super) struct Choice {
+    kind: Option<Kind>,
+    name: Option<String>,
+}
+
+impl Choice {
+    /// # Errors
+    /// A kind or name that none of `known` has, with the nearest or those that there are; a kind
+    /// without behaviour.
+    pub(super) fn new(args: &Args, known: &[Class]) -> Result<Self, Failure> {
+        let Some(word) = &args.kind else { return Ok(Self { kind: None, name: None }) };
+        let usage = |failure| Failure { exit: Exit::Usage, ..failure };
+        if words::find(word).is_some() {
+            let message = format!("`{word}` is a word of the language, not a kind of plugin");
+            return Err(Failure::new(Exit::Usage, message).help("luxel plugin test --help"));
+        }
+        let kind = list::kind(word).map_err(usage)?;
+        let of_kind = known.iter().filter(|class| class.kind == kind);
+        let names: Vec<_> = of_kind.map(|class| class.name).collect();
+        if kind == Kind::Film || names.is_empty() {
+            let message = format!("there is nothing to judge of the kind `{word}`");
+            let mut kinds: Vec<_> = known.iter().map(|class| class.kind).collect();
+            kinds.retain(|kind| *kind != Kind::Film);
+            kinds.dedup();
+            let kinds: Vec<_> = kinds.into_iter().map(Kind::word).collect();
+            let help = format!("known: {}", kinds.join(", "));
+            return Err(Failure::new(Exit::Usage, message).help(help));
+        }
+        if let Some(name) = args.name.as_deref().filter(|name| !names.contains(name)) {
+            return Err(usage(list::unknown(kind.word(), name, &names)));
+        }
+        Ok(Self { kind: Some(kind), name: args.name.clone() })
+    }
+
+    pub(super) fn takes(&self, class: &Class) -> bool {
+        self.kind.is_none_or(|kind| kind == class.kind)
+            && self.name.as_ref().is_none_or(|name| name == class.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luxel_conformance::Verdict;
+
+    use super::*;
+
+    fn report(verdicts: &[(&'static str, Verdict)]) -> Report {
+        let row = |(check, verdict): &(&'static str, Verdict)| Row {
+            kind: "filter",
+            class: "box".into(),
+            check,
+            verdict: verdict.clone(),
+            figure: 0.0,
+            limit: 0.0,
+            detail: String::new(),
+        };
+        Report { rows: verdicts.iter().map(row).collect() }
+    }
+
+    #[test]
+    fn a_failure_outweighs_an_interrupt_and_an_object_that_cannot_be_made_is_no_success() {
+        let (fine, bad) = (report(&[("a", Verdict::Pass)]), report(&[("a", Verdict::Fail)]));
+        assert_eq!((exit(&fine, true), exit(&fine, false)), (Exit::Fine, Exit::Incomplete));
+        assert_eq!((exit(&bad, true), exit(&bad, false)), (Exit::Input, Exit::Input));
+        let skip =
+            |check| report(&[("a", Verdict::Pass), (check, Verdict::Skip("no file".into()))]);
+        assert_eq!(exit(&skip("bounded"), true), Exit::Fine);
+        assert_eq!(exit(&skip("parameters"), true), Exit::Incomplete);
+    }
+
+    #[test]
+    fn a_summary_counts_and_names_what_was_skipped_and_what_failed() {
+        let skip = Verdict::Skip("no file".into());
+        let found = report(&[("a", Verdict::Pass), ("b", Verdict::Fail), ("c", skip)]);
+        let told = ": 1 check passed, 1 failed, 1 could not be made\n\
+                    not judged: filter box, c: no file\n\
+                    failed: luxel plugin test filter box --seed 7\n";
+        assert_eq!(summary(&found, 7), told);
+        let fine = report(&[("a", Verdict::Pass), ("b", Verdict::Pass)]);
+        assert_eq!(summary(&fine, Options::default().seed), ": 2 checks passed, 0 failed\n");
+    }
+}

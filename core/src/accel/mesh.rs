@@ -104,7 +104,7 @@ impl MeshBvh {
     /// infinite. A ray that leaves the triangle `skip` does not meet it: a straight ray cannot, but
     /// rounding would let it where the triangle is a sliver. An origin that is not finite and a
     /// `t_max` of NaN hit nothing.
-    #[inline]
+    #[inline(always)]
     pub fn intersect(
         &self,
         o: Vec3,
@@ -116,12 +116,12 @@ impl MeshBvh {
     }
 
     /// True if anything is hit with 0 < t <= `t_max`; the same answer as that of `intersect`, sooner.
-    #[inline]
+    #[inline(always)]
     pub fn occluded(&self, o: Vec3, direction: &Direction, t_max: f32, skip: Option<u32>) -> bool {
         self.trace::<true>(o, direction, t_max, skip).0.is_some()
     }
 
-    #[inline]
+    #[inline(always)]
     fn trace<const ANY: bool>(
         &self,
         o: Vec3,
@@ -173,6 +173,7 @@ impl MeshBvh {
     }
 
     /// Visits nodes near to far by octant; `LEN` is a power of two not below `self.stack`.
+    #[inline(always)]
     fn walk<const ANY: bool, const LEN: usize>(
         &self,
         root: Child,

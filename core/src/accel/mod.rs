@@ -11,6 +11,7 @@ mod mesh;
 mod node;
 mod ray;
 mod triangle;
+mod widest;
 
 mod build;
 mod cluster;
@@ -31,3 +32,4 @@ pub use error::BuildError;
 pub use mesh::{MeshBvh, MeshHit};
 pub use ray::Direction;
 pub use top::TopBvh;
+pub use widest::widest;

@@ -34,7 +34,7 @@ const EXPONENTS: std::ops::Range<u64> = 1 << 52..2046 << 52;
 impl Direction {
     /// `None` for a direction whose largest component is zero, not finite, or so large or small that
     /// its inverse is not a normal number. With a NaN beside it no triangle is hit.
-    #[inline]
+    #[inline(always)]
     pub fn new(d: DVec3) -> Option<Self> {
         let a = d.abs();
         // Without branches: which axis it is cannot be foreseen.

@@ -67,6 +67,7 @@ impl TopBvh {
     ///
     /// `t` is in units of `d`, whose length is any but zero. `t_enter` is at least 0 and may be a
     /// few roundings early. A ray that is not finite enters nothing.
+    #[inline(always)]
     pub fn intersect(
         &self,
         o: DVec3,
@@ -85,6 +86,7 @@ impl TopBvh {
 
     /// True as soon as `leaf(index, t_enter, t_max)` is, for a box that the ray enters within
     /// `t_max`; in no promised order.
+    #[inline(always)]
     pub fn any(
         &self,
         o: DVec3,
@@ -116,7 +118,7 @@ impl TopBvh {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn walk_with<const LEN: usize>(
         &self,
         root: Child,
@@ -172,7 +174,7 @@ struct TopRay {
 impl TopRay {
     /// Widens every box by 8u·|o|, for the roundings of whoever carries the ray into a placement's
     /// frame.
-    #[inline]
+    #[inline(always)]
     fn new(o: DVec3, d: DVec3) -> Self {
         let slack = 8.0 * U * o.abs().max_element();
         let sign = |c: f64| usize::from(c.is_sign_negative());

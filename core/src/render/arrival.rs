@@ -64,6 +64,7 @@ impl Shader<'_, '_> {
     }
 
     /// The ray met a surface.
+    #[inline(always)]
     pub(super) fn surface(mut self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
         let stage = self.stage;
         let numbers = Numbers::draw(stage, self.wants, self.samples);
@@ -92,6 +93,7 @@ impl Shader<'_, '_> {
     }
 
     /// The light sample and the scattering sample at a surface.
+    #[inline(always)]
     fn scatter(&mut self, at: &mut Arrival, surface: &Surface, numbers: &Numbers) {
         if !self.wants.has(Wants::DIRECT) && !self.wants.has(Wants::SCATTER) {
             return;
@@ -127,6 +129,7 @@ impl Shader<'_, '_> {
         }
     }
 
+    #[inline(always)]
     fn scattered(&mut self, local: &Local, sample: &Sample) -> Option<Scatter> {
         let wi = local.to_world(sample.wi)?;
         let mut weight = sample.weight * self.flight;
@@ -139,6 +142,7 @@ impl Shader<'_, '_> {
 }
 
 /// Everything that an arrival holds, as it is before it is shaded.
+#[inline(always)]
 fn begin(at: &mut Arrival, kind: ArrivalKind, ray: &Ray, t: f64, steps: u32) {
     (at.kind, at.t, at.wo, at.steps) = (kind, t, -ray.d, steps);
     (at.p, at.p_err) = (DVec3::ZERO, DVec3::ZERO);
@@ -157,6 +161,7 @@ struct Numbers {
 }
 
 impl Numbers {
+    #[inline(always)]
     fn draw(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
         if wants.has(Wants::DIRECT) && wants.has(Wants::SCATTER) {
             let choice = samples.next_1d_if(stage.lights.is_choice());
@@ -190,6 +195,7 @@ struct Local {
 }
 
 impl Local {
+    #[inline(always)]
     fn new(at: &Arrival, surface: &Surface, needs: Needs) -> Self {
         let outside = at.wo.dot(at.ng) > 0.0;
         // Where the viewer is above one normal and below the other, the shading normal shows a side
@@ -208,16 +214,19 @@ impl Local {
 
     /// A direction of the world; `None` where the normals disagree on its side, so that no light
     /// leaks through a surface.
+    #[inline(always)]
     fn of_world(&self, wi: DVec3) -> Option<Vec3> {
         let local = self.frame.to_local(wi.as_vec3());
         self.sides_agree(wi, local).then_some(local)
     }
 
+    #[inline(always)]
     fn to_world(&self, local: Vec3) -> Option<DVec3> {
         let wi = self.frame.to_world(local).as_dvec3().normalize_or_zero();
         (wi != DVec3::ZERO && self.sides_agree(wi, local)).then_some(wi)
     }
 
+    #[inline(always)]
     fn sides_agree(&self, wi: DVec3, local: Vec3) -> bool {
         let same_side = (wi.dot(self.ng) > 0.0) == self.outside;
         let same_local = local.z * self.wo.z > 0.0;

@@ -8,8 +8,8 @@ use super::path::Path;
 use crate::object::{Scratch, Site};
 use crate::stage::{Leaving, Skin, Stage};
 
-/// The fraction of light that passes along a ray: nothing behind a surface, less through media.
-/// Surfaces that are only the boundary of a medium are passed.
+/// The fraction of light that passes along a ray that is not occluded: less through media. Surfaces
+/// that are only the boundary of a medium are passed.
 pub(super) fn passes(
     stage: &Stage,
     ray: &Ray,
@@ -18,11 +18,7 @@ pub(super) fn passes(
     scratch: &mut Scratch,
 ) -> Spectrum {
     if !stage.features.media && !stage.features.open_surfaces {
-        let occluded = stage.occluded(ray, path.leaving());
-        return if occluded { Spectrum::ZERO } else { Spectrum::ONE };
-    }
-    if stage.occluded(ray, path.leaving()) {
-        return Spectrum::ZERO;
+        return Spectrum::ONE;
     }
     let mut media = path.media_along(ray, stage);
     let mut from = path.leaving();

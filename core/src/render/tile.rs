@@ -13,6 +13,7 @@ use luxel_sdk::sampling::hash_combine;
 use super::arrival::Shader;
 use super::path::Path;
 use super::{Control, shadow};
+use crate::accel::widest;
 use crate::cast;
 use crate::film::Tile;
 use crate::object::{ColorMode, Scratch, Site};
@@ -146,13 +147,18 @@ impl<'s> Worker<'s> {
 
     /// Light that depended on shadow rays, in asking order.
     fn shadows(&mut self) {
-        for request in &self.now.shadows {
-            let lane = &mut self.lanes[request.lane as usize];
-            let path = &self.paths[request.lane as usize];
-            let (samples, scratch) = (&mut lane.samples, &mut self.scratch);
-            let left = shadow::passes(self.stage, &request.ray, path, samples, scratch);
-            lane.l += request.l * left;
-        }
+        widest(|| {
+            for request in &self.now.shadows {
+                let lane = &mut self.lanes[request.lane as usize];
+                let path = &self.paths[request.lane as usize];
+                if self.stage.occluded(&request.ray, path.leaving()) {
+                    continue;
+                }
+                let (samples, scratch) = (&mut lane.samples, &mut self.scratch);
+                let left = shadow::passes(self.stage, &request.ray, path, samples, scratch);
+                lane.l += request.l * left;
+            }
+        });
     }
 
     /// Traces the paths that go on, shades where they arrive, and asks what now. One thing at a time
@@ -166,22 +172,27 @@ impl<'s> Worker<'s> {
             }
         } else {
             self.hits.clear();
-            for (ray, lane) in &self.now.rays {
-                let mut steps = 0;
-                let from = self.paths[*lane as usize].leaving();
-                let hit = stage.intersect(ray, from, &mut steps);
-                self.hits.push((hit, steps));
-            }
-            for ((ray, lane), (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
-                let path = &mut self.paths[*lane as usize];
-                let Lane { at, samples, .. } = &mut self.lanes[*lane as usize];
-                let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
-                let shader = Shader { stage, wants: self.wants, path, samples, scratch, flight };
-                match hit {
-                    Some(hit) => shader.surface(ray, hit, *steps, at),
-                    None => shader.escaped(ray, *steps, at),
+            widest(|| {
+                for (ray, lane) in &self.now.rays {
+                    let mut steps = 0;
+                    let from = self.paths[*lane as usize].leaving();
+                    let hit = stage.intersect(ray, from, &mut steps);
+                    self.hits.push((hit, steps));
                 }
-            }
+            });
+            widest(|| {
+                for ((ray, lane), (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
+                    let path = &mut self.paths[*lane as usize];
+                    let Lane { at, samples, .. } = &mut self.lanes[*lane as usize];
+                    let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
+                    let shader =
+                        Shader { stage, wants: self.wants, path, samples, scratch, flight };
+                    match hit {
+                        Some(hit) => shader.surface(ray, hit, *steps, at),
+                        None => shader.escaped(ray, *steps, at),
+                    }
+                }
+            });
         }
         self.arrived.clear();
         self.arrived.extend(self.now.rays.iter().map(|(_, lane)| *lane));

@@ -70,12 +70,14 @@ impl Mesh {
     /// Where a ray that enters the box at `t_enter` is taken up: a diagonal before, so that little is
     /// lost by rounding, and triangles on the box's faces stay ahead however their distance is
     /// rounded.
+    #[inline(always)]
     fn start(&self, direction: &Direction, t_enter: f64) -> f64 {
         (t_enter - self.diagonal * direction.per_scale()).max(0.0)
     }
 
     /// The local ray from `start` on in single precision about the mesh's centre: its origin, and
     /// its end along the scaled direction, rounded up.
+    #[inline(always)]
     fn narrow(&self, ray: &Ray, direction: &Direction, start: f64) -> (Vec3, f32) {
         let o = ray.at(start) - self.centre;
         let t_max = (ray.t_max - start) * direction.scale();
@@ -84,6 +86,7 @@ impl Mesh {
 
     /// The nearest hit. A ray that leaves this mesh may seem to meet a sliver beside the triangle
     /// that it leaves, by rounding: what double precision finds behind the origin is passed.
+    #[inline(always)]
     fn intersect(
         &self,
         ray: &Ray,
@@ -115,6 +118,7 @@ impl Mesh {
     }
 
     /// Whether the plane of a triangle lies behind the origin of a ray, in double precision.
+    #[inline(never)]
     fn is_behind(&self, triangle: u32, ray: &Ray) -> bool {
         let [a, b, c] = self.triangles().corners(triangle);
         let normal = (b - a).cross(c - a);
@@ -122,6 +126,7 @@ impl Mesh {
     }
 
     /// The point of a triangle with barycentrics `at` of its second and third corner.
+    #[inline(always)]
     pub fn surface(&self, triangle: u32, at: DVec2) -> Surface {
         let mesh = self.triangles();
         let corners = mesh.indices[triangle as usize].map(|i| i as usize);
@@ -144,6 +149,7 @@ impl Mesh {
     }
 }
 
+#[inline(always)]
 fn shading_normal(mesh: &TriangleMesh, corners: [usize; 3], w: [f64; 3], ng: DVec3) -> DVec3 {
     if mesh.normals.is_empty() {
         return ng;
@@ -154,6 +160,7 @@ fn shading_normal(mesh: &TriangleMesh, corners: [usize; 3], w: [f64; 3], ng: DVe
 }
 
 /// Surface coordinates and the derivatives of the point by them (PBR4 §6.5.3).
+#[inline(always)]
 fn parametrisation(
     mesh: &TriangleMesh,
     corners: [usize; 3],
@@ -206,6 +213,7 @@ impl Geometry {
     /// The nearest hit of a ray in the geometry's frame; it enters the box at `t_enter`, and leaves
     /// the triangle `from` if it starts on one. A mesh is missed by a ray whose direction cannot be
     /// made ready.
+    #[inline(always)]
     pub fn intersect(
         &self,
         ray: &Ray,
@@ -221,6 +229,7 @@ impl Geometry {
     }
 
     /// Whether anything is hit.
+    #[inline(always)]
     pub fn occluded(
         &self,
         ray: &Ray,
@@ -237,6 +246,7 @@ impl Geometry {
     }
 
     /// The point that a hit names, in the geometry's frame.
+    #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         match self {
             Self::Analytic(object) => object.fixed().shape().surface(ray, hit),

@@ -111,6 +111,7 @@ impl Lights {
     }
 
     /// A source and its chance; `None` if there is none. `u` uniform in [0, 1).
+    #[inline(always)]
     fn choose(&self, u: f32) -> Option<Chosen<'_>> {
         let choice = self.choice.as_ref()?;
         if let [source] = self.sources.as_slice() {
@@ -163,6 +164,7 @@ fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palett
 
 impl Stage {
     /// Chooses a light and light from it. `u` uniform in [0, 1).
+    #[inline(always)]
     pub fn sample_light(
         &self,
         from: &Origin,
@@ -219,6 +221,7 @@ impl Stage {
         })
     }
 
+    #[inline(always)]
     fn sample_surface(
         &self,
         light: &SurfaceLight<'_>,
@@ -352,6 +355,7 @@ impl FoundLight {
 }
 
 /// The ray from a point to a point of a surface, both moved beyond their errors towards each other.
+#[inline(always)]
 fn ray_between(from: &Origin, to: &Surface) -> Ray {
     let d = to.p - from.p;
     let o = offset_origin(from.p, from.p_err, from.ng, d);

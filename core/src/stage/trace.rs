@@ -10,6 +10,7 @@ use super::{Leaving, MediumStack, SceneHit, Skin, Stage};
 
 impl Stage {
     /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
+    #[inline(always)]
     pub fn intersect(&self, ray: &Ray, from: Option<Leaving>, steps: &mut u32) -> Option<SceneHit> {
         let world = Direction::new(ray.d);
         let mut nearest = None;
@@ -30,6 +31,7 @@ impl Stage {
     }
 
     /// Whether a surface that stops light lies along a ray that leaves `from`.
+    #[inline(always)]
     pub fn occluded(&self, ray: &Ray, from: Option<Leaving>) -> bool {
         let world = Direction::new(ray.d);
         // What is asked keeps its end, so the limit stays that of the ray.
@@ -45,6 +47,7 @@ impl Stage {
     }
 
     /// The point of a hit, in the world.
+    #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &SceneHit) -> Surface {
         let placement = &self.placements[hit.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];

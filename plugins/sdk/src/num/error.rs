@@ -32,7 +32,7 @@ pub const fn gamma64(n: u16) -> f64 {
 /// PBR4 §6.8.6: the plane is moved by |`ng`|·`p_err`, then every component rounds away from `p`: by
 /// one to two units in the last place, which costs a product where stepping to the next float costs
 /// branches.
-#[inline]
+#[inline(always)]
 pub fn offset_origin(p: DVec3, p_err: DVec3, ng: DVec3, d: DVec3) -> DVec3 {
     let distance = ng.abs().dot(p_err);
     if distance <= 0.0 {

@@ -1,0 +1,38 @@
+//! One piece of work, compiled for what the processor has.
+#![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
+
+/// Does the work in code compiled for the widest registers that the processor has: everything in it
+/// that is `inline(always)` is compiled twice, for any processor and for one with AVX-512.
+///
+/// The results are the same to the last bit: the compiler chooses other instructions, not other
+/// roundings.
+#[inline]
+pub fn widest<T>(work: impl FnOnce() -> T) -> T {
+    #[cfg(target_arch = "x86_64")]
+    if has_avx512() {
+        // SAFETY: the processor has these instructions, as just found.
+        return unsafe { in_avx512(work) };
+    }
+    work()
+}
+
+/// Whether the processor has what x86-64-v4 names.
+#[cfg(target_arch = "x86_64")]
+fn has_avx512() -> bool {
+    is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("avx512cd")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+        && is_x86_feature_detected!("lzcnt")
+        && is_x86_feature_detected!("popcnt")
+        && is_x86_feature_detected!("fma")
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,bmi1,bmi2,lzcnt,popcnt,fma")]
+fn in_avx512<T>(work: impl FnOnce() -> T) -> T {
+    work()
+}

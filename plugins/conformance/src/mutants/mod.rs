@@ -2,9 +2,16 @@
 //!
 //! Each is one of the suite's own plugins with one fault. They see the SDK alone.
 
+mod dawn;
+mod facets;
 mod field;
+mod glass;
+mod haze;
 mod light;
 mod material;
+mod numbers;
+mod paths;
+mod plate;
 mod settings;
 mod shape;
 
@@ -35,7 +42,21 @@ pub struct Caught {
 
 /// Every mutant.
 pub fn mutants() -> Vec<Mutant> {
-    [material::MUTANTS, shape::MUTANTS, light::MUTANTS, field::MUTANTS, settings::MUTANTS].concat()
+    [
+        material::MUTANTS,
+        facets::MUTANTS,
+        glass::MUTANTS,
+        shape::MUTANTS,
+        plate::MUTANTS,
+        light::MUTANTS,
+        dawn::MUTANTS,
+        field::MUTANTS,
+        haze::MUTANTS,
+        settings::MUTANTS,
+        numbers::MUTANTS,
+        paths::MUTANTS,
+    ]
+    .concat()
 }
 
 /// Judges each of the mutants alone, in a registry that holds nothing else but the host's classes.
@@ -55,4 +76,20 @@ pub fn score(mutants: &[Mutant], options: &Options) -> Vec<Caught> {
             Caught { class: format!("{class:?}"), fault, by }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is caught is the fault, not the plugin around it.
+    #[test]
+    fn without_their_faults_the_mutants_pass() {
+        let alone = [facets::SOUND, glass::SOUND, plate::SOUND, dawn::SOUND, paths::SOUND];
+        let classes = [&alone, haze::SOUND, numbers::SOUND].concat();
+        let sound: Vec<_> = classes.into_iter().map(|class| Mutant { class, fault: "" }).collect();
+        for judged in score(&sound, &Options::default()) {
+            assert!(judged.by.is_empty(), "{judged:#?}");
+        }
+    }
 }

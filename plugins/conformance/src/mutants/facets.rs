@@ -169,9 +169,7 @@ pub(super) const MUTANTS: &[Mutant] = &[
         class: Class::material::<BrightAtGrazing>("bright_at_grazing"),
         fault: "weights +5 % below cos 0.2",
     },
-    Mutant {
-        class: Class::material::<PaleGreen>("pale_green"), fault: "eval −4 % in one lane"
-    },
+    Mutant { class: Class::material::<PaleGreen>("pale_green"), fault: "eval −4 % in one lane" },
     Mutant {
         class: Class::material::<RollsItsOwn>("rolls_its_own"),
         fault: "random numbers of its own",

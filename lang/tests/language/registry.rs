@@ -11,7 +11,9 @@ use luxel_sdk::{Choice, Params};
 #[derive(Choice, Clone, Copy)]
 #[repr(u32)]
 enum Facets {
+    /// With long tails.
     Ggx,
+    /// Normal slopes.
     Beckmann,
 }
 

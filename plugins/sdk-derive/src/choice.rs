@@ -4,24 +4,29 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{Data, DeriveInput, Error, Result};
 
-use crate::attributes::{has_repr, snake_case};
+use crate::attributes::{docs, has_repr, snake_case};
 
 pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     let Data::Enum(data) = &input.data else {
-        return Err(Error::new_spanned(input, "a choice is an enum without fields"));
+        return Err(Error::new_spanned(name, "a choice is an enum without fields"));
     };
     if !has_repr(&input.attrs, "u32") {
         return Err(Error::new_spanned(
             name,
-            "a choice needs #[repr(u32)]: it is written by index",
+            "a choice needs #[repr(u32)] alone: the host writes it by index",
         ));
     }
     let mut words = vec![];
     let variants = data.variants.iter().map(|variant| &variant.ident);
     for variant in &data.variants {
         if !variant.fields.is_empty() || variant.discriminant.is_some() {
-            return Err(Error::new_spanned(variant, "no fields and no explicit number"));
+            let message = "a word of a choice has no fields and no number of its own";
+            return Err(Error::new_spanned(&variant.ident, message));
+        }
+        if docs(&variant.attrs).is_empty() {
+            let message = "needs a doc comment: what a scene says by this word";
+            return Err(Error::new_spanned(&variant.ident, message));
         }
         words.push(snake_case(&variant.ident.to_string()));
     }

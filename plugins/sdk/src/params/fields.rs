@@ -17,6 +17,12 @@ use crate::color::Spectrum;
 ///
 /// # Safety
 /// `TYPE` says which bit patterns the host writes; all of them must be valid values.
+#[diagnostic::on_unimplemented(
+    message = "a parameter cannot be of type `{Self}`",
+    label = "not a type that the host can write",
+    note = "parameters are f32, f64, u32, bool, Vec2, Vec3, DVec3, Spectrum, ComplexIor, Emission, \
+            Maybe<f32>, Text, File, Table, Look, MaterialRef, PhaseRef, or derive `Choice`"
+)]
 pub unsafe trait Field: Copy {
     /// How it is stored.
     const TYPE: Type;
@@ -26,6 +32,10 @@ pub unsafe trait Field: Copy {
 ///
 /// # Safety
 /// Every index below `WORDS.len()` must be a valid value.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a choice between words",
+    label = "needs to be an enum that derives `Choice`"
+)]
 pub unsafe trait Choice: Copy {
     /// The words in a scene, in order.
     const WORDS: &'static [&'static str];
@@ -35,6 +45,11 @@ pub unsafe trait Choice: Copy {
 ///
 /// # Safety
 /// All-zero bytes must be valid.
+#[diagnostic::on_unimplemented(
+    message = "a derived field cannot be of type `{Self}`",
+    label = "zero bytes are no value of it, as far as is known",
+    note = "derived fields are numbers, bool, vectors, matrices, Spectrum, and arrays of these"
+)]
 pub unsafe trait Plain: Copy {}
 
 macro_rules! fields {
@@ -243,6 +258,10 @@ pub trait BuildContext {
 }
 
 /// How an object makes the table that its copies share: a decoded image, a mesh, a distribution.
+#[diagnostic::on_unimplemented(
+    message = "nothing makes the shared table of `{Self}`",
+    label = "needs `impl Build<{T}>`"
+)]
 pub trait Build<T> {
     /// Makes the table from the parameters. Textured and wavelength-dependent fields hold their
     /// defaults here: a table must not depend on them.

@@ -16,17 +16,11 @@ pub(crate) fn docs(attributes: &[Attribute]) -> String {
     lines.join("\n").trim().to_owned()
 }
 
-/// Whether `#[repr(wanted)]` is there.
+/// Whether `#[repr(wanted)]` is there, without `packed`, `align` or others beside it.
 pub(crate) fn has_repr(attributes: &[Attribute], wanted: &str) -> bool {
-    let mut found = false;
-    for attribute in attributes.iter().filter(|a| a.path().is_ident("repr")) {
-        let read = attribute.parse_nested_meta(|meta| {
-            found |= meta.path.is_ident(wanted);
-            Ok(())
-        });
-        found &= read.is_ok();
-    }
-    found
+    let mut reprs = attributes.iter().filter(|a| a.path().is_ident("repr"));
+    let only = |a: &Attribute| a.parse_args::<Ident>().is_ok_and(|word| word == wanted);
+    reprs.next().is_some_and(only) && reprs.next().is_none()
 }
 
 /// `HenyeyGreenstein` as `henyey_greenstein`.
@@ -60,7 +54,17 @@ pub(crate) struct Attributes {
     pub(crate) group: String,
     pub(crate) deprecated: String,
     pub(crate) emission: Vec<Ident>,
+    /// The keys as they came, to tell repeated ones.
+    keys: Vec<String>,
 }
+
+/// Every key, as messages list them.
+const KEYS: &str = "default, required, optional, min, max, unit, role, textured, choice, name, \
+                    group, deprecated, emission, derived, shared";
+
+/// Every role, as scenes know them.
+const ROLES: [&str; 6] =
+    ["plain", "reflectance", "illuminant", "ior", "complex_ior", "coefficient"];
 
 impl Attributes {
     /// Reads the field's attribute.
@@ -71,13 +75,50 @@ impl Attributes {
             tagged = true;
             attribute.parse_nested_meta(|meta| out.key(&meta))?;
         }
-        if tagged {
-            return Ok(out);
+        if !tagged {
+            let message = "this field is not a parameter yet: it needs #[param(…)], or \
+                           #[param(derived)] where `prepare` computes it";
+            return Err(match &field.ident {
+                Some(id) => Error::new_spanned(id, message),
+                None => Error::new_spanned(&field.ty, message),
+            });
         }
-        Err(Error::new_spanned(
-            field,
-            "every field is #[param(…)]; computed ones #[param(derived)]",
-        ))
+        out.agree(field)?;
+        Ok(out)
+    }
+
+    /// Refuses keys that contradict each other.
+    fn agree(&self, field: &syn::Field) -> Result<()> {
+        let at = |message: String| {
+            let place: &dyn quote::ToTokens = field.ident.as_ref().map_or(field, |id| id);
+            Err(Error::new_spanned(place, message))
+        };
+        for alone in ["derived", "shared"] {
+            if let Some(other) = self.keys.iter().find(|key| *key != alone)
+                && self.keys.iter().any(|key| key == alone)
+            {
+                return at(format!("a `{alone}` field is not a parameter: without `{other}`"));
+            }
+        }
+        if self.derived || self.shared {
+            return Ok(());
+        }
+        let given: Vec<_> = ["default", "required", "optional"]
+            .into_iter()
+            .filter(|word| self.keys.iter().any(|key| key == word))
+            .map(|word| format!("`{word}`"))
+            .collect();
+        match given.len() {
+            // An emission is given by its amounts.
+            0 if self.emission.is_empty() => {
+                at("needs one of `default = …`, `required` and `optional`".to_owned())
+            }
+            0 | 1 => Ok(()),
+            _ => at(format!(
+                "{} exclude each other: keep one of `default = …`, `required` and `optional`",
+                given.join(" and ")
+            )),
+        }
     }
 
     fn key(&mut self, meta: &syn::meta::ParseNestedMeta<'_>) -> Result<()> {
@@ -85,6 +126,9 @@ impl Attributes {
             Ok(meta.value()?.parse::<LitStr>()?.value())
         };
         let key = meta.path.get_ident().map(ToString::to_string).unwrap_or_default();
+        if self.keys.contains(&key) {
+            return Err(meta.error(format!("`{key}` is given twice")));
+        }
         match key.as_str() {
             "derived" => self.derived = true,
             "shared" => self.shared = true,
@@ -96,7 +140,7 @@ impl Attributes {
             "min" => self.min = Some(meta.value()?.parse()?),
             "max" => self.max = Some(meta.value()?.parse()?),
             "unit" => self.unit = text(meta)?,
-            "role" => self.role = Some(meta.value()?.parse()?),
+            "role" => self.role = Some(role(meta.value()?.parse()?)?),
             "name" => self.name = Some(text(meta)?),
             "group" => self.group = text(meta)?,
             "deprecated" => self.deprecated = text(meta)?,
@@ -107,13 +151,17 @@ impl Attributes {
                     list.parse_terminated(<Ident as syn::parse::Parse>::parse, Token![,])?;
                 self.emission = words.into_iter().collect();
             }
-            _ => {
-                return Err(meta.error(
-                    "known keys: default, required, optional, min, max, unit, role, textured, \
-                     choice, name, group, deprecated, emission, derived, shared",
-                ));
-            }
+            _ => return Err(meta.error(format!("unknown key `{key}`; the keys are {KEYS}"))),
         }
+        self.keys.push(key);
         Ok(())
     }
+}
+
+fn role(word: Ident) -> Result<Ident> {
+    if ROLES.iter().any(|known| word == known) {
+        return Ok(word);
+    }
+    let message = format!("unknown role `{word}`; the roles are {}", ROLES.join(", "));
+    Err(Error::new_spanned(word, message))
 }

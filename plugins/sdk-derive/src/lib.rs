@@ -3,6 +3,7 @@
 mod attributes;
 mod choice;
 mod params;
+mod refuse;
 
 use proc_macro::TokenStream;
 

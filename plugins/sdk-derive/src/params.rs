@@ -1,40 +1,50 @@
 //! `#[derive(Params)]`.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, quote_spanned};
 use syn::{Data, DeriveInput, Error, Field, GenericArgument, Ident, PathArguments, Result, Type};
 
 use crate::attributes::{Attributes, docs, has_repr};
+use crate::refuse;
 
 /// Names of field types whose values a texture may drive.
 const TEXTURED: [&str; 5] = ["f32", "Vec3", "Spectrum", "Emission", "ComplexIor"];
 
 struct Parts {
     descriptors: Vec<TokenStream>,
+    /// What the compiler must find true, each at the place that it speaks of.
+    asserts: Vec<TokenStream>,
     /// Types of derived fields, each of which must be `Plain`.
     derived: Vec<Type>,
     shared: TokenStream,
+    /// The field that holds the shared table, and the table's type.
+    table: Option<(Ident, Type)>,
 }
 
 pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     let doc = docs(&input.attrs);
     let Data::Struct(data) = &input.data else {
-        return Err(Error::new_spanned(input, "parameters are a struct"));
+        return Err(Error::new_spanned(name, "parameters are a struct, not an enum or a union"));
     };
     if !has_repr(&input.attrs, "C") {
-        return Err(Error::new_spanned(name, "needs #[repr(C)]: fields are written at offsets"));
+        return Err(Error::new_spanned(name, "needs #[repr(C)] alone: the host writes fields"));
     }
-    if input.generics.type_params().next().is_some() || input.generics.lifetimes().count() > 1 {
-        return Err(Error::new_spanned(
-            &input.generics,
-            "at most one lifetime, no type parameters",
-        ));
+    let others = input.generics.type_params().count() + input.generics.const_params().count();
+    if others > 0 || input.generics.lifetimes().count() > 1 {
+        let message = "parameters have one layout: at most one lifetime and nothing else here";
+        return Err(Error::new_spanned(&input.generics, message));
     }
     if doc.is_empty() {
         return Err(Error::new_spanned(name, "needs a doc comment: it is the manual page"));
     }
-    let mut parts = Parts { descriptors: vec![], derived: vec![], shared: quote!(None) };
+    let mut parts = Parts {
+        descriptors: vec![],
+        asserts: vec![],
+        derived: vec![],
+        shared: quote!(None),
+        table: None,
+    };
     let mut errors: Option<Error> = None;
     for field in &data.fields {
         if let Err(error) = parts.field(field) {
@@ -54,8 +64,12 @@ impl Parts {
     fn field(&mut self, field: &Field) -> Result<()> {
         let attributes = Attributes::read(field)?;
         let Some(id) = &field.ident else {
-            return Err(Error::new_spanned(field, "fields have names"));
+            return Err(Error::new_spanned(
+                &field.ty,
+                "needs a name: scenes give parameters by name",
+            ));
         };
+        refuse::static_lifetime(&field.ty)?;
         if attributes.derived {
             self.derived.push(field.ty.clone());
             return Ok(());
@@ -68,19 +82,17 @@ impl Parts {
             return Err(Error::new_spanned(id, "needs a doc comment: it becomes the manual"));
         }
         let type_name = last_segment(&field.ty);
-        if type_name == "Option" || type_name == "String" || type_name == "Box" {
-            return Err(Error::new_spanned(&field.ty, "no fixed layout: use Maybe<f32> or Text"));
-        }
+        refuse::known_type(&field.ty, &type_name)?;
         if attributes.textured && !TEXTURED.contains(&type_name.as_str()) {
-            return Err(Error::new_spanned(
-                &field.ty,
-                "only f32, Vec3 and spectra can be textured",
-            ));
+            let message = format!("a texture cannot drive this, only {}", TEXTURED.join(", "));
+            return Err(Error::new_spanned(&field.ty, message));
         }
-        let given = attributes.default.is_some() || attributes.required || attributes.optional;
-        if !given && attributes.emission.is_empty() {
-            return Err(Error::new_spanned(id, "needs `default = …`, `required` or `optional`"));
+        if (type_name == "Emission") == attributes.emission.is_empty() {
+            let message = "an Emission and the key `emission(…)` with its amounts go together";
+            return Err(Error::new_spanned(&field.ty, message));
         }
+        let at = self.descriptors.len();
+        self.asserts.extend(refuse::asserts(id, at, &attributes));
         self.descriptors.push(descriptor(id, &field.ty, &type_name, &doc, &attributes));
         if type_name == "ComplexIor" {
             self.descriptors.push(extinction(id, &attributes));
@@ -92,16 +104,23 @@ impl Parts {
     }
 
     fn shared_field(&mut self, id: &Ident, ty: &Type) -> Result<()> {
+        if let Some((other, _)) = &self.table {
+            let message = format!("`{other}` is the shared table already: put both into one type");
+            return Err(Error::new_spanned(id, message));
+        }
         let table = match ty {
-            Type::Path(path) => path.path.segments.last().and_then(|last| match &last.arguments {
-                PathArguments::AngleBracketed(list) => list.args.last(),
-                _ => None,
-            }),
+            Type::Path(path) if last_segment(ty) == "Shared" => {
+                path.path.segments.last().and_then(|last| match &last.arguments {
+                    PathArguments::AngleBracketed(list) => list.args.last(),
+                    _ => None,
+                })
+            }
             _ => None,
         };
         let Some(GenericArgument::Type(table)) = table else {
-            return Err(Error::new_spanned(ty, "a shared field is a Shared<'a, T>"));
+            return Err(Error::new_spanned(ty, "a `shared` field is a Shared<'a, T>"));
         };
+        self.table = Some((id.clone(), table.clone()));
         self.shared = quote! {
             Some(::luxel_sdk::params::SharedFns {
                 offset: ::core::mem::offset_of!(Self, #id),
@@ -118,15 +137,28 @@ impl Parts {
             Some(_) => (quote!(#name<'x>), quote!(#name<'static>)),
             None => (quote!(#name), quote!(#name)),
         };
-        let Self { descriptors, derived, shared } = self;
+        let Self { descriptors, asserts, derived, shared, table } = self;
         let has_derived = !derived.is_empty();
+        let layout = layout(name, &still);
+        let table = table.map(|(id, table)| {
+            quote! {
+                // By its type, not by its name alone.
+                fn _table #impl_generics (at: #name #type_generics) #bounds {
+                    let _: ::luxel_sdk::params::Shared<'_, #table> = at.#id;
+                }
+            }
+        });
         quote! {
+            #layout
             const _: () = {
-                assert!(::core::mem::size_of::<#still>() <= 256, "a parameter struct over 256 bytes");
-                assert!(::core::mem::align_of::<#still>() <= 16, "aligned to more than 16 bytes");
-                ::luxel_sdk::abi::check_schema(<#still as ::luxel_sdk::params::Params>::SCHEMA);
-                const fn plain<T: ::luxel_sdk::params::Plain>() {}
-                #(plain::<#derived>();)*
+                const SCHEMA: &[::luxel_sdk::params::Param] =
+                    <#still as ::luxel_sdk::params::Params>::SCHEMA;
+                #(#asserts)*
+                fn _derived #impl_generics () #bounds {
+                    fn plain<T: ::luxel_sdk::params::Plain>() {}
+                    #(plain::<#derived>();)*
+                }
+                #table
             };
             #[automatically_derived]
             #[expect(unsafe_code, reason = "the derive states the struct's layout")]
@@ -139,6 +171,20 @@ impl Parts {
                 const SHARED: Option<::luxel_sdk::params::SharedFns> = #shared;
             }
         }
+    }
+}
+
+/// What the host's scratch memory has room for.
+fn layout(name: &Ident, still: &TokenStream) -> TokenStream {
+    quote_spanned! { name.span() =>
+        const _: () = assert!(
+            ::core::mem::size_of::<#still>() <= 256,
+            "parameters take at most 256 bytes: put large data into a `shared` table"
+        );
+        const _: () = assert!(
+            ::core::mem::align_of::<#still>() <= 16,
+            "parameters are aligned to at most 16 bytes"
+        );
     }
 }
 
@@ -238,7 +284,10 @@ fn amount_descriptor(id: &Ident, amount: &Ident) -> Result<TokenStream> {
             ("W/m^2|lx", "Irradiance or illuminance on a surface that faces the light.")
         }
         _ => {
-            let message = "amounts: scale, power, radiance, intensity, illuminance";
+            let message = format!(
+                "unknown amount `{amount}`; \
+                 the amounts are scale, power, radiance, intensity, illuminance"
+            );
             return Err(Error::new_spanned(amount, message));
         }
     };

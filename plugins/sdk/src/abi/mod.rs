@@ -15,7 +15,7 @@ use crate::kind::{
     PathIntegrator, Phase, PhaseRef, Sampler, Shape, Texture,
 };
 use crate::params::{
-    Build, BuildContext, Fault, Field, Param, Params, Preset, SharedFns, SharedTable, Type,
+    Build, BuildContext, Fault, Field, Param, Params, SharedFns, SharedTable, Type,
 };
 
 /// A lifetime as a value: how long the bytes behind a view are lent.
@@ -220,22 +220,4 @@ where
     let params = unsafe { &*p.cast::<P>() };
     let table = Box::new(params.build(context)?);
     Ok(SharedTable { address: (&raw const *table).cast(), owner: table })
-}
-
-/// Refuses a default outside its own range, while the plugin compiles.
-///
-/// # Panics
-/// Then: the panic is the compiler's message.
-pub const fn check_schema(schema: &[Param]) {
-    let mut i = 0;
-    while i < schema.len() {
-        let param = &schema[i];
-        if let Preset::Numbers(numbers) = param.default {
-            assert!(
-                numbers[0] >= param.min && numbers[0] <= param.max,
-                "a default lies outside its own range"
-            );
-        }
-        i += 1;
-    }
 }

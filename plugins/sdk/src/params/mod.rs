@@ -9,6 +9,7 @@ mod kind;
 mod fields;
 mod schema;
 mod unit;
+mod refuse;
 
 pub use dimension::Dimension;
 pub use fields::{
@@ -16,5 +17,6 @@ pub use fields::{
     ShapeSlot, Shared, Table, Text,
 };
 pub use kind::Kind;
+pub use refuse::{choice_is_said, default_is_in_range, range_is_ordered, unit_is_known};
 pub use schema::{Fault, Param, Params, Preset, Role, SharedFns, SharedTable, Type};
 pub use unit::{UNITS, Unit};

@@ -1,0 +1,11 @@
+use luxel_sdk::Params;
+
+/// A surface.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Surface {
+    #[param(default = 0.5)]
+    roughness: f32,
+}
+
+fn main() {}

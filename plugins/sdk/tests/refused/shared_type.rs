@@ -1,0 +1,21 @@
+use luxel_sdk::{Params, params::Shared};
+
+/// A picture.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Picture<'a> {
+    #[param(shared)]
+    pixels: &'a [u8],
+}
+
+/// Two tables.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Pictures<'a> {
+    #[param(shared)]
+    front: Shared<'a, Vec<u8>>,
+    #[param(shared)]
+    back: Shared<'a, Vec<u8>>,
+}
+
+fn main() {}

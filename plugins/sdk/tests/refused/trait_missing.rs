@@ -1,0 +1,14 @@
+use luxel_sdk::{Params, abi::Class};
+
+/// A surface.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Surface {
+    /// How rough.
+    #[param(default = 0.5)]
+    roughness: f32,
+}
+
+const CLASS: Class = Class::material::<Surface>("surface");
+
+fn main() {}

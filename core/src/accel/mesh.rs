@@ -8,6 +8,7 @@ use super::error::BuildError;
 use super::node::{Block, Bounds, Child, Node};
 use super::partition::PART;
 use super::ray::{Direction, Shear, Slabs, cull};
+use super::stack::Stack;
 use super::triangle::Nearest;
 
 /// A mesh's triangles in a four-wide tree, in f32 about the mesh's own centre.
@@ -141,13 +142,8 @@ impl MeshBvh {
         let steps = if root.is_leaf() {
             self.leaf::<ANY>(root, &shear, &mut best).1
         } else {
-            let ray = (shear, Slabs::new(o, direction.d, self.reach));
-            // A stack is cleared for each ray, so small trees get small ones.
-            match self.stack {
-                0..=16 => self.walk::<ANY, 16>(root, &ray, &mut best),
-                17..=64 => self.walk::<ANY, 64>(root, &ray, &mut best),
-                _ => self.walk::<ANY, 256>(root, &ray, &mut best),
-            }
+            let slabs = Slabs::new(o, direction.d, self.reach);
+            self.walk::<ANY>(root, &shear, &slabs, &mut best)
         };
         let hit = (best.id != u32::MAX).then(|| MeshHit {
             t: (best.t * self.per_unit).min(t_max),
@@ -172,16 +168,16 @@ impl MeshBvh {
         (false, steps)
     }
 
-    /// Visits nodes near to far by octant; `LEN` is a power of two not below `self.stack`.
+    /// Visits nodes near to far by octant; how many nodes and blocks they were.
     #[inline(always)]
-    fn walk<const ANY: bool, const LEN: usize>(
+    fn walk<const ANY: bool>(
         &self,
         root: Child,
-        (shear, slabs): &(Shear, Slabs),
+        shear: &Shear,
+        slabs: &Slabs,
         best: &mut Nearest,
     ) -> u32 {
-        let (mut children, mut enters) = ([Child::default(); LEN], [0.0f32; LEN]);
-        let mut top = 0;
+        let mut stack = Stack::<(Child, f32)>::new(self.stack);
         let mut current = root;
         let mut steps = 0;
         loop {
@@ -195,27 +191,16 @@ impl MeshBvh {
                 let node = &self.nodes[current.index()];
                 steps += 1;
                 let (entered, t) = slabs.enter(node, best.t);
-                if entered != 0 {
-                    // Writes all four, keeps those that are entered; the nearest comes last. The
-                    // mask on the index changes nothing, as `self.stack` bounds it, but tells so.
-                    let t = t.to_array();
-                    for slot in node.order.far_to_near(slabs.octant) {
-                        children[top & (LEN - 1)] = node.children[slot];
-                        enters[top & (LEN - 1)] = t[slot];
-                        top += entered as usize >> slot & 1;
-                    }
-                    top -= 1;
-                    current = children[top & (LEN - 1)];
-                    continue;
+                // Writes all four, keeps those that are entered; the nearest comes last.
+                let t = t.to_array();
+                for slot in node.order.far_to_near(slabs.octant) {
+                    stack.push_if(entered >> slot & 1 == 1, (node.children[slot], t[slot]));
                 }
             }
             loop {
-                if top == 0 {
-                    return steps;
-                }
-                top -= 1;
-                if enters[top & (LEN - 1)] <= cull(best.t) {
-                    current = children[top & (LEN - 1)];
+                let Some((child, t)) = stack.pop() else { return steps };
+                if t <= cull(best.t) {
+                    current = child;
                     break;
                 }
             }

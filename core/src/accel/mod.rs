@@ -10,6 +10,7 @@
 mod mesh;
 mod node;
 mod ray;
+mod stack;
 mod triangle;
 mod widest;
 
@@ -31,5 +32,5 @@ mod soup;
 pub use error::BuildError;
 pub use mesh::{MeshBvh, MeshHit};
 pub use ray::Direction;
-pub use top::TopBvh;
-pub use widest::widest;
+pub use top::{Step, TopBvh, Visit};
+pub use widest::{Work, widest};

@@ -9,6 +9,7 @@ use super::cluster::binary;
 use super::collapse::{Costs, Sink, collapse};
 use super::node::{Bounds, Child, Order, WIDTH, narrow};
 use super::partition::Prim;
+use super::stack::Stack;
 
 /// Unit roundoff of f64.
 const U: f64 = f64::EPSILON / 2.0;
@@ -61,76 +62,23 @@ impl TopBvh {
         Self { nodes: sink.nodes, root: Some(root.child), stack: 3 * root.depth + 4 }
     }
 
-    /// Calls `leaf(index, t_enter, t_max)` for the boxes that the ray enters at or before the
-    /// current limit, roughly near to far. What `leaf` returns becomes the limit; the result is the
-    /// last such value, or `None` if there was none.
+    /// Visits the boxes that the ray enters at or before the current limit, at first `t_max`, roughly
+    /// near to far, until the visitor stops.
     ///
-    /// `t` is in units of `d`, whose length is any but zero. `t_enter` is at least 0 and may be a
-    /// few roundings early. A ray that is not finite enters nothing.
+    /// `t` is in units of `d`, whose length is any but zero. A ray that is not finite enters nothing.
     #[inline(always)]
-    pub fn intersect(
-        &self,
-        o: DVec3,
-        d: DVec3,
-        t_max: f64,
-        mut leaf: impl FnMut(u32, f64, f64) -> Option<f64>,
-    ) -> Option<f64> {
-        let mut found = None;
-        self.walk(o, d, t_max, |index, t_enter, t_max| {
-            let nearer = leaf(index, t_enter, t_max);
-            found = nearer.or(found);
-            Step::Go(nearer.unwrap_or(t_max))
-        });
-        found
-    }
-
-    /// True as soon as `leaf(index, t_enter, t_max)` is, for a box that the ray enters within
-    /// `t_max`; in no promised order.
-    #[inline(always)]
-    pub fn any(
-        &self,
-        o: DVec3,
-        d: DVec3,
-        t_max: f64,
-        mut leaf: impl FnMut(u32, f64, f64) -> bool,
-    ) -> bool {
-        let mut found = false;
-        self.walk(o, d, t_max, |index, t_enter, t_max| {
-            found = leaf(index, t_enter, t_max);
-            if found { Step::Stop } else { Step::Go(t_max) }
-        });
-        found
-    }
-
-    #[inline(always)]
-    fn walk(&self, o: DVec3, d: DVec3, t_max: f64, leaf: impl FnMut(u32, f64, f64) -> Step) {
+    pub fn walk(&self, o: DVec3, d: DVec3, t_max: f64, visitor: &mut impl Visit) {
         let Some(root) = self.root else { return };
         if !(o.is_finite() && d.is_finite() && d != DVec3::ZERO) {
             return;
         }
         let ray = TopRay::new(o, d);
-        let t_max = t_max.min(f64::MAX);
-        // A stack is cleared for each ray, so small trees get small ones.
-        match self.stack {
-            0..=16 => self.walk_with::<16>(root, &ray, t_max, leaf),
-            17..=64 => self.walk_with::<64>(root, &ray, t_max, leaf),
-            _ => self.walk_with::<256>(root, &ray, t_max, leaf),
-        }
-    }
-
-    #[inline(always)]
-    fn walk_with<const LEN: usize>(
-        &self,
-        root: Child,
-        ray: &TopRay,
-        mut t_max: f64,
-        mut leaf: impl FnMut(u32, f64, f64) -> Step,
-    ) {
-        let (mut children, mut enters) = ([Child::default(); LEN], [0.0f64; LEN]);
-        let (mut current, mut t_enter, mut top) = (root, 0.0, 0);
+        let mut t_max = t_max.min(f64::MAX);
+        let mut stack = Stack::<(Child, f64)>::new(self.stack);
+        let (mut current, mut t_enter) = (root, 0.0);
         loop {
             if current.is_leaf() {
-                match leaf(narrow(current.blocks().start), t_enter, t_max) {
+                match visitor.enter(narrow(current.blocks().start), t_enter, t_max) {
                     Step::Go(limit) => t_max = limit,
                     Step::Stop => return,
                 }
@@ -139,17 +87,12 @@ impl TopBvh {
                 let (near, far) = ray.enter(node, t_max);
                 // Writes all four, keeps those that are entered; the nearest comes last.
                 for slot in node.order.far_to_near(ray.octant) {
-                    children[top & (LEN - 1)] = node.children[slot];
-                    enters[top & (LEN - 1)] = near[slot];
-                    top += usize::from(near[slot] <= far[slot]);
+                    stack.push_if(near[slot] <= far[slot], (node.children[slot], near[slot]));
                 }
             }
             loop {
-                if top == 0 {
-                    return;
-                }
-                top -= 1;
-                (current, t_enter) = (children[top & (LEN - 1)], enters[top & (LEN - 1)]);
+                let Some(top) = stack.pop() else { return };
+                (current, t_enter) = top;
                 if t_enter <= t_max * FAR {
                     break;
                 }
@@ -158,8 +101,20 @@ impl TopBvh {
     }
 }
 
-enum Step {
+/// Who is shown the boxes that a ray enters. A trait and not a closure, so that it can be compiled
+/// for several processors: see [`super::widest`].
+pub trait Visit {
+    /// A box is entered at `t_enter`, at least 0 and perhaps a few roundings early; `t_max` is the
+    /// limit now. To be `inline(always)`.
+    fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step;
+}
+
+/// What a visitor wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// More boxes, up to this limit.
     Go(f64),
+    /// No more.
     Stop,
 }
 
@@ -276,6 +231,14 @@ mod tests {
     use super::super::soup::Rng;
     use super::*;
 
+    struct By<F>(F);
+
+    impl<F: FnMut(u32, f64, f64) -> Step> Visit for By<F> {
+        fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step {
+            (self.0)(index, t_enter, t_max)
+        }
+    }
+
     fn boxes(n: usize, size: f32, rng: &mut Rng) -> Vec<Box64> {
         (0..n)
             .map(|_| {
@@ -294,11 +257,15 @@ mod tests {
 
     fn visited(tree: &TopBvh, o: DVec3, d: DVec3, t_max: f64) -> Vec<u32> {
         let mut seen = Vec::new();
-        let found = tree.any(o, d, t_max, |index, _, _| {
-            seen.push(index);
-            false
-        });
-        assert!(!found);
+        tree.walk(
+            o,
+            d,
+            t_max,
+            &mut By(|index, _, t_max| {
+                seen.push(index);
+                Step::Go(t_max)
+            }),
+        );
         seen.sort_unstable();
         seen
     }
@@ -327,26 +294,38 @@ mod tests {
         for _ in 0..500 {
             let (o, d) = (rng.point().as_dvec3() * 15.0, rng.point().as_dvec3());
             let best = boxes.iter().filter_map(|b| slab(*b, o, d, 1e9)).fold(f64::MAX, f64::min);
-            let found = tree.intersect(o, d, 1e9, |index, t_enter, t_max| {
-                let t = slab(boxes[index as usize], o, d, t_max)?;
-                // Three roundings on either side, and the slack of the origin.
-                assert!(t_enter <= t * FAR, "{t_enter} {t}");
-                (t < t_max).then_some(t)
-            });
-            assert_eq!(found.unwrap_or(f64::MAX).to_bits(), best.to_bits());
+            let mut found = f64::MAX;
+            tree.walk(
+                o,
+                d,
+                1e9,
+                &mut By(|index: u32, t_enter, t_max| {
+                    if let Some(t) = slab(boxes[index as usize], o, d, t_max) {
+                        // Three roundings on either side, and the slack of the origin.
+                        assert!(t_enter <= t * FAR, "{t_enter} {t}");
+                        found = found.min(t);
+                    }
+                    Step::Go(found.min(t_max))
+                }),
+            );
+            assert_eq!(found.to_bits(), best.to_bits());
         }
     }
 
     #[test]
-    fn any_stops_at_the_first_yes() {
+    fn a_visitor_stops_the_walk() {
         let mut rng = Rng(23);
         let tree = TopBvh::build(&boxes(500, 3.0, &mut rng));
         let mut calls = 0;
-        let found = tree.any(DVec3::splat(-20.0), DVec3::ONE, f64::INFINITY, |_, _, _| {
-            calls += 1;
-            calls == 3
-        });
-        assert!(found);
+        tree.walk(
+            DVec3::splat(-20.0),
+            DVec3::ONE,
+            f64::INFINITY,
+            &mut By(|_, _, t_max| {
+                calls += 1;
+                if calls == 3 { Step::Stop } else { Step::Go(t_max) }
+            }),
+        );
         assert_eq!(calls, 3);
     }
 

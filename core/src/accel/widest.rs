@@ -1,19 +1,26 @@
 //! One piece of work, compiled for what the processor has.
 #![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
 
+/// Work that is compiled for several processors. A closure would not do: the compiler decides
+/// whether that stands in its caller, and its caller is what says for which processor it is.
+pub trait Work {
+    /// Does it; to be `inline(always)`, like everything that it calls and that should be as fast.
+    fn run(self);
+}
+
 /// Does the work in code compiled for the widest registers that the processor has: everything in it
 /// that is `inline(always)` is compiled twice, for any processor and for one with AVX-512.
 ///
 /// The results are the same to the last bit: the compiler chooses other instructions, not other
 /// roundings.
 #[inline]
-pub fn widest<T>(work: impl FnOnce() -> T) -> T {
+pub fn widest(work: impl Work) {
     #[cfg(target_arch = "x86_64")]
     if has_avx512() {
         // SAFETY: the processor has these instructions, as just found.
         return unsafe { in_avx512(work) };
     }
-    work()
+    work.run();
 }
 
 /// Whether the processor has what x86-64-v4 names.
@@ -33,6 +40,6 @@ fn has_avx512() -> bool {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,bmi1,bmi2,lzcnt,popcnt,fma")]
-fn in_avx512<T>(work: impl FnOnce() -> T) -> T {
-    work()
+fn in_avx512(work: impl Work) {
+    work.run();
 }

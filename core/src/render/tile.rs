@@ -13,7 +13,7 @@ use luxel_sdk::sampling::hash_combine;
 use super::arrival::Shader;
 use super::path::Path;
 use super::{Control, shadow};
-use crate::accel::widest;
+use crate::accel::{Work, widest};
 use crate::cast;
 use crate::film::Tile;
 use crate::object::{ColorMode, Scratch, Site};
@@ -70,6 +70,9 @@ impl<'s> Worker<'s> {
 
     /// Adds the samples of a range to every pixel of a tile. A pass that is cancelled adds none.
     pub(super) fn pass(&mut self, tile: &mut Tile, range: Range<u32>, control: &Control) {
+        if control.is_cancelled() {
+            return;
+        }
         let n_pixels = tile.rect.area();
         let n = range.len();
         self.results.clear();
@@ -102,7 +105,7 @@ impl<'s> Worker<'s> {
             }
             std::mem::swap(&mut self.now, &mut self.next);
             self.next.clear();
-            self.shadows();
+            widest(Shadows(self));
             self.arrivals();
             self.retire();
         }
@@ -146,19 +149,18 @@ impl<'s> Worker<'s> {
     }
 
     /// Light that depended on shadow rays, in asking order.
+    #[inline(always)]
     fn shadows(&mut self) {
-        widest(|| {
-            for request in &self.now.shadows {
-                let lane = &mut self.lanes[request.lane as usize];
-                let path = &self.paths[request.lane as usize];
-                if self.stage.occluded(&request.ray, path.leaving()) {
-                    continue;
-                }
-                let (samples, scratch) = (&mut lane.samples, &mut self.scratch);
-                let left = shadow::passes(self.stage, &request.ray, path, samples, scratch);
-                lane.l += request.l * left;
+        for request in &self.now.shadows {
+            let lane = &mut self.lanes[request.lane as usize];
+            let path = &self.paths[request.lane as usize];
+            if self.stage.occluded(&request.ray, path.leaving()) {
+                continue;
             }
-        });
+            let (samples, scratch) = (&mut lane.samples, &mut self.scratch);
+            let left = shadow::passes(self.stage, &request.ray, path, samples, scratch);
+            lane.l += request.l * left;
+        }
     }
 
     /// Traces the paths that go on, shades where they arrive, and asks what now. One thing at a time
@@ -171,33 +173,41 @@ impl<'s> Worker<'s> {
                 self.fly_through(ray, lane as usize);
             }
         } else {
-            self.hits.clear();
-            widest(|| {
-                for (ray, lane) in &self.now.rays {
-                    let mut steps = 0;
-                    let from = self.paths[*lane as usize].leaving();
-                    let hit = stage.intersect(ray, from, &mut steps);
-                    self.hits.push((hit, steps));
-                }
-            });
-            widest(|| {
-                for ((ray, lane), (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
-                    let path = &mut self.paths[*lane as usize];
-                    let Lane { at, samples, .. } = &mut self.lanes[*lane as usize];
-                    let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
-                    let shader =
-                        Shader { stage, wants: self.wants, path, samples, scratch, flight };
-                    match hit {
-                        Some(hit) => shader.surface(ray, hit, *steps, at),
-                        None => shader.escaped(ray, *steps, at),
-                    }
-                }
-            });
+            widest(Trace(self));
+            widest(Shade(self));
         }
         self.arrived.clear();
         self.arrived.extend(self.now.rays.iter().map(|(_, lane)| *lane));
         let host = StageHost(stage);
         self.states.arrive_n(&mut self.lanes, &self.arrived, &host, &mut self.next);
+    }
+
+    /// Where the rays of this round meet the scene.
+    #[inline(always)]
+    fn trace(&mut self) {
+        self.hits.clear();
+        for (ray, lane) in &self.now.rays {
+            let mut steps = 0;
+            let from = self.paths[*lane as usize].leaving();
+            let hit = self.stage.intersect(ray, from, &mut steps);
+            self.hits.push((hit, steps));
+        }
+    }
+
+    /// What is there.
+    #[inline(always)]
+    fn shade(&mut self) {
+        let (stage, wants) = (self.stage, self.wants);
+        for ((ray, lane), (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
+            let path = &mut self.paths[*lane as usize];
+            let Lane { at, samples, .. } = &mut self.lanes[*lane as usize];
+            let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
+            let shader = Shader { stage, wants, path, samples, scratch, flight };
+            match hit {
+                Some(hit) => shader.surface(ray, hit, *steps, at),
+                None => shader.escaped(ray, *steps, at),
+            }
+        }
     }
 
     /// The same through media and open surfaces.
@@ -269,6 +279,31 @@ impl<'s> Worker<'s> {
         let l = self.lanes[lane].l * path.weight;
         self.results[path.job as usize] = self.to_rgb.sample(l, &path.palette.wavelengths);
         self.free.push(cast::index(lane));
+    }
+}
+
+struct Shadows<'a, 's>(&'a mut Worker<'s>);
+struct Trace<'a, 's>(&'a mut Worker<'s>);
+struct Shade<'a, 's>(&'a mut Worker<'s>);
+
+impl Work for Shadows<'_, '_> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.shadows();
+    }
+}
+
+impl Work for Trace<'_, '_> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.trace();
+    }
+}
+
+impl Work for Shade<'_, '_> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.shade();
     }
 }
 

@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 use luxel_sdk::kind::{Hit, Surface};
-use luxel_sdk::num::{Ray, Transform};
+use luxel_sdk::num::Transform;
 
-use crate::accel::Direction;
 use crate::scene::NodeId;
 
 /// What a placement's surface scatters with.
@@ -38,23 +37,6 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Asks about a ray of the world, with its direction made ready, in the geometry's frame.
-    #[inline(always)]
-    pub fn with_local<T>(
-        &self,
-        ray: &Ray,
-        direction: Option<&Direction>,
-        ask: impl FnOnce(&Ray, Option<&Direction>) -> T,
-    ) -> T {
-        match &self.transform {
-            Some(transform) => {
-                let local = transform.inverse_ray(ray);
-                ask(&local, Direction::new(local.d).as_ref())
-            }
-            None => ask(ray, direction),
-        }
-    }
-
     /// A point of the world in the geometry's frame.
     #[inline]
     pub fn point_to_local(&self, p: DVec3) -> DVec3 {

@@ -3,7 +3,7 @@
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::{Ray, sphere_roots};
 
-use crate::accel::Direction;
+use crate::accel::{Direction, Step, Visit};
 
 use super::placement::carried;
 use super::{Leaving, MediumStack, SceneHit, Skin, Stage};
@@ -13,37 +13,18 @@ impl Stage {
     #[inline(always)]
     pub fn intersect(&self, ray: &Ray, from: Option<Leaving>, steps: &mut u32) -> Option<SceneHit> {
         let world = Direction::new(ray.d);
-        let mut nearest = None;
-        let mut ray = *ray;
-        self.top.intersect(ray.o, ray.d, ray.t_max, |index, t_enter, t_max| {
-            *steps += 1;
-            ray.t_max = t_max;
-            let placement = &self.placements[index as usize];
-            let geometry = &self.geometries[placement.geometry as usize];
-            let from = Leaving::face_on(from, index);
-            let hit = placement.with_local(&ray, world.as_ref(), |ray, direction| {
-                geometry.intersect(ray, direction, t_enter, from, steps)
-            })?;
-            nearest = Some(SceneHit { placement: index, hit });
-            Some(hit.t)
-        });
-        nearest
+        let mut visitor = Nearest { stage: self, ray: *ray, world, from, steps, hit: None };
+        self.top.walk(ray.o, ray.d, ray.t_max, &mut visitor);
+        visitor.hit
     }
 
     /// Whether a surface that stops light lies along a ray that leaves `from`.
     #[inline(always)]
     pub fn occluded(&self, ray: &Ray, from: Option<Leaving>) -> bool {
         let world = Direction::new(ray.d);
-        // What is asked keeps its end, so the limit stays that of the ray.
-        self.top.any(ray.o, ray.d, ray.t_max, |index, t_enter, _| {
-            let placement = &self.placements[index as usize];
-            let geometry = &self.geometries[placement.geometry as usize];
-            let from = Leaving::face_on(from, index);
-            placement.skin != Skin::Open
-                && placement.with_local(ray, world.as_ref(), |ray, direction| {
-                    geometry.occluded(ray, direction, t_enter, from)
-                })
-        })
+        let mut visitor = Anything { stage: self, ray, world, from, found: false };
+        self.top.walk(ray.o, ray.d, ray.t_max, &mut visitor);
+        visitor.found
     }
 
     /// The point of a hit, in the world.
@@ -113,5 +94,67 @@ impl Stage {
             media.enter(placement, self.placements[placement as usize].interior);
         }
         media
+    }
+}
+
+/// Looks for the nearest surface along a ray, which it shortens.
+struct Nearest<'a> {
+    stage: &'a Stage,
+    ray: Ray,
+    /// The ray's direction, for placements without a transform.
+    world: Option<Direction>,
+    from: Option<Leaving>,
+    steps: &'a mut u32,
+    hit: Option<SceneHit>,
+}
+
+impl Visit for Nearest<'_> {
+    #[inline(always)]
+    fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step {
+        *self.steps += 1;
+        self.ray.t_max = t_max;
+        let placement = &self.stage.placements[index as usize];
+        let geometry = &self.stage.geometries[placement.geometry as usize];
+        let from = Leaving::face_on(self.from, index);
+        let found = match &placement.transform {
+            None => geometry.intersect(&self.ray, self.world.as_ref(), t_enter, from, self.steps),
+            Some(transform) => {
+                let ray = transform.inverse_ray(&self.ray);
+                let direction = Direction::new(ray.d);
+                geometry.intersect(&ray, direction.as_ref(), t_enter, from, self.steps)
+            }
+        };
+        let Some(hit) = found else { return Step::Go(t_max) };
+        self.hit = Some(SceneHit { placement: index, hit });
+        Step::Go(hit.t)
+    }
+}
+
+/// Looks for any surface that stops light along a ray.
+struct Anything<'a> {
+    stage: &'a Stage,
+    ray: &'a Ray,
+    world: Option<Direction>,
+    from: Option<Leaving>,
+    found: bool,
+}
+
+impl Visit for Anything<'_> {
+    #[inline(always)]
+    fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step {
+        let placement = &self.stage.placements[index as usize];
+        let geometry = &self.stage.geometries[placement.geometry as usize];
+        let from = Leaving::face_on(self.from, index);
+        if placement.skin == Skin::Open {
+            return Step::Go(t_max);
+        }
+        self.found = match &placement.transform {
+            None => geometry.occluded(self.ray, self.world.as_ref(), t_enter, from),
+            Some(transform) => {
+                let ray = transform.inverse_ray(self.ray);
+                geometry.occluded(&ray, Direction::new(ray.d).as_ref(), t_enter, from)
+            }
+        };
+        if self.found { Step::Stop } else { Step::Go(t_max) }
     }
 }

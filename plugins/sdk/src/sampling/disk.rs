@@ -2,7 +2,7 @@
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_4};
 
-use glam::Vec2;
+use glam::{BVec2, Vec2};
 
 /// Density of [`disk_concentric`], per unit of area on the unit disk.
 pub const DISK_PDF: f32 = FRAC_1_PI;
@@ -19,7 +19,7 @@ pub fn disk_concentric(u: [f32; 2]) -> Vec2 {
     let r = if wide { a } else { b };
     let ratio = (if wide { b } else { a }) / r;
     let (sin, cos) = sin_cos_octant(FRAC_PI_4 * if r == 0.0 { 0.0 } else { ratio });
-    Vec2::new(if wide { cos } else { sin }, if wide { sin } else { cos }) * r
+    Vec2::select(BVec2::splat(wide), Vec2::new(cos, sin), Vec2::new(sin, cos)) * r
 }
 
 /// Sine and cosine of an angle in [-π/4, π/4], to 2⁻²³: the same on every machine, where those of the

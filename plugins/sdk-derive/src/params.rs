@@ -139,6 +139,7 @@ impl Parts {
         };
         let Self { descriptors, asserts, derived, shared, table } = self;
         let has_derived = !derived.is_empty();
+        let lends = input.generics.lifetimes().next().is_some();
         let layout = layout(name, &still);
         let table = table.map(|(id, table)| {
             quote! {
@@ -153,6 +154,7 @@ impl Parts {
             const _: () = {
                 const SCHEMA: &[::luxel_sdk::params::Param] =
                     <#still as ::luxel_sdk::params::Params>::SCHEMA;
+                const LENDS: bool = #lends;
                 #(#asserts)*
                 fn _derived #impl_generics () #bounds {
                     fn plain<T: ::luxel_sdk::params::Plain>() {}

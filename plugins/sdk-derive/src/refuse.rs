@@ -73,6 +73,17 @@ pub(crate) fn asserts(id: &Ident, at: usize, a: &Attributes) -> Vec<TokenStream>
             quote!(::luxel_sdk::params::unit_is_known(#param)),
             format!("unknown unit `{}` of `{id}`; units are m, s, rad, W, … and products", a.unit),
         ),
+        claim(
+            id,
+            quote!(::luxel_sdk::params::name_is_free(SCHEMA, #at)),
+            format!("another parameter has the name of `{id}`"),
+        ),
+        // An alias may hide the lifetime that `static_lifetime` looks for.
+        claim(
+            id,
+            quote!(LENDS || !::luxel_sdk::params::is_lent(#param)),
+            format!("the host lends `{id}` for less than 'static: give the struct a lifetime"),
+        ),
     ];
     if let Some(default) = &a.default {
         let default_text = text(default);

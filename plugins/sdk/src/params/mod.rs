@@ -17,6 +17,8 @@ pub use fields::{
     ShapeSlot, Shared, Table, Text,
 };
 pub use kind::Kind;
-pub use refuse::{choice_is_said, default_is_in_range, range_is_ordered, unit_is_known};
+pub use refuse::{
+    choice_is_said, default_is_in_range, is_lent, name_is_free, range_is_ordered, unit_is_known,
+};
 pub use schema::{Fault, Param, Params, Preset, Role, SharedFns, SharedTable, Type};
 pub use unit::{UNITS, Unit};

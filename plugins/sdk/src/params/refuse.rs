@@ -1,6 +1,6 @@
 //! What the derive asserts of each parameter while a plugin compiles.
 
-use super::{Param, Preset, Type, UNITS};
+use super::{Kind, Param, Preset, Type, UNITS};
 
 /// Whether the default is one of the legal values; true where there is none. NaN is in no range.
 pub const fn default_is_in_range(param: &Param) -> bool {
@@ -29,6 +29,29 @@ pub const fn default_is_in_range(param: &Param) -> bool {
 )]
 const fn is_u32(number: f64) -> bool {
     number as u32 as f64 == number
+}
+
+/// Whether the field borrows what the host lends for one call: its struct needs a lifetime.
+pub const fn is_lent(param: &Param) -> bool {
+    match param.ty {
+        Type::Text | Type::File | Type::Table => true,
+        // A shape is a number.
+        Type::Object(kind) => !matches!(kind, Kind::Shape),
+        _ => false,
+    }
+}
+
+/// Whether no parameter before `schema[at]` has its name.
+pub const fn name_is_free(schema: &[Param], at: usize) -> bool {
+    let name = schema[at].name.as_bytes();
+    let mut i = 0;
+    while i < at {
+        if same(schema[i].name.as_bytes(), name, 0, name.len()) {
+            return false;
+        }
+        i += 1;
+    }
+    true
 }
 
 /// Whether some number lies in the range.

@@ -18,6 +18,7 @@ mod medium;
 mod phase;
 mod reference;
 mod report;
+mod reversal;
 mod sampler;
 mod shape;
 mod statistics;

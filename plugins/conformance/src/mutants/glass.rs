@@ -15,6 +15,8 @@ enum Fault {
     KeepsRadiance,
     HidesDispersion,
     SaysIndexOfEntry,
+    SameIndexBothWays,
+    SchlickFromInside,
 }
 
 /// A smooth boundary.
@@ -28,9 +30,10 @@ impl Glass {
         if !(wo.z.abs() > 0.0) {
             return None;
         }
-        let eta = if wo.z < 0.0 { 1.0 / self.ior } else { self.ior };
+        let inside = wo.z < 0.0 && self.fault != Fault::SameIndexBothWays;
+        let eta = if inside { 1.0 / self.ior } else { self.ior };
         let cos = wo.z.abs();
-        let reflected = eta.to_array().map(|eta| dielectric_reflectance(cos, eta));
+        let reflected = eta.to_array().map(|eta| self.reflected(cos, eta, wo.z < 0.0));
         let chance = reflected[0];
         if u[2] < chance {
             let weight = Spectrum::from_array(reflected) / chance;
@@ -46,6 +49,15 @@ impl Glass {
         }
         let said = if self.fault == Fault::SaysIndexOfEntry { self.ior.lane(0) } else { eta };
         Some(Sample { weight: Spectrum::splat(weight), wi, pdf: 1.0, eta: said, lobe })
+    }
+
+    fn reflected(&self, cos: f32, eta: f32, inside: bool) -> f32 {
+        if inside && self.fault == Fault::SchlickFromInside {
+            // Schlick's formula holds for the cosine on the thin side.
+            let r0 = ((eta - 1.0) / (eta + 1.0)).powi(2);
+            return r0 + (1.0 - r0) * (1.0 - cos).max(0.0).powi(5);
+        }
+        dielectric_reflectance(cos, eta)
     }
 
     fn disperses(&self) -> bool {
@@ -85,6 +97,8 @@ glass!(Sound);
 glass!(KeepsRadiance);
 glass!(HidesDispersion);
 glass!(SaysIndexOfEntry);
+glass!(SameIndexBothWays);
+glass!(SchlickFromInside);
 
 /// The same without a fault.
 #[cfg(test)]
@@ -103,5 +117,13 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         class: Class::material::<SaysIndexOfEntry>("says_index_of_entry"),
         fault: "tells the index of entry when leaving",
+    },
+    Mutant {
+        class: Class::material::<SameIndexBothWays>("same_index_both_ways"),
+        fault: "bends light that leaves as if it entered",
+    },
+    Mutant {
+        class: Class::material::<SchlickFromInside>("schlick_from_inside"),
+        fault: "Schlick with the wrong cosine inside",
     },
 ];

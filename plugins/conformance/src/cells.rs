@@ -37,6 +37,13 @@ pub(crate) struct Cell {
     high: [f64; 2],
 }
 
+impl Cell {
+    /// The part of its chart that it covers.
+    pub(crate) fn area(&self) -> f64 {
+        (self.high[0] - self.low[0]) * (self.high[1] - self.low[1])
+    }
+}
+
 /// All charts, divided.
 pub(crate) struct Cells {
     roots: Vec<usize>,

@@ -23,6 +23,20 @@ pub(crate) struct Lobes<'a> {
     pub(crate) eval: &'a dyn Fn(DVec3) -> [f64; 2],
 }
 
+/// The check that [`Found::dense`] is near 0, alone and on the average over many directions.
+pub(crate) const SHARES: &str = "lobes get their shares";
+
+/// What was found of one direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    /// ∫ pdf and ∫ value.
+    pub(crate) total: Integral,
+    /// By how many standard deviations the half of the density that is most dense has too many
+    /// samples: where one lobe in a wider one is chosen too often, this sees it before chi-square
+    /// does, which spreads it over all cells.
+    pub(crate) dense: f64,
+}
+
 /// Evaluations for all cells of one direction.
 const BUDGET: u32 = 250_000;
 
@@ -39,14 +53,14 @@ impl Lobes<'_> {
     /// Chi-square of directions, ∫ pdf against the chance of a sample, ∫ value against the mean
     /// weight.
     ///
-    /// Gives back both integrals.
+    /// Gives back both integrals, and how the samples are shared.
     pub(crate) fn judge(
         &self,
         judge: &mut Judge,
         rng: &mut Rng,
         n: u32,
         at: &dyn Fn() -> String,
-    ) -> Integral {
+    ) -> Found {
         let mut numbers = || {
             let [u, v] = rng.pair();
             [u, v, rng.f32()]
@@ -65,10 +79,12 @@ impl Lobes<'_> {
                 count += 1.0;
             }
         }
-        let total = self.expect(&cells, &mut tallies, f64::from(n));
         let n = f64::from(n);
+        let total = self.expect(&cells, &mut tallies, n);
+        let dense = denser_half(&cells, &tallies, n);
         let z = chi_square(tallies);
         judge.statistic("samples follow their pdf", z, at);
+        judge.statistic(SHARES, dense.abs(), at);
         let error = total.error[0] + ROUNDING * total.value[0];
         judge.statistic(
             "pdf integrates to P(sample)",
@@ -90,7 +106,7 @@ impl Lobes<'_> {
                 format!("{}: ∫f = {:.6} ± {error:.1e}, mean = {mean:.6}", at(), total.value[1])
             });
         }
-        total
+        Found { total, dense }
     }
 
     /// Integrates over every cell; the sums.
@@ -114,5 +130,30 @@ impl Lobes<'_> {
             }
         }
         total
+    }
+}
+
+/// `Found::dense` of `n` samples.
+fn denser_half(cells: &Cells, tallies: &[Tally], n: f64) -> f64 {
+    let density = |i: &usize| tallies[*i].expected / cells.leaves[*i].area();
+    let mut order: Vec<usize> = (0..tallies.len()).collect();
+    order.sort_by(|a, b| density(b).total_cmp(&density(a)));
+    let half = 0.5 * tallies.iter().map(|tally| tally.expected).sum::<f64>();
+    let mut sum = Tally::default();
+    for tally in order.into_iter().map(|i| tallies[i]) {
+        if sum.expected >= half {
+            break;
+        }
+        sum.expected += tally.expected;
+        sum.error += tally.error;
+        sum.found += tally.found;
+    }
+    let p = sum.expected / n;
+    let over = sum.found - sum.expected;
+    // A single cell that holds everything has no halves.
+    if p > 0.01 && p < 0.99 {
+        deviation(over, sum.error, (n * p * (1.0 - p)).sqrt()).copysign(over)
+    } else {
+        0.0
     }
 }

@@ -7,8 +7,9 @@ use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample};
 use luxel_sdk::num::Moments;
 use luxel_sdk::sampling::{Rng, uniform_sphere};
 
-use crate::lobes::{Drawn, Lobes};
+use crate::lobes::{Drawn, Lobes, SHARES};
 use crate::report::Judge;
+use crate::reversal::is_reversible;
 use crate::statistics::{deviation, mean_error};
 use crate::subject::Subject;
 
@@ -28,15 +29,23 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
             keeps_its_needs(m, &mut rng, judge, &at);
         });
     }
+    let (mut dense, mut views) = (0.0, 0.0);
     for (set, mut rng) in subject.usual() {
         set.ask(|resolved| {
             let m = resolved.material();
             let at = || set.label.clone();
             is_reciprocal(m, &mut rng, judge, &at);
+            is_reversible(m, &mut rng, judge, &at);
             for cos in VIEWS {
-                scatters(m, cos, &mut rng, subject.options.samples, judge, &at);
+                if let Some(z) = scatters(m, cos, &mut rng, subject.options.samples, judge, &at) {
+                    (dense, views) = (dense + z, views + 1.0);
+                }
             }
         });
+    }
+    if views > 0.0 {
+        let z = f64::abs(dense) / f64::sqrt(views);
+        judge.statistic(SHARES, z, || format!("over {views} directions"));
     }
     subject.concurrent(judge, |resolved| {
         let (m, mut rng) = (resolved.material(), Rng::new(7));
@@ -182,7 +191,8 @@ fn is_reciprocal(m: &dyn Material, rng: &mut Rng, judge: &mut Judge, at: &dyn Fn
     }
 }
 
-/// Samples against `eval`: weight, density, energy, and where they fall.
+/// Samples against `eval`: weight, density, energy, and where they fall. Gives back how lobes are
+/// shared, where they have a density.
 fn scatters(
     m: &dyn Material,
     cos: f32,
@@ -190,7 +200,7 @@ fn scatters(
     n: u32,
     judge: &mut Judge,
     at: &dyn Fn() -> String,
-) {
+) -> Option<f64> {
     let wo = view(cos, TAU * rng.f32());
     let at = || format!("{}: wo {wo}", at());
     let mut energy = [Moments::default(); 4];
@@ -225,7 +235,7 @@ fn scatters(
     if deltas == n {
         let black = (0..200).all(|_| m.eval(wo, uniform_sphere(rng.pair())) == Eval::ZERO);
         judge.holds("eval is 0 for a delta", black, at);
-        return;
+        return None;
     }
     let sample = |u: [f32; 3]| {
         let s = m.sample(wo, u).filter(|s| !s.lobe.has(Lobe::DELTA))?;
@@ -240,10 +250,11 @@ fn scatters(
         }
         [f64::from(eval.pdf), f64::from(eval.f.mean())]
     };
-    Lobes { sample: &sample, eval: &eval }.judge(judge, rng, n, &at);
+    let found = Lobes { sample: &sample, eval: &eval }.judge(judge, rng, n, &at);
     judge.holds("finite and not negative", illegal.get().is_none(), || {
         format!("{}: {:?}", at(), illegal.get())
     });
+    Some(found.dense)
 }
 
 /// A specular surface bends light by the relative index that it states (Snell's law).

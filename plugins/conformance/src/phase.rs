@@ -112,7 +112,8 @@ fn scatters(
         let eval = phase.eval(wo, wi.as_vec3());
         [f64::from(eval.pdf), f64::from(eval.f.mean())]
     };
-    let total = Lobes { sample: &sample, eval: &eval }.judge(judge, rng, n, &at);
+    let found = Lobes { sample: &sample, eval: &eval }.judge(judge, rng, n, &at);
+    let total = found.total;
     let off = (total.value[1] - 1.0).abs() - total.error[1];
     judge.within("phase function integrates to 1", off, 1e-3, || {
         format!("{}: {}", at(), total.value[1])

@@ -23,6 +23,7 @@ enum Fault {
     BrightAtGrazing,
     PaleGreen,
     RollsItsOwn,
+    UnevenChoice,
 }
 
 /// A mirror in facets, mixed with chalk in equal parts.
@@ -70,6 +71,8 @@ impl Metal {
         let mut choice = u[2];
         if self.fault == Fault::RollsItsOwn {
             choice = u32_to_unit(hash32(ROLLED.fetch_add(1, Ordering::Relaxed)));
+        } else if self.fault == Fault::UnevenChoice {
+            choice *= 0.95;
         }
         let wi = if choice < HALF {
             let wm = self.facets.sample(up, [u[0], u[1]]);
@@ -145,6 +148,7 @@ metal!(DarkInside);
 metal!(BrightAtGrazing);
 metal!(PaleGreen);
 metal!(RollsItsOwn);
+metal!(UnevenChoice);
 
 /// The same without a fault.
 #[cfg(test)]
@@ -173,5 +177,9 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         class: Class::material::<RollsItsOwn>("rolls_its_own"),
         fault: "random numbers of its own",
+    },
+    Mutant {
+        class: Class::material::<UnevenChoice>("uneven_choice"),
+        fault: "lobes chosen 53 to 47, not in halves",
     },
 ];

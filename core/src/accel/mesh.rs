@@ -8,7 +8,7 @@ use super::error::BuildError;
 use super::node::{Block, Bounds, Child, Node};
 use super::partition::PART;
 use super::ray::{Direction, Shear, Slabs, cull};
-use super::stack::Stack;
+use super::stack::Room;
 use super::triangle::Nearest;
 
 /// A mesh's triangles in a four-wide tree, in f32 about the mesh's own centre.
@@ -177,7 +177,8 @@ impl MeshBvh {
         slabs: &Slabs,
         best: &mut Nearest,
     ) -> u32 {
-        let mut stack = Stack::<(Child, f32)>::new(self.stack);
+        let mut room = Room::<(Child, f32)>::new();
+        let mut stack = room.stack(self.stack);
         let mut current = root;
         let mut steps = 0;
         loop {

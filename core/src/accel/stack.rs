@@ -6,24 +6,34 @@ use std::mem::MaybeUninit;
 /// One more than a tree may ask for: builders bound the depth.
 const ROOM: usize = 257;
 
-/// A stack of small values in place. It is not cleared when it is made: a ray would pay for that
-/// more than for a small tree.
-pub(super) struct Stack<T: Copy> {
-    room: [MaybeUninit<T>; ROOM],
+/// Room for a stack of small values. It is not cleared when it is made: a ray would pay for that more
+/// than for a small tree.
+pub(super) struct Room<T: Copy>([MaybeUninit<T>; ROOM]);
+
+/// A stack in its room, apart from it so that its length stays in a register.
+pub(super) struct Stack<'a, T: Copy> {
+    room: &'a mut [MaybeUninit<T>; ROOM],
     len: usize,
 }
 
-impl<T: Copy> Stack<T> {
-    /// An empty stack for at most `need` entries at once, and one more that is written and not kept.
+impl<T: Copy> Room<T> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self([const { MaybeUninit::uninit() }; ROOM])
+    }
+
+    /// An empty stack for at most `need` entries at once.
     ///
     /// # Panics
     /// For a tree that needs more than there is: builders bound that.
     #[inline(always)]
-    pub(super) fn new(need: usize) -> Self {
+    pub(super) fn stack(&mut self, need: usize) -> Stack<'_, T> {
         assert!(need < ROOM, "builders bound the depth of trees");
-        Self { room: [const { MaybeUninit::uninit() }; ROOM], len: 0 }
+        Stack { room: &mut self.0, len: 0 }
     }
+}
 
+impl<T: Copy> Stack<'_, T> {
     /// Writes a value and keeps it if `kept`: without a branch, which could not be foreseen.
     ///
     /// # Panics
@@ -49,7 +59,8 @@ mod tests {
 
     #[test]
     fn what_is_kept_comes_back_last_first() {
-        let mut stack = Stack::new(3);
+        let mut room = Room::new();
+        let mut stack = room.stack(3);
         for (kept, value) in [(true, 1), (false, 2), (true, 3), (false, 4)] {
             stack.push_if(kept, value);
         }

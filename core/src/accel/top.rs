@@ -9,7 +9,7 @@ use super::cluster::binary;
 use super::collapse::{Costs, Sink, collapse};
 use super::node::{Bounds, Child, Order, WIDTH, narrow};
 use super::partition::Prim;
-use super::stack::Stack;
+use super::stack::Room;
 
 /// Unit roundoff of f64.
 const U: f64 = f64::EPSILON / 2.0;
@@ -74,7 +74,8 @@ impl TopBvh {
         }
         let ray = TopRay::new(o, d);
         let mut t_max = t_max.min(f64::MAX);
-        let mut stack = Stack::<(Child, f64)>::new(self.stack);
+        let mut room = Room::<(Child, f64)>::new();
+        let mut stack = room.stack(self.stack);
         let (mut current, mut t_enter) = (root, 0.0);
         loop {
             if current.is_leaf() {

@@ -122,9 +122,11 @@ impl Shader<'_, '_> {
             });
         }
         if self.wants.has(Wants::SCATTER) {
-            let [u0, u1] = numbers.scatter;
-            let u2 = self.samples.next_1d_if(needs.has(Needs::CHOICE));
-            let sample = material.sample(local.wo, [u0, u1, u2]);
+            // The pair is copied as such: read again at once in another size, it would be waited for.
+            let mut u = [0.0; 3];
+            u[..2].copy_from_slice(&numbers.scatter);
+            u[2] = self.samples.next_1d_if(needs.has(Needs::CHOICE));
+            let sample = material.sample(local.wo, u);
             at.scatter = sample.and_then(|sample| self.scattered(&local, &sample));
         }
     }

@@ -85,10 +85,10 @@ impl TopBvh {
                 }
             } else {
                 let node = &self.nodes[current.index()];
-                let (near, far) = ray.enter(node, t_max);
+                let (entered, t) = ray.enter(node, t_max);
                 // Writes all four, keeps those that are entered; the nearest comes last.
                 for slot in node.order.far_to_near(ray.octant) {
-                    stack.push_if(near[slot] <= far[slot], (node.children[slot], near[slot]));
+                    stack.push_if(entered >> slot & 1 == 1, (node.children[slot], t[slot]));
                 }
             }
             loop {
@@ -145,10 +145,10 @@ impl TopRay {
         }
     }
 
-    /// Entry and exit of the four boxes; a box is missed where the entry is the later. A slab that
-    /// gives NaN (a parallel ray within its plane) does not cut.
+    /// Which of the four boxes the ray enters, one bit each, and where. A slab that gives NaN (a
+    /// parallel ray within its plane) does not cut.
     #[inline(always)]
-    fn enter(&self, node: &TopNode, t_max: f64) -> ([f64; WIDTH], [f64; WIDTH]) {
+    fn enter(&self, node: &TopNode, t_max: f64) -> (u32, [f64; WIDTH]) {
         let mut t_near = [0.0; WIDTH];
         let mut t_far = [t_max; WIDTH];
         for axis in 0..3 {
@@ -161,10 +161,8 @@ impl TopRay {
                 t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
             }
         }
-        for t in &mut t_far {
-            *t *= FAR;
-        }
-        (t_near, t_far)
+        let entered = |lane: usize| u32::from(t_near[lane] <= t_far[lane] * FAR) << lane;
+        ((0..WIDTH).map(entered).sum(), t_near)
     }
 }
 

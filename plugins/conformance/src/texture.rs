@@ -1,23 +1,32 @@
 //! Textures: finite everywhere, the same each time, and no brighter than what they are made of.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec2};
-use luxel_core::object::ColorMode;
+use luxel_core::object::{ColorMode, Object, Scratch, Site};
 use luxel_core::scene::{Color, Value};
-use luxel_sdk::color::{Spectrum, Wavelengths};
+use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::{Output, Texture, TexturePoint};
 use luxel_sdk::params::{Dimension, Type};
 use luxel_sdk::sampling::Rng;
 
 use crate::report::Judge;
 use crate::subject::Subject;
-use crate::sweep::{Set, own};
+use crate::sweep::{Given, Set, own};
 
-/// Coordinates far out and on edges.
-const EXTREME: [f32; 14] = [
+/// Coordinates far out and on edges, and next to whole numbers on either side: what is left of the
+/// floor of the smallest below 0 rounds to 1.
+const EXTREME: [f32; 20] = [
     0.0,
     -0.0,
+    f32::MIN_POSITIVE,
+    -f32::MIN_POSITIVE,
+    -3e-8,
     1.0,
+    1.0 + f32::EPSILON,
     -1.0,
+    -1.0 + 0.5 * f32::EPSILON,
+    -1.0 - f32::EPSILON,
     0.5,
     -0.5,
     1e-30,
@@ -38,6 +47,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
         set.ask(|resolved| {
             let texture = resolved.texture();
             is_finite(texture, &mut rng, set, judge);
+            forgets(texture, &mut rng, set, judge);
             let output = set.object.fixed().texture().output();
             judge.holds("says what its lanes mean once", output == texture.output(), || {
                 set.label.clone()
@@ -47,8 +57,17 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
             }
         });
     }
-    for (white, limits) in [(0.0, [0.0, 0.0]), (1.0, [0.0, 1.0]), (0.25, [0.0, 1.0])] {
-        honours_bounds(subject, white, limits, judge);
+    let nominal = Colours::of(subject);
+    if let Some(colours) = &nominal {
+        for (white, limits) in [(0.0, [0.0, 0.0]), (1.0, [0.0, 1.0]), (0.25, [0.0, 1.0])] {
+            honours_bounds(colours, &|_| white, limits, judge);
+        }
+        // Between two colours a blend shows what it adds to either.
+        let below_one = [f64::NEG_INFINITY, 1.0];
+        honours_bounds(colours, &|i| [0.0, 1.0][i % 2], below_one, judge);
+        honours_bounds(colours, &|i| [1.0, 0.0][i % 2], below_one, judge);
+        keeps_colours(colours, judge);
+        looks_at_wavelengths(colours, judge);
     }
     subject.concurrent(judge, |resolved| {
         let (texture, mut rng) = (resolved.texture(), Rng::new(7));
@@ -114,32 +133,132 @@ fn keeps_lanes(texture: &dyn Texture, rng: &mut Rng, set: &Set, judge: &mut Judg
     }
 }
 
-/// With every colour at one value and all else as by default, nothing leaves the range of what it
-/// is made of.
-fn honours_bounds(subject: &Subject<'_>, white: f64, limits: [f64; 2], judge: &mut Judge) {
-    let Some(nominal) = subject.sets.first() else { return };
-    let mut given = nominal.given.clone();
-    let mut colours = 0;
-    for param in own(&subject.class).filter(|param| param.ty == Type::Spectrum) {
-        given.retain(|(name, _)| *name != param.name);
-        let value = Value::Color(Color::Constant(white), Dimension::NONE);
-        given.push((param.name, value));
-        colours += 1;
+/// The same at each point whatever was asked before: points that share a coordinate with the one
+/// before, in three orders.
+fn forgets(texture: &dyn Texture, rng: &mut Rng, set: &Set, judge: &mut Judge) {
+    const SIDE: usize = 12;
+    let u: [f32; SIDE] = std::array::from_fn(|_| 2.0 * rng.f32() - 1.0);
+    let v: [f32; SIDE] = std::array::from_fn(|_| 2.0 * rng.f32() - 1.0);
+    let ask = |i: usize, j: usize| {
+        let uv = Vec2::new(u[i], v[j]);
+        let p = DVec3::new(f64::from(u[i]), f64::from(v[j]), 0.5);
+        bits(texture.eval(&TexturePoint { p, uv, lambda: Wavelengths::sample(0.5) }))
+    };
+    let cells = || (0..SIDE * SIDE).map(|k| (k / SIDE, k % SIDE));
+    let first: Vec<_> = cells().map(|(i, j)| ask(i, j)).collect();
+    let same = |(i, j): (usize, usize)| ask(i, j) == first[i * SIDE + j];
+    let across = cells().all(|(i, j)| same((j, i)));
+    let back = cells().rev().all(same);
+    judge.holds("the same in any order", across && back, || set.label.clone());
+}
+
+/// What a texture is made of: the parameters of its nominal set but for its colours.
+struct Colours<'a> {
+    subject: &'a Subject<'a>,
+    rest: Given,
+    names: Vec<&'static str>,
+}
+
+impl<'a> Colours<'a> {
+    fn of(subject: &'a Subject<'a>) -> Option<Self> {
+        let params = own(&subject.class).filter(|param| param.ty == Type::Spectrum);
+        let names: Vec<_> = params.map(|param| param.name).collect();
+        let mut rest = subject.sets.first()?.given.clone();
+        rest.retain(|(name, _)| !names.contains(name));
+        Some(Self { subject, rest, names })
     }
+
+    /// The texture with the given colours, by their order.
+    fn build(&self, colour: &dyn Fn(usize) -> Color, mode: ColorMode) -> Option<Arc<Object>> {
+        let colours = self.names.iter().enumerate();
+        let mut given = self.rest.clone();
+        given.extend(colours.map(|(i, name)| (*name, Value::Color(colour(i), Dimension::NONE))));
+        self.subject.bench.build(&self.subject.class, &given, mode).ok()
+    }
+}
+
+/// Points that are spread evenly over four periods, and those next to whole numbers.
+fn grid(rng: &mut Rng) -> impl Iterator<Item = TexturePoint> {
+    const SIDE: usize = 64;
+    let near = EXTREME.into_iter().filter(|x| x.abs() < 2.0);
+    let mut edges: Vec<_> = near.clone().flat_map(|u| near.clone().map(move |v| [u, v])).collect();
+    edges.extend((0..SIDE * SIDE).map(|k| {
+        let [u, v] = rng.pair();
+        [((k / SIDE) as f32 + u), ((k % SIDE) as f32 + v)].map(|x| x * (2.0 / SIDE as f32) - 1.0)
+    }));
+    edges.into_iter().map(|[u, v]| {
+        let p = DVec3::new(f64::from(u), f64::from(v), f64::from(u + v));
+        TexturePoint { p, uv: Vec2::new(u, v), lambda: Wavelengths::sample(0.5) }
+    })
+}
+
+/// With each colour at a value and all else as by default, nothing leaves the range of what it is
+/// made of.
+fn honours_bounds(
+    colours: &Colours<'_>,
+    white: &dyn Fn(usize) -> f64,
+    limits: [f64; 2],
+    judge: &mut Judge,
+) {
     // Without colours of its own, what it shows comes from a file between 0 and 1.
-    let limits = if colours == 0 { [0.0, 1.0] } else { limits };
-    let Ok(object) = subject.bench.build(&subject.class, &given, ColorMode::Rgb) else { return };
+    let limits = if colours.names.is_empty() { [0.0, 1.0] } else { limits };
+    let grey = |i| Color::Constant(white(i));
+    let Some(object) = colours.build(&grey, ColorMode::Rgb) else { return };
     let texture = object.fixed().texture();
-    let mut rng = Rng::new(subject.options.seed);
-    for _ in 0..2000 {
-        let at = point(&mut rng);
+    let mut rng = Rng::new(colours.subject.options.seed);
+    for at in grid(&mut rng) {
         let value = texture.eval(&at);
         let lanes = if texture.output() == Output::Rgb { 3 } else { 4 };
         for lane in value.to_array().into_iter().take(lanes).map(f64::from) {
             let off = (limits[0] - lane).max(lane - limits[1]);
             judge.within("within what it is made of", off.max(0.0), ROUNDING, || {
-                format!("colours of {white}: {lane} at {at:?}")
+                format!("colours of {}, {}: {lane} at {at:?}", white(0), white(1))
             });
         }
+    }
+}
+
+/// What colours the two checks of colours give.
+fn vivid(i: usize) -> [f64; 3] {
+    [[0.8, 0.3, 0.1], [0.2, 0.6, 0.9]][i % 2]
+}
+
+/// Values stay in the lane of the colours they are made of: as if each lane were grey.
+fn keeps_colours(colours: &Colours<'_>, judge: &mut Judge) {
+    let vivid_ones = |i| Color::Rgb(vivid(i));
+    let Some(object) = colours.build(&vivid_ones, ColorMode::Rgb) else { return };
+    let texture = object.fixed().texture();
+    if texture.output() == Output::Rgb || colours.names.is_empty() {
+        return;
+    }
+    for lane in 0..3 {
+        let grey = |i| Color::Constant(vivid(i)[lane]);
+        let Some(object) = colours.build(&grey, ColorMode::Rgb) else { return };
+        let grey = object.fixed().texture();
+        for at in grid(&mut Rng::new(colours.subject.options.seed)).take(1000) {
+            let (found, alone) = (texture.eval(&at).lane(lane), grey.eval(&at).lane(lane));
+            let off = f64::from((found - alone).abs());
+            judge.within("lanes keep to themselves", off, ROUNDING, || {
+                format!("lane {lane}: {found} instead of {alone} at {at:?}")
+            });
+        }
+    }
+}
+
+/// Linear sRGB is the same on every path: it depends on no wavelength.
+fn looks_at_wavelengths(colours: &Colours<'_>, judge: &mut Judge) {
+    let vivid_ones = |i| Color::Rgb(vivid(i));
+    let Some(object) = colours.build(&vivid_ones, ColorMode::Spectral) else { return };
+    let mut rng = Rng::new(colours.subject.options.seed);
+    for at in grid(&mut rng).take(500) {
+        let [one, two] = [0.2, 0.7].map(|u| {
+            let lambda = Wavelengths::sample(u);
+            let (palette, scratch) = (Palette::new(lambda), Scratch::default());
+            let site = Site { p: at.p, uv: at.uv, palette: &palette };
+            let texture = object.resolve(&site, &scratch).texture();
+            let rgb = texture.output() == Output::Rgb;
+            rgb.then(|| bits(texture.eval(&TexturePoint { lambda, ..at })))
+        });
+        judge.holds("RGB depends on no wavelength", one == two, || format!("{at:?}"));
     }
 }

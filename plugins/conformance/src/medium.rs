@@ -22,6 +22,9 @@ const MORE: u32 = 4;
 const ROUNDING: f64 = 4e-6;
 
 pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
+    for (set, _) in subject.all() {
+        set.ask(|resolved| stays_finite(resolved.medium(), set, judge));
+    }
     for (set, mut rng) in subject.usual() {
         set.ask(|resolved| {
             let medium = resolved.medium();
@@ -62,6 +65,25 @@ fn transmittance(medium: &dyn Medium, ray: &Ray, first: u32) -> [Moments; 4] {
         }
     }
     lanes
+}
+
+/// Legal at any distance and any coefficients: a lane that nothing is in times no end, thick fog.
+fn stays_finite(medium: &dyn Medium, set: &Set, judge: &mut Judge) {
+    let numbers = Numbers { samples: 1, seed: 3 };
+    for t_max in [0.0, f64::MIN_POSITIVE, 1e-3, 1.0, 1e3, 1e12, f64::INFINITY] {
+        let ray = ray(DVec3::ZERO, t_max);
+        for i in 0..64 {
+            let at = || format!("{}: to {t_max} m", set.label);
+            let left = medium.transmittance(&ray, &mut samples(&numbers, i)).to_array();
+            let legal = left.iter().all(|left| (0.0..=1.0 + ROUNDING).contains(&f64::from(*left)));
+            judge.holds("finite and in [0, 1]", legal, || format!("{}: {left:?}", at()));
+            let flight = medium.sample(&ray, &mut samples(&numbers, i));
+            let weight = flight.weight.is_finite() && flight.weight.0.min_element() >= 0.0;
+            let inside = flight.t.is_none_or(|t| t >= 0.0 && t <= t_max && t.is_finite());
+            let shown = || format!("{}: {flight:?}", at());
+            judge.holds("flights are finite", weight && inside, shown);
+        }
+    }
 }
 
 /// Transmittance: 1 at no distance, falling, a product over pieces, and as the coefficients say.

@@ -136,12 +136,28 @@ pub(crate) fn extremes(param: &Param) -> Vec<(Value, Level)> {
             out.push((Value::Bool(i == 1), Level::Usual));
         }
     }
+    out.extend(about_zero(param).map(|x| (number(param, x), Level::Usual)));
+    let coloured = matches!(param.role, Role::Coefficient | Role::Reflectance);
+    if coloured && is_spectrum(param) && param.min <= 0.0 {
+        // One lane of a colour may be at the end of its range where others are not.
+        let x = typical(param);
+        out.push((Value::Color(Color::Rgb([x, 0.0, x]), dimension(param)), Level::Edge));
+    }
     if is_number(param) && preset(param).is_none() {
         out.push((number(param, typical(param)), Level::Usual));
     }
     let words = param.choices.iter().take(8);
     out.extend(words.map(|word| (Value::Text((*word).into()), Level::Usual)));
     out
+}
+
+/// At and near the middle of a range about 0, where formulae divide by it and plugins take another
+/// way.
+fn about_zero(param: &Param) -> impl Iterator<Item = f64> + use<> {
+    let float = matches!(param.ty, Type::Float | Type::Double);
+    let about = float && param.unit.is_empty() && param.min < 0.0 && param.max <= OPEN;
+    let near = [0.0, 0.05 * param.max, 0.05 * param.min.max(-OPEN)];
+    near.into_iter().filter(move |_| about && near[1] > 0.0)
 }
 
 /// A number of the range: evenly, or in its logarithm where the range is wide.

@@ -62,10 +62,12 @@ macro_rules! haze {
 haze!(SoundHaze, |g| g, |g| g);
 haze!(Backwards, |g| -g, |g| g);
 haze!(BluntLobe, |g| g, |g| g.clamp(-0.9, 0.9));
+haze!(NearlyEven, |g| g, |g| if g.abs() < 0.1 { 0.0 } else { g });
 
-/// Coloured fog that chooses among the first few lanes.
+/// Coloured fog that chooses among the first few lanes, and what passes for a product of 0 and
+/// infinity.
 macro_rules! fog {
-    ($name:ident, $lanes:expr) => {
+    ($name:ident, $lanes:expr, $vacuum:expr) => {
         /// Fog with a fault.
         #[derive(Params, Clone, Copy)]
         #[repr(C)]
@@ -89,16 +91,16 @@ macro_rules! fog {
                 let lane = (choice * $lanes) as usize & 3;
                 let t = -(1.0 - f64::from(u)).ln() / f64::from(self.sigma_t.lane(lane));
                 if !(t < ray.t_max) {
-                    let passed = passed(self.sigma_t, ray.t_max);
+                    let passed = passed(self.sigma_t, ray.t_max, $vacuum);
                     return FreeFlight { t: None, weight: passed / passed.mean() };
                 }
-                let left = passed(self.sigma_t, t);
+                let left = passed(self.sigma_t, t, $vacuum);
                 let weight = self.sigma_t * self.albedo * left / (self.sigma_t * left).mean();
                 FreeFlight { t: Some(t), weight }
             }
 
             fn transmittance(&self, ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
-                passed(self.sigma_t, ray.t_max)
+                passed(self.sigma_t, ray.t_max, $vacuum)
             }
 
             fn phase(&self) -> &dyn Phase {
@@ -108,18 +110,19 @@ macro_rules! fog {
     };
 }
 
-/// What passes through a length; all of it where there is nothing, without end.
+/// What passes through a length; `vacuum` where there is nothing, without end.
 #[expect(clippy::cast_possible_truncation, reason = "rounds; a fraction")]
-fn passed(sigma: Spectrum, t: f64) -> Spectrum {
+fn passed(sigma: Spectrum, t: f64, vacuum: f32) -> Spectrum {
     let lane = |sigma: f32| {
         let depth = f64::from(sigma) * t;
-        if depth.is_nan() { 1.0 } else { (-depth).exp() as f32 }
+        if depth.is_nan() { vacuum } else { (-depth).exp() as f32 }
     };
     Spectrum::from_array(sigma.to_array().map(lane))
 }
 
-fog!(SoundFog, 4.0);
-fog!(ThreeLanes, 3.0);
+fog!(SoundFog, 4.0, 1.0);
+fog!(ThreeLanes, 3.0, 1.0);
+fog!(DarkVacuum, 4.0, f32::NAN);
 
 /// The same without a fault.
 #[cfg(test)]
@@ -133,5 +136,10 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         class: Class::medium::<ThreeLanes<'static>>("three_lanes"),
         fault: "the fourth lane is never chosen",
+    },
+    Mutant { class: Class::phase::<NearlyEven>("nearly_even"), fault: "samples |g| < 0.1 as 0" },
+    Mutant {
+        class: Class::medium::<DarkVacuum<'static>>("dark_vacuum"),
+        fault: "NaN where nothing is, without end",
     },
 ];

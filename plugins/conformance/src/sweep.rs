@@ -14,7 +14,7 @@ use luxel_core::scene::{Argument, Color, Node, NodeId, Scene, Value};
 use luxel_sdk::abi::Class;
 use luxel_sdk::color::{Palette, Wavelengths};
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::Param;
+use luxel_sdk::params::{Param, Type};
 use luxel_sdk::sampling::Rng;
 
 use crate::values::Level;
@@ -118,6 +118,7 @@ impl Bench {
         }
         sweep.textures();
         sweep.spectra();
+        sweep.switches();
         let mut rng = Rng::new(seed);
         for i in 0..n {
             sweep.random(&mut rng, &format!("random {i}"), i % 3 == 2);
@@ -274,6 +275,22 @@ impl Sweep<'_> {
                 let mut given = self.with(param, value);
                 given.retain(|(name, _)| *name != "k");
                 self.push_in("measured", Level::Usual, given, ColorMode::Spectral);
+            }
+        }
+    }
+
+    /// Each amount of light with each switch turned: what shares an amount shows only so.
+    fn switches(&mut self) {
+        let amount = |p: &&Param| p.ty == Type::Emission && !p.group.is_empty();
+        for switch in own(self.class).filter(|param| param.ty == Type::Bool) {
+            let turned = !values::preset(switch).is_some_and(|x| x > 0.5);
+            for param in own(self.class).filter(amount) {
+                let Some(value) = values::sensible(param, 0, "", prop) else { continue };
+                let mut given = self.with(param, value);
+                given.retain(|(name, _)| *name != switch.name);
+                given.push((switch.name, Value::Bool(turned)));
+                let label = format!("{}, {} = {turned}", param.name, switch.name);
+                self.push(label, Level::Usual, given);
             }
         }
     }

@@ -20,7 +20,7 @@ macro_rules! dawn {
         #[repr(C)]
         struct $name {
             /// Its light.
-            #[param(emission(scale))]
+            #[param(emission(radiance, scale))]
             emission: Emission,
         }
 

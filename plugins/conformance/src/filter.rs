@@ -9,6 +9,9 @@ use crate::statistics::{Tally, chi_square};
 use crate::subject::Subject;
 use crate::sweep::Set;
 
+/// Samples are cheap: with so many more of them, 4 % of one side's width show.
+const MORE: u32 = 16;
+
 pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
     for (set, mut rng) in subject.usual() {
         set.ask(|resolved| {
@@ -59,6 +62,7 @@ fn follows(filter: &dyn Filter, set: &Set, rng: &mut Rng, n: u32, judge: &mut Ju
     let training: Vec<Place> = (0..n / 2).map(|_| draw()).collect();
     let cells = Cells::new(1, &training, 40);
     let mut tallies = vec![Tally::default(); cells.leaves.len()];
+    let n = MORE * n;
     for _ in 0..n {
         tallies[cells.leaf(draw())].found += 1.0;
     }

@@ -1,5 +1,7 @@
 //! Samplers: numbers in [0, 1), even over indices, dimensions and streams, and the same each time.
 
+use std::collections::BTreeSet;
+
 use luxel_sdk::kind::{SampleAt, Sampler};
 use luxel_sdk::sampling::hash32;
 
@@ -18,6 +20,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
             tells_its_settings(sampler, set, judge);
             is_even(sampler, set, subject.options.samples, judge);
             fills_cells_always_or_never(sampler, set, judge);
+            is_fine(sampler, set, subject.options.samples, judge);
         });
     }
     subject.concurrent(judge, |resolved| {
@@ -106,6 +109,24 @@ fn is_even(sampler: &dyn Sampler, set: &Set, n: u32, judge: &mut Judge) {
             let at_once = sampler.get_2d_pair(at(k)) == pairs;
             judge.holds("two pairs at once", at_once, || format!("{}: {:?}", set.label, at(k)));
         }
+    }
+}
+
+/// Numbers that take many values: along the best of the walks every second is new, as they are with
+/// 15 bits. Fewer show in a picture, as steps in the shadow of a small lamp.
+fn is_fine(sampler: &dyn Sampler, set: &Set, n: u32, judge: &mut Judge) {
+    let most = |lane: usize| {
+        let different = |at: fn(u32) -> SampleAt| {
+            let found = (0..n).map(|k| sampler.get_2d(at(k))[lane].to_bits());
+            found.collect::<BTreeSet<u32>>().len()
+        };
+        WALKS.iter().map(|(_, at)| different(*at)).max().unwrap_or(0)
+    };
+    for lane in 0..2 {
+        let found = most(lane);
+        judge.holds("numbers differ", 2 * found >= n as usize, || {
+            format!("{}: {found} different numbers of {n}", set.label)
+        });
     }
 }
 

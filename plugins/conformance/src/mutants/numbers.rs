@@ -18,10 +18,10 @@ fn pair(at: SampleAt) -> [f32; 2] {
     [u32_to_unit((bits >> 32) as u32), u32_to_unit(bits as u32)]
 }
 
-/// Independent numbers whose place passes through a function, and how many dimensions
+/// Independent numbers whose place and values pass through two functions, and how many dimensions
 /// on the second of two pairs is.
 macro_rules! sampler {
-    ($name:ident, $place:expr, $step:expr) => {
+    ($name:ident, $place:expr, $value:expr, $step:expr) => {
         /// Numbers with a fault.
         #[derive(Params, Clone, Copy)]
         #[repr(C)]
@@ -49,7 +49,8 @@ macro_rules! sampler {
 
             fn get_2d(&self, at: SampleAt) -> [f32; 2] {
                 let place: fn(SampleAt) -> SampleAt = $place;
-                pair(place(at))
+                let value: fn(f32) -> f32 = $value;
+                pair(place(at)).map(value)
             }
 
             fn get_2d_pair(&self, at: SampleAt) -> [[f32; 2]; 2] {
@@ -60,14 +61,15 @@ macro_rules! sampler {
     };
 }
 
-sampler!(SoundNumbers, |at| at, 2);
-sampler!(PairsOverlap, |at| at, 1);
-sampler!(AllPixelsAlike, |at| SampleAt { stream: 7, ..at }, 2);
-sampler!(ShortPeriod, |at| SampleAt { index: at.index & 0xfff, ..at }, 2);
+sampler!(SoundNumbers, |at| at, |u| u, 2);
+sampler!(PairsOverlap, |at| at, |u| u, 1);
+sampler!(AllPixelsAlike, |at| SampleAt { stream: 7, ..at }, |u| u, 2);
+sampler!(ShortPeriod, |at| SampleAt { index: at.index & 0xfff, ..at }, |u| u, 2);
+sampler!(EightBits, |at| at, |u| (u * 256.0).floor() / 256.0, 2);
 
-/// A tent, with the power of its radius in its height.
+/// A tent whose left side is as wide as a factor says, with the power of its radius in its height.
 macro_rules! tent {
-    ($name:ident, $power:expr) => {
+    ($name:ident, $left:expr, $power:expr) => {
         /// A tent with a fault.
         #[derive(Params, Clone, Copy)]
         #[repr(C)]
@@ -89,14 +91,15 @@ macro_rules! tent {
 
             fn sample(&self, u: [f32; 2]) -> [f32; 2] {
                 let side = |u: f32| (2.0 * u).sqrt() - 1.0;
-                u.map(|u| self.radius * if u < 0.5 { side(u) } else { -side(1.0 - u) })
+                u.map(|u| self.radius * if u < 0.5 { $left * side(u) } else { -side(1.0 - u) })
             }
         }
     };
 }
 
-tent!(SoundTent, 2);
-tent!(UnitTent, 1);
+tent!(SoundTent, 1.0, 2);
+tent!(UnitTent, 1.0, 1);
+tent!(LeansRight, 0.96, 2);
 
 /// A camera of parallel rays, with what it takes for the width of a picture and for its front.
 macro_rules! flat {
@@ -164,7 +167,9 @@ pub(super) const MUTANTS: &[Mutant] = &[
         class: Class::sampler::<ShortPeriod>("short_period"),
         fault: "repeats after 4096 samples",
     },
+    Mutant { class: Class::sampler::<EightBits>("eight_bits"), fault: "256 different numbers" },
     Mutant { class: Class::filter::<UnitTent>("unit_tent"), fault: "integrates to its radius" },
+    Mutant { class: Class::filter::<LeansRight>("leans_right"), fault: "4 % narrower to the left" },
     Mutant {
         class: Class::camera::<SquarePictures>("square_pictures"),
         fault: "rays for square pictures",

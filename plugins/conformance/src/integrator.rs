@@ -26,14 +26,28 @@ const TILE: u32 = 6;
 const SPP: u32 = 32;
 const MANY: u32 = 512;
 
+/// And of one in fog, whose noise is less than what a light that is left out takes.
+const IN_FOG: u32 = 128;
+
+/// How bright lamps in fog are against those in the open: what is cut off at some value shows.
+const BRIGHT: f64 = 64.0;
+
 /// Albedo of the furnace.
 const ALBEDO: f64 = 0.5;
+
+/// A furnace of more than this, half way between one bounce and all, shows all.
+const MOST_BOUNCES: f64 = 1.75;
+
+/// The suite's own path tracer.
+const WALK: &str = "reference_walk";
 
 /// What f32 rounds in a sum of a few dozen terms.
 const ROUNDING: f64 = 1e-5;
 
 pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
     let name = subject.class.name;
+    let reference = stage(subject.bench, &open_scene, WALK, &vec![]);
+    let mut truth = None;
     for (i, (set, _)) in subject.usual().enumerate().take(12) {
         let makes_light = set.ask(|resolved| {
             let integrator = resolved.integrator();
@@ -52,14 +66,21 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
             judge.skip("light", "it shows something else");
             continue;
         }
-        if let Some(reference) = self::stage(subject.bench, &open_scene, "reference_walk", &vec![])
-        {
-            let [found, truth] =
-                [(&stage, 4), (&reference, 2)].map(|(s, seed)| picture(s, seed, 2, spp));
-            agrees(&found, &truth, i == 0, set, judge);
+        if let Some(reference) = &reference {
+            if i < 2 {
+                truth = Some(picture(reference, 2, 2, spp));
+            }
+            let found = picture(&stage, 4, 2, spp);
+            if let Some(truth) = &truth {
+                agrees(&found, truth, i == 0, set, judge);
+            }
         }
         if let Some(closed) = self::stage(subject.bench, &furnace, name, &set.given) {
-            is_a_sum_of_bounces(&picture(&closed, 3, 2, spp), i == 0, set, judge);
+            let film = picture(&closed, 3, 2, spp);
+            is_a_sum_of_bounces(&film, i == 0, set, judge);
+            if i == 0 && film.mean().0.y > MOST_BOUNCES {
+                sees_in_fog(subject.bench, set, name, judge);
+            }
         }
     }
 }
@@ -115,18 +136,29 @@ fn ball(scene: &mut Scene, radius: f64, material: Option<Value>) -> NodeId {
 
 /// A matt ball and a lamp, each convex, under a sky: what arrives was scattered once at most.
 fn open_scene(scene: &mut Scene) {
+    ball_and_lamp(scene, 1.0);
+}
+
+/// The same, brighter, in fog: what arrives was scattered any number of times.
+fn foggy_scene(scene: &mut Scene) {
+    ball_and_lamp(scene, BRIGHT);
+    let given = [("density", number(0.1, "1/m")), ("albedo", plain(0.8))];
+    scene.medium = Some(node(scene, Kind::Medium, "reference_fog", &given));
+}
+
+fn ball_and_lamp(scene: &mut Scene, brightness: f64) {
     let look = ("look", Value::Look(LOOK));
     scene.camera = Some(node(scene, Kind::Camera, "reference_pinhole", &[look]));
     let material = matt(scene, 0.6);
     let body = ball(scene, 1.0, Some(material));
     place(scene, body, DVec3::new(-0.4, 0.0, 0.0));
     let shape = ball(scene, 0.4, None);
-    let radiance = ("radiance", number(4.0, "W/m^2/sr"));
+    let radiance = ("radiance", number(4.0 * brightness, "W/m^2/sr"));
     let spectrum = ("spectrum", Value::Color(Color::Rgb([1.0; 3]), Dimension::NONE));
     let given = [("shape", Value::Node(shape)), radiance.clone(), spectrum.clone()];
     let lamp = node(scene, Kind::Light, "reference_lamp", &given);
     place(scene, lamp, DVec3::new(1.3, 0.9, 0.5));
-    let dim = ("radiance", number(0.3, "W/m^2/sr"));
+    let dim = ("radiance", number(0.3 * brightness, "W/m^2/sr"));
     let sky = node(scene, Kind::Light, "reference_sky", &[dim, spectrum]);
     place(scene, sky, DVec3::ZERO);
 }
@@ -157,6 +189,22 @@ fn is_deterministic(stage: &Stage, one: &Film, set: &Set, judge: &mut Judge) {
         });
         judge.holds("same bits on all threads", same, || format!("{}: {threads}", set.label));
     }
+}
+
+/// What shows all bounces shows bright light in fog, as the suite's own path tracer does.
+fn sees_in_fog(bench: &Bench, set: &Set, name: &str, judge: &mut Judge) {
+    let found = stage(bench, &foggy_scene, name, &set.given);
+    let truth = stage(bench, &foggy_scene, WALK, &vec![]);
+    let (Some(found), Some(truth)) = (found, truth) else {
+        judge.skip("fog is right", "the suite's fog cannot be built with it");
+        return;
+    };
+    let [found, truth] = [(&found, 6), (&truth, 5)].map(|(s, seed)| picture(s, seed, 2, IN_FOG));
+    let ((a, ea), (b, eb)) = (found.mean(), truth.mean());
+    let z = deviation(a.y - b.y, ROUNDING * b.y, ea.y.hypot(eb.y));
+    judge.statistic("fog is right", z, || {
+        format!("{}: {} ± {} instead of {} ± {}", set.label, a.y, ea.y, b.y, eb.y)
+    });
 }
 
 /// Sum over a tile of means and of squared standard errors.

@@ -3,7 +3,7 @@
 use luxel_sdk::Params;
 use luxel_sdk::abi::Class;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Arrival, Ask, Host, Job, PathIntegrator, Samples, Wants, mis};
+use luxel_sdk::kind::{Arrival, ArrivalKind, Ask, Host, Job, PathIntegrator, Samples, Wants, mis};
 use luxel_sdk::num::Ray;
 
 use super::Mutant;
@@ -14,6 +14,8 @@ enum Fault {
     EndlessShadows,
     StartsOnSurface,
     ShortPaths,
+    NoLampsInFog,
+    Fireproof,
 }
 
 /// A path on its way.
@@ -26,8 +28,13 @@ struct Path {
 
 impl Path {
     fn arrive(&mut self, at: &Arrival, samples: &mut Samples<'_>, ask: &mut Ask<'_>, fault: Fault) {
-        ask.add(self.beta * at.le * mis(self.pdf, at.le_pdf));
-        if let Some(direct) = &at.direct {
+        let mut le = self.beta * at.le * mis(self.pdf, at.le_pdf);
+        if fault == Fault::Fireproof && self.depth > 0 {
+            le = le.min(Spectrum::splat(2.0));
+        }
+        ask.add(le);
+        let in_fog = at.kind == ArrivalKind::Medium && fault == Fault::NoLampsInFog;
+        if let Some(direct) = at.direct.as_ref().filter(|_| !in_fog) {
             let mut ray = direct.ray;
             if fault == Fault::EndlessShadows {
                 ray.t_max = f64::INFINITY;
@@ -89,6 +96,8 @@ tracer!(Sound);
 tracer!(EndlessShadows);
 tracer!(StartsOnSurface);
 tracer!(ShortPaths);
+tracer!(NoLampsInFog);
+tracer!(Fireproof);
 
 /// The same without a fault.
 #[cfg(test)]
@@ -105,4 +114,12 @@ pub(super) const MUTANTS: &[Mutant] = &[
         fault: "no offset for what is scattered",
     },
     Mutant { class: Class::integrator::<ShortPaths>("short_paths"), fault: "four bounces are all" },
+    Mutant {
+        class: Class::integrator::<NoLampsInFog>("no_lamps_in_fog"),
+        fault: "looks for no light in media",
+    },
+    Mutant {
+        class: Class::integrator::<Fireproof>("fireproof"),
+        fault: "clamps reflected light at 2",
+    },
 ];

@@ -7,10 +7,12 @@ mod facets;
 mod field;
 mod glass;
 mod haze;
+mod lamps;
 mod light;
 mod material;
 mod numbers;
 mod paths;
+mod pattern;
 mod plate;
 mod settings;
 mod shape;
@@ -49,8 +51,10 @@ pub fn mutants() -> Vec<Mutant> {
         shape::MUTANTS,
         plate::MUTANTS,
         light::MUTANTS,
+        lamps::MUTANTS,
         dawn::MUTANTS,
         field::MUTANTS,
+        pattern::MUTANTS,
         haze::MUTANTS,
         settings::MUTANTS,
         numbers::MUTANTS,
@@ -85,8 +89,10 @@ mod tests {
     /// What is caught is the fault, not the plugin around it.
     #[test]
     fn without_their_faults_the_mutants_pass() {
-        let alone = [facets::SOUND, glass::SOUND, plate::SOUND, dawn::SOUND, paths::SOUND];
-        let classes = [&alone, haze::SOUND, numbers::SOUND].concat();
+        let settings = [plate::SOUND, dawn::SOUND, pattern::SOUND, paths::SOUND];
+        let alone = [facets::SOUND, glass::SOUND];
+        let more = [haze::SOUND, lamps::SOUND, numbers::SOUND].concat();
+        let classes = [alone.as_slice(), &settings, &more].concat();
         let sound: Vec<_> = classes.into_iter().map(|class| Mutant { class, fault: "" }).collect();
         for judged in score(&sound, &Options::default()) {
             assert!(judged.by.is_empty(), "{judged:#?}");

@@ -9,7 +9,7 @@ use luxel_sdk::color::{Observer, Palette, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
     Eval, Kind, Light, LightForm, Material, MaterialRef, Output, Sample, Texture, TexturePoint,
 };
-use luxel_sdk::params::{Dimension, Emission, Unit};
+use luxel_sdk::params::{Build, BuildContext, Dimension, Emission, Fault, Shared, Unit};
 
 use super::{Builder, ColorMode, Object, Objects, Scratch, Site};
 use crate::diag::{SourceId, Span};
@@ -100,6 +100,36 @@ impl Light for Lamp {
     }
 }
 
+/// Reads a table that lies in the object itself, not behind another pointer.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Tabled<'a> {
+    /// What the table is full of.
+    #[param(default = 1.0)]
+    value: f32,
+    #[param(shared)]
+    table: Shared<'a, [f32; 512]>,
+}
+
+impl Build<[f32; 512]> for Tabled<'_> {
+    fn build(&self, _context: &dyn BuildContext) -> Result<[f32; 512], Vec<Fault>> {
+        Ok([self.value; 512])
+    }
+}
+
+impl Texture for Tabled<'_> {
+    fn eval(&self, _at: &TexturePoint) -> Spectrum {
+        let (least, most) = self
+            .table
+            .iter()
+            .fold((f32::MAX, f32::MIN), |(least, most), x| (least.min(*x), most.max(*x)));
+        Spectrum::new(least, most, 0.0, 0.0)
+    }
+    fn output(&self) -> Output {
+        Output::Value
+    }
+}
+
 struct World {
     registry: Registry,
     scene: Scene,
@@ -112,6 +142,7 @@ impl World {
             Class::material::<Echo>("echo"),
             Class::material::<Through<'_>>("through"),
             Class::texture::<Coordinates>("coordinates"),
+            Class::texture::<Tabled<'_>>("tabled"),
             Class::light::<Lamp>("lamp"),
         ];
         registry.add("test", &classes).unwrap();
@@ -192,6 +223,26 @@ fn nesting_beyond_the_scratch_is_refused() {
         id = world.node(Kind::Material, "through", &[("base", Value::Node(id))]);
     }
     assert_eq!(world.build(id, ColorMode::Rgb).unwrap_err(), ["E0416"]);
+}
+
+#[test]
+fn a_shared_table_stays_where_it_was_while_its_object_moves() {
+    let mut world = World::new();
+    let ids: Vec<_> = (0..32_u8)
+        .map(|i| world.node(Kind::Texture, "tabled", &[("value", number(f64::from(i)))]))
+        .collect();
+    let objects = ids.iter().map(|id| world.build(*id, ColorMode::Rgb).unwrap());
+    // Whatever was given back too early is taken and written over by these, of the same size.
+    let objects: Vec<_> = objects.map(|object| (object, Box::new([-1.0_f32; 512]))).collect();
+    let palette = Palette::rgb();
+    for ((object, other), i) in objects.iter().zip(0_u8..) {
+        let scratch = Scratch::default();
+        let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette };
+        let at = TexturePoint { p: site.p, uv: site.uv, lambda: palette.wavelengths };
+        let found = object.resolve(&site, &scratch).texture().eval(&at).to_array();
+        assert_eq!(found[..2], [f32::from(i); 2]);
+        assert!(other.iter().all(|x| *x < 0.0));
+    }
 }
 
 #[test]

@@ -20,7 +20,7 @@ const ARROWS: [(&str, &[&str]); 7] = [
 ];
 
 /// External packages, each with the folders of the only packages that may depend on them.
-const DEPENDENCIES: [(&str, &[&str]); 14] = [
+const DEPENDENCIES: [(&str, &[&str]); 13] = [
     ("pest", &["lang"]),
     ("pest_derive", &["lang"]),
     ("tobj", &["plugins/builtin"]),
@@ -34,7 +34,6 @@ const DEPENDENCIES: [(&str, &[&str]); 14] = [
     ("clap", &["cli"]),
     ("ctrlc", &["cli"]),
     ("annotate-snippets", &["cli"]),
-    ("trybuild", &["plugins/sdk"]),
 ];
 
 /// Words of the source, each with the only places where they may stand.

@@ -1,6 +1,7 @@
 use luxel_sdk::Choice;
 
 #[derive(Choice, Clone, Copy)]
+//~ a choice needs #[repr(u32)] alone: the host writes it by index
 enum WithoutRepr {
     /// Along x.
     X,
@@ -11,6 +12,7 @@ enum WithoutRepr {
 enum WithoutDoc {
     /// Along x.
     X,
+    //~ needs a doc comment: what a scene says by this word
     Y,
 }
 
@@ -18,6 +20,7 @@ enum WithoutDoc {
 #[repr(u32)]
 enum WithNumber {
     /// Along x.
+    //~ a word of a choice has no fields and no number of its own
     X = 7,
 }
 
@@ -25,6 +28,7 @@ enum WithNumber {
 #[repr(u32)]
 enum WithField {
     /// Along x.
+    //~ a word of a choice has no fields and no number of its own
     X(f32),
 }
 

@@ -14,6 +14,7 @@ enum Axis {
 struct Surface {
     /// Without the key.
     #[param(required)]
+    //~ `axis` is a choice: it needs the key `choice`
     axis: Axis,
 }
 

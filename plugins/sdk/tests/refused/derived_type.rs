@@ -8,6 +8,9 @@ struct Surface<'a> {
     #[param(default = 0.5)]
     roughness: f32,
     #[param(derived)]
+    //~ a derived field cannot be of type `&'a str`
+    //~ zero bytes are no value of it, as far as is known
+    //~ derived fields are numbers, bool, vectors, matrices, Spectrum, and arrays of these
     name: &'a str,
 }
 

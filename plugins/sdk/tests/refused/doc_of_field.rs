@@ -5,6 +5,7 @@ use luxel_sdk::Params;
 #[repr(C)]
 struct Surface {
     #[param(default = 0.5)]
+    //~ needs a doc comment: it becomes the manual
     roughness: f32,
 }
 

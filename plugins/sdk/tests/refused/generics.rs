@@ -3,6 +3,7 @@ use luxel_sdk::{Params, params::Text};
 /// For each number.
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
+//~ parameters have one layout: at most one lifetime and nothing else here
 struct Surface<T> {
     /// How rough.
     #[param(default = 0.5)]
@@ -12,6 +13,7 @@ struct Surface<T> {
 /// For each length.
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
+//~ parameters have one layout: at most one lifetime and nothing else here
 struct Sized<const N: usize> {
     #[param(derived)]
     roughness: [f32; N],
@@ -20,6 +22,7 @@ struct Sized<const N: usize> {
 /// For two lifetimes.
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
+//~ parameters have one layout: at most one lifetime and nothing else here
 struct Two<'a, 'b> {
     /// A name.
     #[param(required)]

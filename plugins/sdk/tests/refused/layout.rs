@@ -2,6 +2,7 @@ use luxel_sdk::Params;
 
 /// Without repr.
 #[derive(Params, Clone, Copy)]
+//~ needs #[repr(C)] alone: the host writes fields
 struct Surface {
     /// How rough.
     #[param(default = 0.5)]
@@ -11,6 +12,7 @@ struct Surface {
 /// With that of enums.
 #[derive(Params, Clone, Copy)]
 #[repr(C, packed)]
+//~ needs #[repr(C)] alone: the host writes fields
 struct Packed {
     /// How rough.
     #[param(default = 0.5)]
@@ -20,6 +22,7 @@ struct Packed {
 /// Not a struct.
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
+//~ parameters are a struct, not an enum or a union
 enum Either {
     A,
 }
@@ -30,6 +33,7 @@ enum Either {
 struct Tuple(
     /// How rough.
     #[param(default = 0.5)]
+    //~ needs a name: scenes give parameters by name
     f32,
 );
 

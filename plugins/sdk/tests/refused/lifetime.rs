@@ -6,6 +6,7 @@ use luxel_sdk::{Params, params::Text};
 struct Kept {
     /// A name.
     #[param(required)]
+    //~ the host lends this for less than 'static: give the struct a lifetime
     name: Text<'static>,
 }
 
@@ -15,6 +16,7 @@ struct Kept {
 struct Unsaid {
     /// A name.
     #[param(required)]
+    //~ E0261
     name: Text<'a>,
 }
 

@@ -8,6 +8,7 @@ type Name = Text<'static>;
 struct Kept {
     /// A name.
     #[param(required)]
+    //~ the host lends `name` for less than 'static: give the struct a lifetime
     name: Name,
 }
 

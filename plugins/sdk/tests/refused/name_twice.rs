@@ -9,6 +9,7 @@ struct Surface {
     roughness: f32,
     /// How rough, too.
     #[param(default = 0.5, name = "roughness")]
+    //~ another parameter has the name of `alpha`
     alpha: f32,
 }
 

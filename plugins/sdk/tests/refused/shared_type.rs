@@ -5,6 +5,7 @@ use luxel_sdk::{Params, params::Shared};
 #[repr(C)]
 struct Picture<'a> {
     #[param(shared)]
+    //~ a `shared` field is a Shared<'a, T>
     pixels: &'a [u8],
 }
 
@@ -15,6 +16,7 @@ struct Pictures<'a> {
     #[param(shared)]
     front: Shared<'a, Vec<u8>>,
     #[param(shared)]
+    //~ `front` is the shared table already: put both into one type
     back: Shared<'a, Vec<u8>>,
 }
 

@@ -3,6 +3,7 @@ use luxel_sdk::Params;
 /// A surface.
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
+//~ parameters take at most 256 bytes: put large data into a `shared` table
 struct Surface {
     /// How rough.
     #[param(default = 0.5)]

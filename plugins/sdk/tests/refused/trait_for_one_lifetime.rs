@@ -24,6 +24,7 @@ impl Material for Surface<'static> {
     }
 }
 
+//~ is not general enough
 const CLASS: Class = Class::material::<Surface<'static>>("surface");
 
 fn main() {}

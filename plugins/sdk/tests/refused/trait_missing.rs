@@ -9,6 +9,8 @@ struct Surface {
     roughness: f32,
 }
 
+//~ E0277
+//~ Material`
 const CLASS: Class = Class::material::<Surface>("surface");
 
 fn main() {}

@@ -10,9 +10,12 @@ impl Drop for Handle {
 /// A surface.
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
+//~ E0204
 struct Surface {
     /// Does something when it ends.
     #[param(required)]
+    //~ a parameter cannot be of type `Handle`
+    //~ not a type that the host can write
     handle: Handle,
 }
 

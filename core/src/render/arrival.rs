@@ -5,7 +5,7 @@ use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
     Arrival, ArrivalKind, Direct, Lobe, Needs, Phase, Sample, Samples, Scatter, Surface, Wants,
 };
-use luxel_sdk::num::{Frame, Ray};
+use luxel_sdk::num::{Frame, Ray, unit_and_length};
 
 use super::path::{Path, Standing};
 use crate::object::{ColorMode, Scratch, Site};
@@ -224,8 +224,8 @@ impl Local {
 
     #[inline(always)]
     fn to_world(&self, local: Vec3) -> Option<DVec3> {
-        let wi = self.frame.to_world(local).as_dvec3().normalize_or_zero();
-        (wi != DVec3::ZERO && self.sides_agree(wi, local)).then_some(wi)
+        let (wi, _) = unit_and_length(self.frame.to_world(local).as_dvec3());
+        (!wi.is_nan() && self.sides_agree(wi, local)).then_some(wi)
     }
 
     #[inline(always)]

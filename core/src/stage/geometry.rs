@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3, Vec3};
 use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
-use luxel_sdk::num::{Bounds3, Ray, gamma32};
+use luxel_sdk::num::{Bounds3, Ray, gamma32, unit_and_length};
 
 use super::closed::is_closed;
 use crate::accel::{Direction, MeshBvh};
@@ -111,6 +111,7 @@ impl Mesh {
         None
     }
 
+    #[inline(always)]
     fn occluded(&self, ray: &Ray, direction: &Direction, t_enter: f64, from: Option<u32>) -> bool {
         let (o, t_max) = self.narrow(ray, direction, self.start(direction, t_enter));
         self.bvh.occluded(o, direction, t_max, from)
@@ -142,7 +143,8 @@ impl Mesh {
         let p = about + mesh.centre;
         let sheared = spread.max_element() * f64::from(gamma32(7));
         let p_err = sheared + p.abs() * f64::EPSILON;
-        let ng = (b - a).cross(c - a).normalize_or(DVec3::Z);
+        let (ng, _) = unit_and_length((b - a).cross(c - a));
+        let ng = if ng.is_nan() { DVec3::Z } else { ng };
         let ns = shading_normal(mesh, corners, weights, ng);
         let (uv, dp_du, dp_dv) = parametrisation(mesh, corners, [a, b, c], weights);
         Surface { p, p_err, ng, ns, uv, dp_du, dp_dv }

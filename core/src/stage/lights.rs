@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::{Light, LightQuery, Output, ShapeSample, Surface};
-use luxel_sdk::num::{Ray, Transform, offset_origin};
+use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
 use super::placement::carried;
@@ -249,8 +249,8 @@ impl Stage {
         };
         // By reference: a surface is large to copy.
         let sample = sample.as_mut()?;
-        let pdf_area = sample.pdf / placement.area_scale(sample.surface.ng);
         if let Some(transform) = &placement.transform {
+            sample.pdf /= transform.area_scale(sample.surface.ng);
             sample.surface = carried(transform, &sample.surface);
         }
         let surface = &sample.surface;
@@ -258,17 +258,18 @@ impl Stage {
         let to = surface.p - from.p;
         let distance2 = to.length_squared();
         let cos_o = -surface.ng.dot(ray.d);
-        let pdf = pdf_area * distance2 / cos_o.abs();
+        let pdf = sample.pdf * distance2 / cos_o.abs();
         if !(pdf > 0.0 && pdf.is_finite()) {
             return None;
         }
+        let per_pdf = cos_o.abs() / (sample.pdf * distance2);
         let uv = surface.uv.as_vec2();
         let at = Site { p: surface.p, uv, palette };
         let resolved = light.object.resolve(&at, scratch).light();
         let le = emitted(resolved, resolved.le(narrow(cos_o), uv, light.area), self.mode, palette);
         (!le.is_black()).then(|| FoundLight {
             ray,
-            le_over_pdf: le / narrow(pdf),
+            le_over_pdf: le * narrow(per_pdf),
             pdf: narrow(pdf),
         })
     }
@@ -361,6 +362,6 @@ fn ray_between(from: &Origin, to: &Surface) -> Ray {
     let o = offset_origin(from.p, from.p_err, from.ng, d);
     let end = offset_origin(to.p, to.p_err, to.ng, -d);
     let d = end - o;
-    let distance = d.length();
-    Ray { o, d: d * distance.recip(), t_max: distance }
+    let (d, distance) = unit_and_length(d);
+    Ray { o, d, t_max: distance }
 }

@@ -10,6 +10,7 @@ pub mod quadratic;
 pub mod ray;
 pub mod sum;
 pub mod transform;
+pub mod unit;
 
 #[cfg(test)]
 mod points;
@@ -21,3 +22,4 @@ pub use quadratic::{quadratic_roots, sphere_roots};
 pub use ray::Ray;
 pub use sum::{Moments, Sum};
 pub use transform::Transform;
+pub use unit::unit_and_length;

@@ -60,8 +60,10 @@ impl PathIntegrator for PathTracer {
         _host: &dyn Host,
         ask: &mut Ask<'_>,
     ) {
-        let found_by_chance = if self.light_sampling { mis(path.pdf, at.le_pdf) } else { 1.0 };
-        ask.add(path.beta * at.le * found_by_chance);
+        if !at.le.is_black() {
+            let found_by_chance = if self.light_sampling { mis(path.pdf, at.le_pdf) } else { 1.0 };
+            ask.add(path.beta * at.le * found_by_chance);
+        }
         if path.depth >= self.max_depth {
             return;
         }

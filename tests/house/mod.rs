@@ -37,7 +37,7 @@ const DEPENDENCIES: [(&str, &[&str]); 13] = [
 ];
 
 /// Words of the source, each with the only places where they may stand.
-const ROOMS: [(&str, &[&str]); 15] = [
+const ROOMS: [(&str, &[&str]); 17] = [
     ("std::fs", &["cli/src/"]),
     ("std::env", &["cli/src/"]),
     ("std::net", &["cli/src/"]),
@@ -49,6 +49,8 @@ const ROOMS: [(&str, &[&str]); 15] = [
     ("obvhs::", &["core/src/accel/"]),
     ("std::arch", &["core/src/accel/"]),
     ("core::arch", &["core/src/accel/"]),
+    ("is_x86_feature_detected", &["core/src/accel/"]),
+    ("target_feature", &["core/src/accel/"]),
     ("rayon::", &["core/src/accel/", "core/src/render/"]),
     ("libloading", &["core/src/registry/dynamic"]),
     (

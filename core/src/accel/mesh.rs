@@ -26,6 +26,7 @@ pub struct MeshBvh {
     stack: usize,
     /// Power of two from the caller's frame to the tree's.
     unit: f32,
+    /// 1 / `unit`, exactly.
     per_unit: f32,
     /// Largest |coordinate| in the tree's frame.
     reach: f32,

@@ -71,9 +71,11 @@ impl Direction {
 
 /// A ray in a mesh's scaled frame, as the triangle test wants it.
 pub(super) struct Shear {
+    /// As in [`Direction`].
     pub(super) axes: [usize; 3],
     /// Origin in the order of `axes`.
     pub(super) o: [f32; 3],
+    /// [`Direction::shear`].
     pub(super) factors: [f32; 3],
     /// A triangle that is passed; `u32::MAX` for none.
     pub(super) skip: u32,

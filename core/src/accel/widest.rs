@@ -43,3 +43,44 @@ fn has_avx512() -> bool {
 fn in_avx512(work: impl Work) {
     work.run();
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::accel::soup::{Rng, soup};
+    use crate::accel::{Direction, MeshBvh};
+
+    /// What rays find in a tree, bit by bit.
+    struct Shots<'a> {
+        tree: &'a MeshBvh,
+        rays: &'a [(Vec3, Vec3)],
+        found: &'a mut Vec<[u32; 4]>,
+    }
+
+    impl Work for Shots<'_> {
+        #[inline(always)]
+        fn run(self) {
+            for (o, d) in self.rays {
+                let direction = Direction::new(d.as_dvec3()).unwrap();
+                let (hit, steps) = self.tree.intersect(*o, &direction, f32::INFINITY, None);
+                let bits = hit.map_or([0; 3], |h| [h.t, h.b1, h.b2].map(f32::to_bits));
+                self.found.push([bits[0], bits[1], bits[2], steps]);
+            }
+        }
+    }
+
+    #[test]
+    fn every_copy_gives_the_same_bits() {
+        let mut rng = Rng(31);
+        let (points, indices) = soup(3000, 0.1, &mut rng);
+        let tree = MeshBvh::build(&points, &indices).unwrap();
+        let rays: Vec<_> = (0..5000).map(|_| (rng.point() * 2.0, rng.point())).collect();
+        let (mut plain, mut wide) = (vec![], vec![]);
+        Shots { tree: &tree, rays: &rays, found: &mut plain }.run();
+        widest(Shots { tree: &tree, rays: &rays, found: &mut wide });
+        assert_eq!(plain, wide);
+        assert!(plain.iter().filter(|found| found[0] != 0).count() > 500);
+    }
+}

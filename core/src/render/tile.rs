@@ -194,7 +194,7 @@ impl<'s> Worker<'s> {
         }
     }
 
-    /// What is there.
+    /// Shades every path of this round where `trace` found that it ends.
     #[inline(always)]
     fn shade(&mut self) {
         let (stage, wants) = (self.stage, self.wants);
@@ -210,7 +210,7 @@ impl<'s> Worker<'s> {
         }
     }
 
-    /// The same through media and open surfaces.
+    /// Traces and shades one path whose ray may end in a medium, or pass open surfaces on its way.
     fn fly_through(&mut self, mut ray: Ray, lane: usize) {
         let stage = self.stage;
         let mut media = self.paths[lane].media_along(&ray, stage);

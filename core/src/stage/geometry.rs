@@ -118,7 +118,8 @@ impl Mesh {
             && (from.is_none() || self.intersect(ray, direction, t_enter, from, &mut 0).is_some())
     }
 
-    /// Whether the plane of a triangle lies behind the origin of a ray, in double precision.
+    /// Whether the plane of a triangle lies behind the origin of a ray, in double precision. Asked for
+    /// few rays, so it stays out of the copies for each processor.
     #[inline(never)]
     fn is_behind(&self, triangle: u32, ray: &Ray) -> bool {
         let [a, b, c] = self.triangles().corners(triangle);

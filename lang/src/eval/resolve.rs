@@ -313,8 +313,13 @@ impl Resolver<'_> {
         known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
         if let Some(near) = nearest(shown, known.iter().copied()) {
             found = found.help(format!("did you mean `{near}`?")).fix(place, near);
+        } else if shown == "range" {
+            found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
         } else {
-            found = found.help("text is written in quotes: \"…\"");
+            found = found.help(
+                "names come from `let`, `param`, `fn`, `for` and `import`; text is written in \
+                 quotes: \"…\"",
+            );
         }
         found
     }

@@ -1,10 +1,11 @@
 //! Cases: a snippet, then the mistakes that must be told of it, all of them and nothing else.
 //!
 //! `--- name ---` begins a case. Lines of the form `// error: E0402 3:5-3:10 fragment` (or
-//! `// warning: …`) at its end say code, place and a part of the message. A place in another text
+//! `// warning: …`) at its end say code, place and a part of the message or its help. A place in another text
 //! than the snippet begins with its name: `--set:1:1-1:6`; `-` is no place. `// set: a=b` gives a
 //! value on the command line, `// file: name` begins another file.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use luxel_core::diag::{Diagnostic, Severity, Sources};
@@ -74,14 +75,15 @@ fn parse(name: &'static str, body: &'static str) -> Case<'static> {
 fn check(case: &Case<'_>) -> String {
     let settings = Settings { set: case.set.clone(), ..Settings::default() };
     let loaded = load(Path::new("case.scene"), &case.files, &registry(), &settings);
-    let mut told: Vec<(String, &str)> = vec![];
+    let mut told: Vec<(String, String)> = vec![];
     for diagnostic in &loaded.diagnostics {
         let severity = match diagnostic.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
         let place = place(diagnostic, &loaded.sources);
-        told.push((format!("{severity}: {} {place}", diagnostic.code), &diagnostic.message));
+        let words = [&[diagnostic.message.clone()], diagnostic.help.as_slice()].concat().join("; ");
+        told.push((format!("{severity}: {} {place}", diagnostic.code), words));
         let known = luxel_lang::CATALOGUE.iter().any(|(code, _)| *code == diagnostic.code);
         assert!(known, "{} is not in the catalogue", diagnostic.code);
     }
@@ -93,12 +95,13 @@ fn check(case: &Case<'_>) -> String {
     if alike {
         return String::new();
     }
-    let show = |list: &[(String, &str)]| -> String {
-        let lines: Vec<String> =
-            list.iter().map(|(head, message)| format!("  // {head} {message}")).collect();
-        lines.join("\n")
-    };
-    format!("--- {} ---\n told:\n{}\n expected:\n{}\n", case.name, show(&told), show(&expected))
+    let (told, expected) = (show(&told), show(&expected));
+    format!("--- {} ---\n told:\n{told}\n expected:\n{expected}\n", case.name)
+}
+
+fn show<T: Display>(list: &[(String, T)]) -> String {
+    let lines: Vec<_> = list.iter().map(|(head, words)| format!("  // {head} {words}")).collect();
+    lines.join("\n")
 }
 
 #[test]

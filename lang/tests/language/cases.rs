@@ -82,7 +82,7 @@ fn check(case: &Case<'_>) -> String {
             Severity::Warning => "warning",
         };
         let place = place(diagnostic, &loaded.sources);
-        let words = [&[diagnostic.message.clone()], diagnostic.help.as_slice()].concat().join("; ");
+        let words = format!("{}; {}", diagnostic.message, diagnostic.help.join("; "));
         told.push((format!("{severity}: {} {place}", diagnostic.code), words));
         let known = luxel_lang::CATALOGUE.iter().any(|(code, _)| *code == diagnostic.code);
         assert!(known, "{} is not in the catalogue", diagnostic.code);

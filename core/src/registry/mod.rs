@@ -1,6 +1,7 @@
 //! Kind and name to class: a plain value, built by explicit calls.
 
 mod common;
+pub mod dynamic;
 mod film;
 
 use std::collections::BTreeMap;

@@ -29,6 +29,17 @@ pub struct Settings {
     pub set: Vec<(String, String)>,
     /// What the load may cost.
     pub budgets: Budgets,
+    /// Plugin libraries that are not loaded: what a scene misses may be in one of them.
+    pub unloaded: Vec<Unloaded>,
+}
+
+/// A plugin library that was found but not loaded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unloaded {
+    /// Its file's name without `lib` and extension: often that of its class.
+    pub stem: String,
+    /// Which library it is, why it is not loaded, and what to do.
+    pub advice: String,
 }
 
 /// A `param` that the root file declares.

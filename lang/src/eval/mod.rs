@@ -34,7 +34,7 @@ use self::include::ReadFile;
 use self::value::{Module, Value};
 use crate::budgets::Budgets;
 use crate::sink::Sink;
-use crate::{Loaded, ParamInfo, Settings};
+use crate::{Loaded, ParamInfo, Settings, Unloaded};
 
 /// Evaluates the scene at `path`.
 pub(crate) fn load(
@@ -46,6 +46,7 @@ pub(crate) fn load(
     let mut evaluator = Evaluator {
         files,
         registry,
+        unloaded: &settings.unloaded,
         budgets: settings.budgets,
         sources: Sources::default(),
         sink: Sink::new(settings.budgets.diagnostics),
@@ -76,6 +77,7 @@ pub(crate) fn load(
 struct Evaluator<'a> {
     files: &'a dyn Files,
     registry: &'a Registry,
+    unloaded: &'a [Unloaded],
     budgets: Budgets,
     sources: Sources,
     sink: Sink,

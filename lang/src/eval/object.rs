@@ -17,6 +17,9 @@ use super::value::{FieldValue, Head, ObjectValue, Value, What};
 use super::{Evaluator, OpenGroup};
 use crate::syntax::{Name, Object};
 
+/// Libraries that a message lists, at most.
+const SHOWN: usize = 8;
+
 impl Evaluator<'_> {
     /// The object that an expression or statement describes.
     pub(super) fn object(&mut self, object: &Object, env: &Env) -> Value {
@@ -57,15 +60,28 @@ impl Evaluator<'_> {
             return None;
         };
         if self.registry.class(kind, &class.text).is_none() {
-            let message = format!("there is no {kind} `{}`", class.text);
-            let mut found = Diagnostic::error("E0401", class.span, message);
-            if let Some(near) = nearest(&class.text, names.iter().copied()) {
-                found = found.help(format!("did you mean `{near}`?")).fix(class.span, near);
-            }
-            self.tell(found.help(format!("known are {}", names.join(", "))));
+            self.no_class(kind, class, &names);
             return None;
         }
         Some(Head { kind: Some(kind), class: class.clone(), label: object.label.clone(), span })
+    }
+
+    /// Tells of a class that nobody has, and which libraries that are not loaded may have it.
+    fn no_class(&mut self, kind: Kind, class: &Name, names: &[&str]) {
+        let near = nearest(&class.text, names.iter().copied());
+        let namesake = self.unloaded.iter().any(|library| *library.stem == *class.text);
+        let missing = namesake || (near.is_none() && !self.unloaded.is_empty());
+        let code = if missing { "E0414" } else { "E0401" };
+        let message = format!("there is no {kind} `{}`", class.text);
+        let mut found = Diagnostic::error(code, class.span, message);
+        if let Some(near) = near {
+            found = found.help(format!("did you mean `{near}`?")).fix(class.span, near);
+        }
+        if missing {
+            let advice = self.unloaded.iter().take(SHOWN).map(|library| library.advice.clone());
+            found = advice.fold(found, Diagnostic::help);
+        }
+        self.tell(found.help(format!("known are {}", names.join(", "))));
     }
 
     fn group(&mut self, object: &Object, span: Span, env: &Env) -> Value {

@@ -107,7 +107,7 @@ fn every_name_is_in_snake_case() {
         let mut names = vec![entry.class.name];
         for param in Registry::params(&entry.class) {
             names.push(param.name);
-            names.extend(param.choices);
+            names.extend(param.words());
         }
         names.into_iter().filter(|name| !snake(name)).map(str::to_owned).collect()
     });

@@ -6,8 +6,10 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Preset, Type};
 use serde_json::{Value, json};
 
+use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::list::{kind, unknown};
+use crate::report::{Form, Stream};
 use crate::{load, report, words};
 
 /// Show the manual page of a plugin: what it is, and each parameter
@@ -25,10 +27,13 @@ pub(crate) struct Args {
     /// A JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    plugins: PluginArgs,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let registry = load::registry();
+    let plugins = load::registry(&args.plugins)?;
+    plugins.notes.tell(Form::Text, Stream::Error)?;
     let page = match (words::find(&args.kind), &args.name) {
         (Some(word), None) if args.json => format!("{}\n", word.object()),
         (Some(word), None) => word.page(),
@@ -38,7 +43,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             return Err(Failure::new(Exit::Input, message).help(help));
         }
         (None, name) => {
-            let entry = entry(&registry, kind(&args.kind)?, name.as_deref())?;
+            let entry = entry(&plugins.registry, kind(&args.kind)?, name.as_deref())?;
             if args.json { format!("{}\n", object(entry)) } else { text(entry) }
         }
     };
@@ -98,7 +103,7 @@ fn facts(param: &Param) -> Vec<String> {
     }
     facts.extend(range_words(param));
     if !param.choices.is_empty() {
-        facts.push(format!("one of {}", param.choices.join(", ")));
+        facts.push(format!("one of {}", param.words().collect::<Vec<_>>().join(", ")));
     }
     if param.textured {
         facts.push("may be a texture".into());
@@ -142,7 +147,7 @@ fn default(param: &Param) -> Option<String> {
     match param.default {
         Preset::Absent => None,
         Preset::Numbers(numbers) => Some(numbers_of(param.ty, numbers)),
-        Preset::Index(i) => Some(param.choices.get(i as usize).map_or("?", |word| word).into()),
+        Preset::Index(i) => Some(param.words().nth(i as usize).unwrap_or("?").into()),
         Preset::Text(text) => Some(format!("{text:?}")),
     }
 }
@@ -180,7 +185,7 @@ fn parameter(param: &Param) -> Value {
         "min": finite(param.min),
         "max": finite(param.max),
         "default": default(param),
-        "choices": param.choices,
+        "choices": param.words().collect::<Vec<_>>(),
         "group": param.group,
         "required": param.required,
         "textured": param.textured,
@@ -191,10 +196,11 @@ fn parameter(param: &Param) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::libraries::builtins;
 
     #[test]
     fn a_page_tells_type_unit_range_default_snippet_and_common_parameters() {
-        let registry = load::registry();
+        let registry = builtins();
         let page = text(registry.entry(Kind::Shape, "sphere").unwrap());
         for part in [
             "shape sphere (builtin)",
@@ -211,7 +217,7 @@ mod tests {
 
     #[test]
     fn every_plugin_has_a_page_and_every_parameter_a_text() {
-        for entry in load::registry().all() {
+        for entry in builtins().all() {
             assert!(!entry.class.doc.trim().is_empty(), "{:?}", entry.class);
             let page = object(entry);
             for parameter in page["parameters"].as_array().unwrap() {
@@ -222,7 +228,7 @@ mod tests {
 
     #[test]
     fn the_films_size_and_choices_are_shown() {
-        let page = text(load::registry().entry(Kind::Film, "auto").unwrap());
+        let page = text(builtins().entry(Kind::Film, "auto").unwrap());
         assert!(page.contains("resolution: two numbers, from 1 to 65536, default (640, 480)"));
         assert!(page.contains("one of srgb, linear, filmic, default srgb"), "{page}");
     }

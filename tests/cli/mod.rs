@@ -1,5 +1,7 @@
 //! The program as a person runs it: exit codes, files, interrupts.
 
+mod hostile;
+mod libraries;
 mod plugin;
 #[cfg(test)]
 mod program;

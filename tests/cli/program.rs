@@ -35,6 +35,9 @@ fn program() -> &'static Path {
     })
 }
 
+/// Where the program's settings are, in a test's folder.
+pub(crate) const CONFIG: &str = "config";
+
 /// How a run ended.
 #[derive(Debug)]
 pub(crate) struct Done {
@@ -82,23 +85,55 @@ impl Folder {
         names
     }
 
+    /// Where a file of the folder is.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
     /// Runs the program to its end.
     pub(crate) fn luxel(&self, args: &[&str]) -> Done {
-        told(&Command::new(program()).args(args).current_dir(&self.0).output().unwrap())
+        self.luxel_in(&[], args)
+    }
+
+    /// Runs the program to its end, with these variables in its environment.
+    pub(crate) fn luxel_in(&self, variables: &[(&str, &str)], args: &[&str]) -> Done {
+        let mut command = self.among(Command::new(program()));
+        command.args(args).envs(variables.iter().copied());
+        told(&command.output().unwrap())
+    }
+
+    /// The same in a folder below this one.
+    #[cfg(unix)]
+    pub(crate) fn luxel_below(
+        &self,
+        below: &str,
+        variables: &[(&str, &str)],
+        args: &[&str],
+    ) -> Done {
+        let mut command = self.among(Command::new(program()));
+        command.args(args).envs(variables.iter().copied()).current_dir(self.0.join(below));
+        told(&command.output().unwrap())
+    }
+
+    /// A command in this folder, far from the settings of whoever runs the tests.
+    fn among(&self, mut command: Command) -> Command {
+        command.current_dir(&self.0).env_remove("LUXEL_PLUGIN_PATH");
+        command.env("XDG_CONFIG_HOME", self.0.join(CONFIG));
+        command
     }
 
     /// Runs the program to its end after a line of shell.
     #[cfg(unix)]
     pub(crate) fn luxel_under(&self, shell: &str, args: &[&str]) -> Done {
-        let mut command = Command::new("sh");
+        let mut command = self.among(Command::new("sh"));
         command.args(["-c", &format!("{shell}; exec \"$0\" \"$@\"")]).arg(program()).args(args);
-        told(&command.current_dir(&self.0).output().unwrap())
+        told(&command.output().unwrap())
     }
 
     /// Starts the program.
     pub(crate) fn start(&self, args: &[&str]) -> Running {
-        let mut command = Command::new(program());
-        command.args(args).current_dir(&self.0).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut command = self.among(Command::new(program()));
+        command.args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
         Running(Some(command.spawn().unwrap()))
     }
 }

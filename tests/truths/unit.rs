@@ -9,7 +9,7 @@ use luxel_core::stage::Stage;
 use luxel_sdk::color::{
     K_CD, Observer, Spectrum, blackbody, glass, illuminant, srgb_decode, srgb_encode, xyz_to_xy,
 };
-use luxel_sdk::kind::Raster;
+use luxel_sdk::kind::{Phase, Raster};
 use luxel_sdk::scattering::{conductor_reflectance, dielectric_reflectance, refract};
 
 use super::Row;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::abi::Class;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Kind, MaterialRef, PhaseRef};
+use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{
     Emission, Fault, File, Maybe, Param, Preset, Quantity, Role, Table, Text, Type,
 };
@@ -180,14 +180,14 @@ impl<'a> Builder<'a> {
         match (param.ty, value) {
             (Type::Emission, _) => return self.emission(draft, param, value, node),
             (Type::Object(Kind::Shape), _) => {}
-            (Type::Object(kind), Some(Value::Node(id))) => {
+            (Type::Object(_), Some(Value::Node(id))) => {
                 if let Some(child) = self.build(*id) {
-                    draft.child(param.offset, kind, &child);
+                    draft.child(param.offset, &child);
                 }
             }
             (Type::Object(Kind::Phase), None) => {
                 let child = self.preset(Kind::Phase, "isotropic");
-                draft.child(param.offset, Kind::Phase, &child);
+                draft.child(param.offset, &child);
             }
             (_, Some(Value::Node(id))) => {
                 if let Some(texture) = self.build(*id) {
@@ -293,12 +293,9 @@ impl Draft {
         Ok(())
     }
 
-    fn child(&mut self, offset: usize, kind: Kind, child: &Arc<Object>) {
-        // A reference is never null: where the child varies, this one is replaced at each point.
-        match kind {
-            Kind::Phase => self.block.write_raw(offset, PhaseRef::new(child.fixed().phase())),
-            _ => self.block.write_raw(offset, MaterialRef::new(child.fixed().material())),
-        }
+    fn child(&mut self, offset: usize, child: &Arc<Object>) {
+        // A handle is never null: where the child varies, this one is replaced at each point.
+        self.block.write_raw(offset, child.fixed().handle());
         if child.is_constant() {
             self.owned.push(child.clone());
         } else {
@@ -348,7 +345,7 @@ impl Draft {
             }
             (Type::Vec2 | Type::Vec3 | Type::DVec3, Value::Vector(v)) => self.vector(param, v),
             (Type::Choice, Value::Text(word)) => {
-                let index = param.choices.iter().position(|choice| **choice == **word);
+                let index = param.words().position(|choice| choice == &**word);
                 let index = index.ok_or_else(|| format!("`{word}` is not among the choices"))?;
                 self.block.write_raw(at, cast::index(index));
             }

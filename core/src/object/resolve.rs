@@ -7,11 +7,11 @@ use std::mem::MaybeUninit;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
-use luxel_sdk::abi::View;
+use luxel_sdk::abi::{Class, View};
 use luxel_sdk::color::{Palette, Spectrum};
 use luxel_sdk::kind::{
-    Camera, Filter, Importer, Integrator, Light, Material, MaterialRef, Medium, Output, Phase,
-    PhaseRef, Sampler, Shape, Texture, TexturePoint,
+    Camera, Filter, Importer, Integrator, Light, Material, Medium, Output, Phase, Sampler, Shape,
+    Texture, TexturePoint,
 };
 
 use luxel_sdk::params::{BuildContext, Fault};
@@ -74,8 +74,15 @@ pub struct Site<'a> {
 #[derive(Clone, Copy)]
 pub struct Resolved<'a> {
     at: *const u8,
-    view: View,
-    lent: PhantomData<&'a ()>,
+    class: &'a Class,
+}
+
+/// What a parameter that takes another object holds: a `MaterialRef` or a `PhaseRef`.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub(super) struct Handle {
+    behaviour: *const u8,
+    at: *const u8,
 }
 
 macro_rules! views {
@@ -85,7 +92,7 @@ macro_rules! views {
         /// # Panics
         /// If the object is of another kind: the builder has checked it.
         pub fn $name(self) -> &'a (dyn $kind + 'a) {
-            let View::$kind(view) = self.view else { panic!("an object of another kind") };
+            let View::$kind(view) = self.class.view else { panic!("an object of another kind") };
             // SAFETY: `at` is a valid struct of the class that this view belongs to, for 'a.
             unsafe { view(self.at, PhantomData) }
         }
@@ -117,13 +124,18 @@ impl<'a> Resolved<'a> {
         /// As an importer.
         importer: Importer,
     }
+
+    /// As a parameter of another object.
+    pub(super) fn handle(self) -> Handle {
+        Handle { behaviour: self.class.table.behaviour, at: self.at }
+    }
 }
 
 impl Object {
     /// Its parameters where nothing varies: those that are written in the scene. Varying fields
     /// hold their defaults.
     pub fn fixed(&self) -> Resolved<'_> {
-        Resolved { at: self.template.address(), view: self.class.view, lent: PhantomData }
+        Resolved { at: self.template.address(), class: &self.class }
     }
 
     /// Its parameters at a point.
@@ -145,17 +157,13 @@ impl Object {
         }
         for patch in &self.patches.children {
             let child = patch.child.resolve(at, scratch);
-            match child.view {
-                View::Material(_) => write.put(patch.offset, MaterialRef::new(child.material())),
-                View::Phase(_) => write.put(patch.offset, PhaseRef::new(child.phase())),
-                _ => unreachable!("the builder makes children of materials and phases alone"),
-            }
+            write.put(patch.offset, child.handle());
         }
         if let Some(prepare) = self.class.prepare {
             // SAFETY: `base` is a valid struct of this class that no one else refers to.
             unsafe { prepare(base) };
         }
-        Resolved { at: base, view: self.class.view, lent: PhantomData }
+        Resolved { at: base, class: &self.class }
     }
 
     #[inline(never)]

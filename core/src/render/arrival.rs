@@ -47,19 +47,20 @@ impl Shader<'_, '_> {
             let origin = Origin { p, p_err: DVec3::ZERO, ng: DVec3::ZERO };
             let found =
                 self.stage.sample_light(&origin, &self.path.palette, numbers.light, scratch);
-            at.direct = found.map(|found| {
+            at.direct.set(found.map(|found| {
                 let eval = phase.eval(wo.as_vec3(), found.ray.d.as_vec3());
                 let f_le = eval.f * found.le_over_pdf * self.flight;
                 Direct { ray: found.ray, f_le, pdf: found.pdf, f_pdf: eval.pdf }
-            });
+            }));
         }
         if self.wants.has(Wants::SCATTER) {
-            at.scatter = phase.sample(wo.as_vec3(), numbers.scatter).map(|sample| Scatter {
+            let sample = phase.sample(wo.as_vec3(), numbers.scatter);
+            at.scatter.set(sample.map(|sample| Scatter {
                 weight: sample.weight * self.flight,
                 wi: sample.wi.as_dvec3().normalize(),
                 pdf: density(&sample),
                 eta: 1.0,
-            });
+            }));
         }
     }
 
@@ -109,7 +110,7 @@ impl Shader<'_, '_> {
             let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };
             let found =
                 self.stage.sample_light(&origin, &self.path.palette, numbers.light, scratch);
-            at.direct = found.and_then(|found| {
+            at.direct.set(found.and_then(|found| {
                 let wi = local.of_world(found.ray.d)?;
                 let eval = material.eval(local.wo, wi);
                 let f_le = eval.f * found.le_over_pdf * self.flight;
@@ -119,7 +120,7 @@ impl Shader<'_, '_> {
                     pdf: found.pdf,
                     f_pdf: eval.pdf,
                 })
-            });
+            }));
         }
         if self.wants.has(Wants::SCATTER) {
             // The pair is copied as such: read again at once in another size, it would be waited for.
@@ -127,7 +128,7 @@ impl Shader<'_, '_> {
             u[..2].copy_from_slice(&numbers.scatter);
             u[2] = self.samples.next_1d_if(needs.has(Needs::CHOICE));
             let sample = material.sample(local.wo, u);
-            at.scatter = sample.and_then(|sample| self.scattered(&local, &sample));
+            at.scatter.set(sample.and_then(|sample| self.scattered(&local, &sample)));
         }
     }
 
@@ -150,7 +151,7 @@ fn begin(at: &mut Arrival, kind: ArrivalKind, ray: &Ray, t: f64, steps: u32) {
     (at.p, at.p_err) = (DVec3::ZERO, DVec3::ZERO);
     (at.ng, at.ns, at.uv) = (DVec3::ZERO, DVec3::ZERO, glam::Vec2::ZERO);
     (at.le, at.le_pdf, at.material) = (Spectrum::ZERO, 0.0, u32::MAX);
-    (at.direct, at.scatter) = (None, None);
+    (at.direct.given, at.scatter.given) = (false, false);
 }
 
 /// The random numbers of one arrival. They are drawn before anything else is done there: each takes

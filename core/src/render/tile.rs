@@ -5,7 +5,8 @@ use std::ops::Range;
 use glam::{DVec3, UVec2};
 use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
-    Arrival, Erased, Host, Job, Lane, Output, Raster, Requests, SampleAt, Samples, Wants,
+    Arrival, Erased, Host, Job, Lane, Onward, Output, Raster, Requests, Round, SampleAt, Sampler,
+    Samples, Wants,
 };
 use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::hash_combine;
@@ -26,9 +27,10 @@ const LANES: usize = 128;
 pub(super) struct Worker<'s> {
     stage: &'s Stage,
     seed: u32,
+    sampler: &'s dyn Sampler,
     wants: Wants,
     states: Box<dyn Erased + 's>,
-    lanes: Vec<Lane<'s>>,
+    lanes: Vec<Lane>,
     paths: Vec<Path>,
     free: Vec<u32>,
     /// What the running round answers, and what it asks for.
@@ -47,11 +49,11 @@ impl<'s> Worker<'s> {
     pub(super) fn new(stage: &'s Stage, seed: u32) -> Self {
         let integrator = stage.integrator.fixed().integrator();
         let at = SampleAt { stream: 0, index: 0, dimension: 0 };
-        let samples = Samples::new(stage.sampler.fixed().sampler(), at);
-        let lane = Lane { at: Arrival::default(), l: Spectrum::ZERO, samples };
+        let lane = Lane { at: Arrival::default(), l: Spectrum::ZERO, numbers: at };
         Self {
             stage,
             seed,
+            sampler: stage.sampler.fixed().sampler(),
             wants: integrator.wants(),
             states: integrator.lanes(LANES),
             lanes: vec![lane; LANES],
@@ -133,8 +135,7 @@ impl<'s> Worker<'s> {
     fn begin(&mut self, jobs: &Jobs, job: usize, lane: usize) -> Option<Ray> {
         let (pixel, index) = jobs.at(job);
         let stream = hash_combine(hash_combine(self.seed, pixel.x), pixel.y);
-        let source = self.stage.sampler.fixed().sampler();
-        let mut samples = Samples::new(source, SampleAt { stream, index, dimension: 0 });
+        let mut samples = Samples::new(self.sampler, SampleAt { stream, index, dimension: 0 });
         let [in_pixel, lens] = samples.next_2d_pair();
         let [dx, dy] = self.stage.filter.fixed().filter().sample(in_pixel);
         let u = samples.next_1d_if(self.stage.mode == ColorMode::Spectral);
@@ -144,21 +145,23 @@ impl<'s> Worker<'s> {
         let camera = self.stage.camera.fixed().camera();
         let found = camera.ray(raster, p, lens)?;
         self.paths[lane].start(cast::index(job), &found, u, self.stage);
-        (self.lanes[lane].l, self.lanes[lane].samples) = (Spectrum::ZERO, samples);
+        (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
         Some(found.ray)
     }
 
     /// Light that depended on shadow rays, in asking order.
     #[inline(always)]
     fn shadows(&mut self) {
-        for request in &self.now.shadows {
+        for request in self.now.shadows.iter() {
             let lane = &mut self.lanes[request.lane as usize];
             let path = &self.paths[request.lane as usize];
             if self.stage.occluded(&request.ray, path.leaving()) {
                 continue;
             }
-            let (samples, scratch) = (&mut lane.samples, &mut self.scratch);
-            let left = shadow::passes(self.stage, &request.ray, path, samples, scratch);
+            let mut samples = Samples::new(self.sampler, lane.numbers);
+            let scratch = &mut self.scratch;
+            let left = shadow::passes(self.stage, &request.ray, path, &mut samples, scratch);
+            lane.numbers = samples.at();
             lane.l += request.l * left;
         }
     }
@@ -169,7 +172,7 @@ impl<'s> Worker<'s> {
         let stage = self.stage;
         if stage.features.media || stage.features.open_surfaces {
             for i in 0..self.now.rays.len() {
-                let (ray, lane) = self.now.rays[i];
+                let Onward { ray, lane } = self.now.rays[i];
                 self.fly_through(ray, lane as usize);
             }
         } else {
@@ -177,16 +180,16 @@ impl<'s> Worker<'s> {
             widest(Shade(self));
         }
         self.arrived.clear();
-        self.arrived.extend(self.now.rays.iter().map(|(_, lane)| *lane));
-        let host = StageHost(stage);
-        self.states.arrive_n(&mut self.lanes, &self.arrived, &host, &mut self.next);
+        self.arrived.extend(self.now.rays.iter().map(|onward| onward.lane));
+        let round = Round { host: &StageHost(stage), sampler: self.sampler };
+        self.states.arrive_n(&mut self.lanes, &self.arrived, round, &mut self.next);
     }
 
     /// Where the rays of this round meet the scene.
     #[inline(always)]
     fn trace(&mut self) {
         self.hits.clear();
-        for (ray, lane) in &self.now.rays {
+        for Onward { ray, lane } in self.now.rays.iter() {
             let mut steps = 0;
             let from = self.paths[*lane as usize].leaving();
             let hit = self.stage.intersect(ray, from, &mut steps);
@@ -198,20 +201,28 @@ impl<'s> Worker<'s> {
     #[inline(always)]
     fn shade(&mut self) {
         let (stage, wants) = (self.stage, self.wants);
-        for ((ray, lane), (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
+        for (Onward { ray, lane }, (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
             let path = &mut self.paths[*lane as usize];
-            let Lane { at, samples, .. } = &mut self.lanes[*lane as usize];
+            let Lane { at, numbers, .. } = &mut self.lanes[*lane as usize];
+            let mut samples = Samples::new(self.sampler, *numbers);
             let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
-            let shader = Shader { stage, wants, path, samples, scratch, flight };
+            let shader = Shader { stage, wants, path, samples: &mut samples, scratch, flight };
             match hit {
                 Some(hit) => shader.surface(ray, hit, *steps, at),
                 None => shader.escaped(ray, *steps, at),
             }
+            *numbers = samples.at();
         }
     }
 
     /// Traces and shades one path whose ray may end in a medium, or pass open surfaces on its way.
-    fn fly_through(&mut self, mut ray: Ray, lane: usize) {
+    fn fly_through(&mut self, ray: Ray, lane: usize) {
+        let mut samples = Samples::new(self.sampler, self.lanes[lane].numbers);
+        self.fly(ray, lane, &mut samples);
+        self.lanes[lane].numbers = samples.at();
+    }
+
+    fn fly(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) {
         let stage = self.stage;
         let mut media = self.paths[lane].media_along(&ray, stage);
         let mut from = self.paths[lane].leaving();
@@ -220,7 +231,7 @@ impl<'s> Worker<'s> {
             let hit = stage.intersect(&ray, from, &mut steps);
             let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
             let path = &mut self.paths[lane];
-            let Lane { at: arrival, samples, .. } = &mut self.lanes[lane];
+            let arrival = &mut self.lanes[lane].at;
             let scratch = &mut self.scratch;
             let wants = self.wants;
             if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
@@ -231,10 +242,10 @@ impl<'s> Worker<'s> {
                 let medium = object.resolve(&at, &self.medium_scratch).medium();
                 let free = medium.sample(&Ray { t_max, ..ray }, samples);
                 flight *= free.weight;
-                if let Some(t) = free.t {
+                if let Some(t) = free.t.get() {
                     path.media = media;
                     let shader = Shader { stage, wants, path, samples, scratch, flight };
-                    return shader.medium(&ray, t, medium.phase(), arrival);
+                    return shader.medium(&ray, t, &medium.phase(), arrival);
                 }
             }
             path.media = media;
@@ -254,16 +265,16 @@ impl<'s> Worker<'s> {
     /// Lanes that were answered and asked for nothing more are done.
     fn retire(&mut self) {
         let mut busy = [false; LANES];
-        for (_, lane) in &self.next.rays {
-            busy[*lane as usize] = true;
+        for onward in self.next.rays.iter() {
+            busy[onward.lane as usize] = true;
         }
-        for request in &self.next.shadows {
+        for request in self.next.shadows.iter() {
             busy[request.lane as usize] = true;
         }
         let mut seen = [false; LANES];
         for i in 0..self.now.shadows.len() + self.now.rays.len() {
             let lane = match i.checked_sub(self.now.shadows.len()) {
-                Some(i) => self.now.rays[i].1,
+                Some(i) => self.now.rays[i].lane,
                 None => self.now.shadows[i].lane,
             } as usize;
             if !busy[lane] && !seen[lane] {

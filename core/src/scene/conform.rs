@@ -137,7 +137,7 @@ pub fn wanted(param: &Param) -> String {
         Type::Spectrum | Type::ComplexIor => with_unit("a colour or spectrum"),
         Type::Emission if param.group.is_empty() => "a colour or spectrum".to_owned(),
         Type::Float | Type::Double | Type::MaybeFloat | Type::Emission => with_unit("a number"),
-        Type::Choice => format!("one of \"{}\"", param.choices.join("\", \"")),
+        Type::Choice => format!("one of \"{}\"", words(param)),
         Type::Text => "text".to_owned(),
         Type::File => "a file's path".to_owned(),
         Type::Table => with_unit("a list of numbers"),
@@ -161,13 +161,17 @@ fn wrong_node(param: &Param, kind: Kind) -> Misfit {
     }
 }
 
+fn words(param: &Param) -> String {
+    param.words().collect::<Vec<_>>().join("\", \"")
+}
+
 fn choice(param: &Param, word: Arc<str>) -> Result<Value, Misfit> {
-    if param.choices.contains(&&*word) {
+    if param.words().any(|known| known == &*word) {
         return Ok(Value::Text(word));
     }
     let message = format!("`{}` has no choice \"{word}\"", param.name);
-    let known = format!("known are \"{}\"", param.choices.join("\", \""));
-    let near = nearest(&word, param.choices.iter().copied());
+    let known = format!("known are \"{}\"", words(param));
+    let near = nearest(&word, param.words());
     Err(Misfit { word: near, ..Misfit::new("E0416", message).help(known) })
 }
 

@@ -211,7 +211,7 @@ impl Maker<'_> {
                     let message = format!("{} triangles without area left out", bvh.dropped());
                     self.builder.diagnostics.push(Diagnostic::warning("E0418", span, message));
                 }
-                Some(Geometry::Mesh(Arc::new(Mesh::new(object.clone(), bvh))))
+                Some(Geometry::Mesh(Arc::new(Mesh::new(triangles, bvh))))
             }
             Err(error) => {
                 self.builder.diagnostics.push(mesh_error(error, span));

@@ -29,8 +29,7 @@ const MOST_BEHIND: u32 = 8;
 /// A mesh with its tree.
 #[derive(Debug)]
 pub struct Mesh {
-    /// Keeps the triangles.
-    object: Arc<Object>,
+    triangles: Arc<TriangleMesh>,
     bvh: MeshBvh,
     /// Whether every edge joins exactly two triangles that run along it in opposite directions:
     /// found when first asked for, which only scenes with media do.
@@ -43,18 +42,15 @@ pub struct Mesh {
 
 impl Mesh {
     /// Takes over the triangles of a shape and its finished tree.
-    pub fn new(object: Arc<Object>, bvh: MeshBvh) -> Self {
+    pub fn new(triangles: Arc<TriangleMesh>, bvh: MeshBvh) -> Self {
         let diagonal = bvh.bounds().map_or(0.0, |(min, max)| (max - min).as_dvec3().length());
-        let centre = object.fixed().shape().mesh().map_or(DVec3::ZERO, |mesh| mesh.centre);
-        Self { object, bvh, closed: OnceLock::new(), centre, diagonal }
+        let centre = triangles.centre;
+        Self { triangles, bvh, closed: OnceLock::new(), centre, diagonal }
     }
 
     /// The triangles.
-    ///
-    /// # Panics
-    /// Never: only shapes that hand over triangles become meshes.
     pub fn triangles(&self) -> &TriangleMesh {
-        self.object.fixed().shape().mesh().expect("the shape handed its triangles over")
+        &self.triangles
     }
 
     /// Triangles without area that were left out of the tree.

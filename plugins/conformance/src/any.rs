@@ -22,8 +22,8 @@ pub(crate) fn describes_itself(class: &Class, judge: &mut Judge) {
         judge.holds("default in range", default_is_legal(param), || {
             format!("{}: {:?} in [{}, {}]", param.name, param.default, param.min, param.max)
         });
-        for choice in param.choices {
-            judge.holds("snake case", is_snake(choice), || (*choice).to_owned());
+        for choice in param.words() {
+            judge.holds("snake case", is_snake(choice), || choice.to_owned());
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Media: what flies through and what is scattered against transmittance.
 
 use glam::DVec3;
-use luxel_sdk::kind::{FreeFlight, Medium, SampleAt, Sampler, Samples};
+use luxel_sdk::kind::{FreeFlight, Medium, Phase, SampleAt, Sampler, Samples};
 use luxel_sdk::num::{Moments, Ray};
 use luxel_sdk::params::Role;
 use luxel_sdk::sampling::Rng;
@@ -79,7 +79,7 @@ fn stays_finite(medium: &dyn Medium, set: &Set, judge: &mut Judge) {
             judge.holds("finite and in [0, 1]", legal, || format!("{}: {left:?}", at()));
             let flight = medium.sample(&ray, &mut samples(&numbers, i));
             let weight = flight.weight.is_finite() && flight.weight.0.min_element() >= 0.0;
-            let inside = flight.t.is_none_or(|t| t >= 0.0 && t <= t_max && t.is_finite());
+            let inside = flight.t.get().is_none_or(|t| t >= 0.0 && t <= t_max && t.is_finite());
             let shown = || format!("{}: {flight:?}", at());
             judge.holds("flights are finite", weight && inside, shown);
         }
@@ -155,6 +155,7 @@ fn flies(medium: &dyn Medium, set: &Set, t_max: f64, n: u32, judge: &mut Judge) 
     let mut met = [[Moments::default(); 4]; PIECES];
     for i in 0..n {
         let FreeFlight { t, weight } = medium.sample(&ray_to(t_max), &mut samples(&numbers, i));
+        let t = t.get();
         let weight = weight.to_array().map(f64::from);
         let legal = weight.iter().all(|w| w.is_finite() && *w >= 0.0);
         let inside = t.is_none_or(|t| t >= 0.0 && t <= t_max);

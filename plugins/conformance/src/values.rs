@@ -110,7 +110,7 @@ pub(crate) fn sensible(
     }
     match param.ty {
         Type::Bool => Some(Value::Bool(preset(param).unwrap_or(0.0) > 0.5)),
-        Type::Choice => Some(Value::Text((*param.choices.first()?).into())),
+        Type::Choice => Some(Value::Text(param.words().next()?.into())),
         Type::Text => Some(Value::Text("text".into())),
         Type::File => Some(Value::Path(PathBuf::from(file))),
         Type::Table => Some(Value::Table(Arc::from([0.0; 9]))),
@@ -146,8 +146,8 @@ pub(crate) fn extremes(param: &Param) -> Vec<(Value, Level)> {
     if is_number(param) && preset(param).is_none() {
         out.push((number(param, typical(param)), Level::Usual));
     }
-    let words = param.choices.iter().take(8);
-    out.extend(words.map(|word| (Value::Text((*word).into()), Level::Usual)));
+    let words = param.words().take(8);
+    out.extend(words.map(|word| (Value::Text(word.into()), Level::Usual)));
     out
 }
 
@@ -216,7 +216,7 @@ pub(crate) fn draw(param: &Param, rng: &mut Rng, bright: bool) -> Option<Value> 
         Type::Bool => Some(Value::Bool(rng.f32() < 0.5)),
         Type::Choice => {
             let index = rng.u32() as usize % param.choices.len().max(1);
-            Some(Value::Text((*param.choices.get(index)?).into()))
+            Some(Value::Text(param.words().nth(index)?.into()))
         }
         _ => None,
     }

@@ -37,7 +37,8 @@ pub(crate) fn expand(input: &DeriveInput) -> Result<TokenStream> {
         #[automatically_derived]
         #[expect(unsafe_code, reason = "the derive has checked that every index is a variant")]
         unsafe impl ::luxel_sdk::params::Choice for #name {
-            const WORDS: &'static [&'static str] = &[#(#words),*];
+            const WORDS: &'static [::luxel_sdk::params::Text<'static>] =
+                &[#(::luxel_sdk::params::Text::new(#words)),*];
         }
         #[automatically_derived]
         #[expect(unsafe_code, reason = "the host writes an index below the number of words")]

@@ -125,6 +125,8 @@ impl Parts {
             Some(::luxel_sdk::params::SharedFns {
                 offset: ::core::mem::offset_of!(Self, #id),
                 build: ::luxel_sdk::abi::build_shared::<Self, #table>,
+                build_abi: ::luxel_sdk::abi::build_shared_abi::<Self, #table>,
+                free_abi: ::luxel_sdk::abi::free_shared::<#table>,
             })
         };
         Ok(())
@@ -138,6 +140,16 @@ impl Parts {
             None => (quote!(#name), quote!(#name)),
         };
         let Self { descriptors, asserts, derived, shared, table } = self;
+        let table_of_schema = if descriptors.is_empty() {
+            quote!(&[])
+        } else {
+            let n = descriptors.len();
+            quote! {
+                &::luxel_sdk::abi::param_tables::<#n>(
+                    <#still as ::luxel_sdk::params::Params>::SCHEMA
+                )
+            }
+        };
         let has_derived = !derived.is_empty();
         let lends = input.generics.lifetimes().next().is_some();
         let layout = layout(name, &still);
@@ -169,6 +181,7 @@ impl Parts {
                 type At<'x> = #at;
                 const DOC: &'static str = #doc;
                 const SCHEMA: &'static [::luxel_sdk::params::Param] = &[#(#descriptors),*];
+                const TABLE: &'static [::luxel_sdk::abi::ParamTable] = #table_of_schema;
                 const DERIVED: bool = #has_derived;
                 const SHARED: Option<::luxel_sdk::params::SharedFns> = #shared;
             }

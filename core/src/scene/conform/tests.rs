@@ -1,8 +1,10 @@
 //! Values against made-up parameters.
 
-use luxel_sdk::params::Preset;
+use luxel_sdk::params::{Preset, Text};
 
 use super::*;
+
+const WORDS: [Text<'static>; 2] = [Text::new("ggx"), Text::new("beckmann")];
 
 const LENGTH: Param = Param {
     name: "radius",
@@ -85,7 +87,7 @@ fn a_reflectance_reflects_no_more_than_all() {
 
 #[test]
 fn a_choice_names_the_nearest_word() {
-    let choice = Param { ty: Type::Choice, choices: &["ggx", "beckmann"], ..LENGTH };
+    let choice = Param { ty: Type::Choice, choices: &WORDS, ..LENGTH };
     let misfit = conform(&choice, Given::Text("gxg".into()), &|_| None).unwrap_err();
     assert_eq!((misfit.code, misfit.word), ("E0416", Some("ggx")));
 }

@@ -1,6 +1,8 @@
 //! Rays that leave a flat mesh do not meet it again: neither the triangle that they leave, which is
 //! passed, nor its neighbour in the same plane, which only the offset of the origin keeps away.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
 use luxel_sdk::abi::Class;
@@ -36,14 +38,14 @@ struct Triangle<'a> {
     #[param(required)]
     points: Table<'a>,
     #[param(shared)]
-    mesh: Shared<'a, TriangleMesh>,
+    mesh: Shared<'a, Arc<TriangleMesh>>,
 }
 
-impl Build<TriangleMesh> for Triangle<'_> {
-    fn build(&self, _: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+impl Build<Arc<TriangleMesh>> for Triangle<'_> {
+    fn build(&self, _: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
         let mut points: Vec<_> = self.points.get().chunks(3).map(DVec3::from_slice).collect();
         points.push(points[0] + points[2] - points[1]);
-        Ok(TriangleMesh::rebased(&points, vec![[0, 1, 2], [0, 2, 3]]))
+        Ok(TriangleMesh::rebased(&points, vec![[0, 1, 2], [0, 2, 3]]).into())
     }
 }
 
@@ -66,8 +68,8 @@ impl Shape for Triangle<'_> {
     fn pdf(&self, _: Option<DVec3>, _: &Surface) -> f64 {
         0.0
     }
-    fn mesh(&self) -> Option<&TriangleMesh> {
-        Some(&self.mesh)
+    fn mesh(&self) -> Option<Arc<TriangleMesh>> {
+        Some(Arc::clone(&self.mesh))
     }
 }
 
@@ -92,7 +94,7 @@ fn mesh_of(corners: [DVec3; 3]) -> Mesh {
         Builder::new(&registry, &scene, &files, ColorMode::Rgb, &before).build(id).unwrap();
     let mesh = object.fixed().shape().mesh().unwrap();
     let bvh = MeshBvh::build(&mesh.points, &mesh.indices).unwrap();
-    Mesh::new(object, bvh)
+    Mesh::new(mesh, bvh)
 }
 
 #[test]

@@ -43,9 +43,9 @@ impl Importer for Obj<'_> {
             Up::Z => "z",
         };
         let params = vec![
-            ("file", ImportValue::Bytes(path.to_owned(), bytes)),
-            ("unit", ImportValue::Number(self.unit)),
-            ("up", ImportValue::Text(up.to_owned())),
+            ("file".into(), ImportValue::Bytes(path.to_owned(), bytes)),
+            ("unit".into(), ImportValue::Number(self.unit)),
+            ("up".into(), ImportValue::Text(up.to_owned())),
         ];
         let (kind, class, label) = (Kind::Shape, "mesh".to_owned(), String::new());
         Ok(Imported {

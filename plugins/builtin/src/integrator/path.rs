@@ -67,11 +67,11 @@ impl PathIntegrator for PathTracer {
         if path.depth >= self.max_depth {
             return;
         }
-        if let Some(direct) = &at.direct {
+        if let Some(direct) = at.direct.as_ref() {
             let weight = mis(direct.pdf, direct.f_pdf);
             ask.add_if_visible(direct.ray, path.beta * direct.f_le * weight);
         }
-        let Some(scatter) = &at.scatter else { return };
+        let Some(scatter) = at.scatter.as_ref() else { return };
         path.beta *= scatter.weight;
         path.pdf = scatter.pdf;
         path.eta_scale *= scatter.eta * scatter.eta;

@@ -3,10 +3,11 @@
 use glam::DVec3;
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Arrival, ArrivalKind, Direct as Light, Host, Integrator, Job, Lane, Requests, SampleAt,
-    Sampler, Samples, Scatter,
+    Arrival, ArrivalKind, Direct as Light, Host, Integrator, Job, Lane, Requests, Round, SampleAt,
+    Sampler, Scatter,
 };
 use luxel_sdk::num::Ray;
+use luxel_sdk::params::Maybe;
 use luxel_sdk::sampling::{hash_combine64, u32_to_unit};
 
 use super::ambient_occlusion::AmbientOcclusion;
@@ -55,23 +56,24 @@ fn wall(albedo: f32, sampled: bool) -> Arrival {
         wo: DVec3::Z,
         le: Spectrum::ONE,
         le_pdf: 0.3,
-        direct: sampled.then_some(light),
-        scatter: Some(Scatter { weight, wi: DVec3::Z, pdf: 0.3, eta: 1.0 }),
+        direct: sampled.then_some(light).into(),
+        scatter: Maybe::some(Scatter { weight, wi: DVec3::Z, pdf: 0.3, eta: 1.0 }),
         ..Arrival::default()
     }
 }
 
 /// Radiance of path number `index`, where every ray arrives at `at` and no shadow ray is blocked.
 fn radiance(integrator: &dyn Integrator, at: &Arrival, index: u32) -> f64 {
-    let samples = Samples::new(&Numbers, SampleAt { stream: 0, index, dimension: 0 });
-    let mut lanes = [Lane { at: *at, l: Spectrum::ZERO, samples }];
+    let numbers = SampleAt { stream: 0, index, dimension: 0 };
+    let mut lanes = [Lane { at: *at, l: Spectrum::ZERO, numbers }];
     let mut states = integrator.lanes(1);
+    let round = Round { host: &Open, sampler: &Numbers };
     let (mut requests, mut shadows) = (Requests::default(), Spectrum::ZERO);
     let job = Job { ray: Ray::new(DVec3::ZERO, DVec3::NEG_Z) };
     states.start(0, &job, &mut lanes[0].l, &mut requests);
     while !requests.rays.is_empty() {
         requests.clear();
-        states.arrive_n(&mut lanes, &[0], &Open, &mut requests);
+        states.arrive_n(&mut lanes, &[0], round, &mut requests);
         shadows += requests.shadows.iter().map(|shadow| shadow.l).sum::<Spectrum>();
     }
     f64::from((lanes[0].l + shadows).lane(0))

@@ -2,9 +2,9 @@
 
 use luxel_sdk::Params;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{FreeFlight, Medium, Phase, PhaseRef, Samples};
+use luxel_sdk::kind::{FreeFlight, Medium, PhaseRef, Samples};
 use luxel_sdk::num::Ray;
-use luxel_sdk::params::Fault;
+use luxel_sdk::params::{Fault, Maybe};
 
 /// Fog, smoke, milk, tinted glass: the same everywhere. State `sigma_t` with `albedo`, or `sigma_a`
 /// and `sigma_s`. Where a group or camera is in it, it fills all space.
@@ -70,7 +70,7 @@ impl Medium for Homogeneous<'_> {
     fn sample(&self, ray: &Ray, samples: &mut Samples<'_>) -> FreeFlight {
         let sigma = self.extinction();
         if self.scattering().is_black() {
-            return FreeFlight { t: None, weight: attenuation(sigma, ray.t_max) };
+            return FreeFlight { t: Maybe::default(), weight: attenuation(sigma, ray.t_max) };
         }
         let [lane, u] = samples.next_2d();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [0, 4)")]
@@ -79,19 +79,19 @@ impl Medium for Homogeneous<'_> {
         let t = -f64::from(u).max(LEAST).ln() / chosen;
         if !(t < ray.t_max) {
             let passed = attenuation(sigma, ray.t_max);
-            return FreeFlight { t: None, weight: passed / passed.mean() };
+            return FreeFlight { t: Maybe::default(), weight: passed / passed.mean() };
         }
         let left = attenuation(sigma, t);
         let pdf = (sigma * left).mean();
-        FreeFlight { t: Some(t), weight: self.scattering() * left / pdf }
+        FreeFlight { t: Maybe::some(t), weight: self.scattering() * left / pdf }
     }
 
     fn transmittance(&self, ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
         attenuation(self.extinction(), ray.t_max)
     }
 
-    fn phase(&self) -> &dyn Phase {
-        &*self.phase
+    fn phase(&self) -> PhaseRef<'_> {
+        self.phase
     }
 }
 
@@ -150,7 +150,7 @@ mod tests {
             let (mut met, mut met_square) = (Spectrum::ZERO, Spectrum::ZERO);
             for i in 0..n {
                 let flight = fog.sample(&ray(t_max), &mut samples(i));
-                let (sum, square) = match flight.t {
+                let (sum, square) = match flight.t.get() {
                     None => (&mut passed, &mut passed_square),
                     Some(t) => {
                         assert!(t > 0.0 && t < t_max);
@@ -181,7 +181,7 @@ mod tests {
         let vacuum = medium(Spectrum::ZERO, 1.0);
         for t_max in [0.0, 1e-30, 1.0, 1e30, f64::INFINITY] {
             let flight = vacuum.sample(&ray(t_max), &mut samples(1));
-            assert_eq!(flight, FreeFlight { t: None, weight: Spectrum::ONE });
+            assert_eq!(flight, FreeFlight { t: Maybe::default(), weight: Spectrum::ONE });
             assert_eq!(vacuum.transmittance(&ray(t_max), &mut samples(1)), Spectrum::ONE);
         }
     }
@@ -192,7 +192,7 @@ mod tests {
         for i in 0..100 {
             let flight = milk.sample(&ray(f64::INFINITY), &mut samples(i));
             let off = flight.weight - 1.0;
-            assert!(flight.t.is_some() && off.0.abs().max_element() <= 2.0 * f32::EPSILON);
+            assert!(flight.t.given && off.0.abs().max_element() <= 2.0 * f32::EPSILON);
         }
     }
 

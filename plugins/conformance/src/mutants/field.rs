@@ -86,8 +86,8 @@ impl Medium for Lossless<'_> {
         self.fog().transmittance(ray, samples)
     }
 
-    fn phase(&self) -> &dyn Phase {
-        &*self.phase
+    fn phase(&self) -> PhaseRef<'_> {
+        self.phase
     }
 }
 

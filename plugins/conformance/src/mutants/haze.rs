@@ -8,6 +8,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{Eval, FreeFlight, Lobe, Medium, Phase, PhaseRef, Sample, Samples};
 use luxel_sdk::num::{Frame, Ray};
+use luxel_sdk::params::Maybe;
 use luxel_sdk::sampling::SPHERE_PDF;
 
 use super::Mutant;
@@ -92,19 +93,19 @@ macro_rules! fog {
                 let t = -(1.0 - f64::from(u)).ln() / f64::from(self.sigma_t.lane(lane));
                 if !(t < ray.t_max) {
                     let passed = passed(self.sigma_t, ray.t_max, $vacuum);
-                    return FreeFlight { t: None, weight: passed / passed.mean() };
+                    return FreeFlight { t: Maybe::default(), weight: passed / passed.mean() };
                 }
                 let left = passed(self.sigma_t, t, $vacuum);
                 let weight = self.sigma_t * self.albedo * left / (self.sigma_t * left).mean();
-                FreeFlight { t: Some(t), weight }
+                FreeFlight { t: Maybe::some(t), weight }
             }
 
             fn transmittance(&self, ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
                 passed(self.sigma_t, ray.t_max, $vacuum)
             }
 
-            fn phase(&self) -> &dyn Phase {
-                &*self.phase
+            fn phase(&self) -> PhaseRef<'_> {
+                self.phase
             }
         }
     };

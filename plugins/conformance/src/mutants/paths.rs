@@ -41,7 +41,7 @@ impl Path {
             }
             ask.add_if_visible(ray, self.beta * direct.f_le * mis(direct.pdf, direct.f_pdf));
         }
-        let Some(scatter) = &at.scatter else { return };
+        let Some(scatter) = at.scatter.as_ref() else { return };
         self.beta *= scatter.weight;
         self.pdf = scatter.pdf;
         self.depth += 1;

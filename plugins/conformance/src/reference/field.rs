@@ -7,6 +7,7 @@ use luxel_sdk::kind::{
     Eval, FreeFlight, Lobe, Medium, Phase, PhaseRef, Sample, Samples, Texture, TexturePoint,
 };
 use luxel_sdk::num::Ray;
+use luxel_sdk::params::Maybe;
 use luxel_sdk::sampling::{SPHERE_PDF, uniform_sphere};
 
 /// From one value to another, again and again along u.
@@ -73,9 +74,9 @@ impl Medium for Fog<'_> {
         let u = f64::from(samples.next_1d());
         let t = -(-u).ln_1p() / f64::from(self.density);
         if t < ray.t_max {
-            FreeFlight { t: Some(t.max(f64::MIN_POSITIVE)), weight: self.albedo }
+            FreeFlight { t: Maybe::some(t.max(f64::MIN_POSITIVE)), weight: self.albedo }
         } else {
-            FreeFlight { t: None, weight: Spectrum::ONE }
+            FreeFlight { t: Maybe::default(), weight: Spectrum::ONE }
         }
     }
 
@@ -83,7 +84,7 @@ impl Medium for Fog<'_> {
         self.left(ray.t_max)
     }
 
-    fn phase(&self) -> &dyn Phase {
-        &*self.phase
+    fn phase(&self) -> PhaseRef<'_> {
+        self.phase
     }
 }

@@ -130,10 +130,10 @@ impl PathIntegrator for Walk {
         ask: &mut Ask<'_>,
     ) {
         ask.add(way.beta * at.le * mis(way.pdf, at.le_pdf));
-        if let Some(direct) = &at.direct {
+        if let Some(direct) = at.direct.as_ref() {
             ask.add_if_visible(direct.ray, way.beta * direct.f_le * mis(direct.pdf, direct.f_pdf));
         }
-        let Some(scatter) = &at.scatter else { return };
+        let Some(scatter) = at.scatter.as_ref() else { return };
         way.beta *= scatter.weight;
         way.pdf = scatter.pdf;
         let chance = way.beta.max_element().min(1.0);

@@ -21,7 +21,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
         set.ask(|resolved| {
             let shape = resolved.shape();
             if let Some(mesh) = shape.mesh() {
-                is_a_mesh(mesh, shape.bounds(), set, judge);
+                is_a_mesh(&mesh, shape.bounds(), set, judge);
                 return;
             }
             let Some(look) = Look::new(shape, set) else {

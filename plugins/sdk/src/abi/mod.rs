@@ -5,17 +5,43 @@
 //! object. The C boundary wraps the same table (docs/decisions/0003).
 #![expect(unsafe_code, reason = "views turn the host's bytes back into the plugin's struct")]
 
+mod answer;
+mod plain;
+mod layout;
+mod table;
+mod context;
+mod import;
+mod library;
+mod header;
+mod shared;
+
 #[cfg(test)]
 mod tests;
 
+use std::any::Any;
 use std::marker::PhantomData;
 
 use crate::kind::{
-    Camera, Filter, Importer, Integrator, Kind, Light, Material, MaterialRef, Medium,
-    PathIntegrator, Phase, PhaseRef, Sampler, Shape, Texture,
+    Camera, Filter, Importer, Integrator, Kind, Light, Material, Medium, PathIntegrator, Phase,
+    Sampler, Shape, Texture,
 };
-use crate::params::{
-    Build, BuildContext, Fault, Field, Param, Params, SharedFns, SharedTable, Type,
+use crate::params::{Fault, Field, Param, Params, SharedFns, Text, Type};
+
+pub use answer::{Answer, Status, guarded, last_panic};
+pub use context::{Built, ContextRef, ContextTable};
+pub use header::header;
+pub use import::{ImportSink, ImporterTable, Value as ImportValueTable};
+pub use library::{
+    ABI_MAJOR, ABI_MINOR, ClassTable, HANDLE, LAYOUT_HASH, LibraryTable, MAGIC, PANIC_ABORT,
+    PANIC_NONE, PANIC_UNWIND, ParamTable, TYPES, begin, class_tables, count,
+    last_panic as tell_last_panic, param_tables,
+};
+pub use plain::{ByteSink, FaultSink, Slice};
+pub use shared::{build_shared, build_shared_abi, free_shared};
+pub use table::{
+    CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
+    MaterialTable, MediumTable, MeshSink, PhaseRef, PhaseTable, RoundRef, SamplerRef, SamplerTable,
+    SamplesRef, SceneSphere, ShapeTable, TextureTable, Triangles,
 };
 
 /// A lifetime as a value: how long the bytes behind a view are lent.
@@ -73,6 +99,10 @@ pub struct Class {
     pub shared: Option<SharedFns>,
     /// Its behaviour.
     pub view: View,
+    /// The same, as it crosses the boundary.
+    pub table: ClassTable,
+    /// What the host knows of a class that came from a library; `None` for others.
+    pub host: Option<&'static (dyn Any + Send + Sync)>,
 }
 
 impl std::fmt::Debug for Class {
@@ -88,6 +118,20 @@ unsafe fn no_check(_: *const u8) -> Result<(), Fault> {
 
 impl Class {
     const fn base<T: Params>(kind: Kind, name: &'static str, view: View) -> Self {
+        let table = ClassTable {
+            kind: kind as u32,
+            #[expect(clippy::cast_possible_truncation, reason = "at most 256, says the derive")]
+            size: size_of::<T>() as u32,
+            name: Text::new(name),
+            doc: Text::new(T::DOC),
+            params: Slice::new(T::TABLE),
+            prepare: None,
+            check: None,
+            build: None,
+            free: None,
+            shared_offset: 0,
+            behaviour: std::ptr::null(),
+        };
         Self {
             kind,
             name,
@@ -98,6 +142,16 @@ impl Class {
             check: no_check,
             shared: T::SHARED,
             view,
+            table: match T::SHARED {
+                None => table,
+                Some(shared) => ClassTable {
+                    build: Some(shared.build_abi),
+                    free: Some(shared.free_abi),
+                    shared_offset: shared.offset as u64,
+                    ..table
+                },
+            },
+            host: None,
         }
     }
 
@@ -105,119 +159,70 @@ impl Class {
     pub const fn settings<T: Params>(kind: Kind, name: &'static str) -> Self {
         Self::base::<T>(kind, name, View::Settings)
     }
-
-    /// An importer.
-    pub const fn importer<T>(name: &'static str) -> Self
-    where
-        T: Params + Importer,
-        for<'x> T::At<'x>: Importer,
-    {
-        unsafe fn view<'a, T: Params>(p: *const u8, _: Life<'a>) -> &'a (dyn Importer + 'a)
-        where
-            for<'x> T::At<'x>: Importer,
-        {
-            // SAFETY: the caller lends a valid struct of this class for 'a.
-            unsafe { &*p.cast::<T::At<'a>>() }
-        }
-        unsafe fn check<T: Importer>(p: *const u8) -> Result<(), Fault> {
-            // SAFETY: the caller passes a valid struct of this class.
-            unsafe { &*p.cast::<T>() }.check()
-        }
-        Self {
-            check: check::<T>,
-            ..Self::base::<T>(Kind::Importer, name, View::Importer(view::<T>))
-        }
-    }
-
-    /// An integrator.
-    pub const fn integrator<T>(name: &'static str) -> Self
-    where
-        T: Params + PathIntegrator,
-        for<'x> T::At<'x>: PathIntegrator,
-    {
-        unsafe fn view<'a, T: Params>(p: *const u8, _: Life<'a>) -> &'a (dyn Integrator + 'a)
-        where
-            for<'x> T::At<'x>: PathIntegrator,
-        {
-            // SAFETY: the caller lends a valid struct of this class for 'a.
-            unsafe { &*p.cast::<T::At<'a>>() }
-        }
-        unsafe fn check<T: PathIntegrator>(p: *const u8) -> Result<(), Fault> {
-            // SAFETY: the caller passes a valid struct of this class.
-            unsafe { &*p.cast::<T>() }.check()
-        }
-        unsafe fn prepare<T: PathIntegrator>(p: *mut u8) {
-            // SAFETY: the caller passes a valid struct of this class, not shared.
-            unsafe { &mut *p.cast::<T>() }.prepare();
-        }
-        Self {
-            check: check::<T>,
-            prepare: if T::DERIVED { Some(prepare::<T>) } else { None },
-            ..Self::base::<T>(Kind::Integrator, name, View::Integrator(view::<T>))
-        }
-    }
 }
 
 macro_rules! class {
-    ($doc:literal, $fun:ident, $kind:ident) => {
+    ($doc:literal, $fun:ident, $kind:ident, $trait:ident, $table:ident $(, $prepare:ident)?) => {
         impl Class {
             #[doc = $doc]
             pub const fn $fun<T>(name: &'static str) -> Self
             where
-                T: Params + $kind,
-                for<'x> T::At<'x>: $kind,
+                T: Params + $trait,
+                for<'x> T::At<'x>: $trait,
             {
                 unsafe fn view<'a, T: Params>(p: *const u8, _: Life<'a>) -> &'a (dyn $kind + 'a)
                 where
-                    for<'x> T::At<'x>: $kind,
+                    for<'x> T::At<'x>: $trait,
                 {
                     // SAFETY: the caller lends a valid struct of this class for 'a.
                     unsafe { &*p.cast::<T::At<'a>>() }
                 }
-                unsafe fn check<T: $kind>(p: *const u8) -> Result<(), Fault> {
+                unsafe fn check<T: $trait>(p: *const u8) -> Result<(), Fault> {
                     // SAFETY: the caller passes a valid struct of this class.
                     unsafe { &*p.cast::<T>() }.check()
                 }
-                unsafe fn prepare<T: $kind>(p: *mut u8) {
-                    // SAFETY: the caller passes a valid struct of this class, not shared.
-                    unsafe { &mut *p.cast::<T>() }.prepare();
+                unsafe extern "C" fn check_abi<T: $trait>(
+                    p: *const u8,
+                    faults: &FaultSink,
+                ) -> Status {
+                    guarded(|| {
+                        // SAFETY: the caller passes a valid struct of this class.
+                        let found = unsafe { check::<T>(p) };
+                        faults.judge(found.err().as_slice())
+                    })
                 }
-                Self {
-                    check: check::<T>,
-                    prepare: if T::DERIVED { Some(prepare::<T>) } else { None },
-                    ..Self::base::<T>(Kind::$kind, name, View::$kind(view::<T>))
-                }
+                let base = Self::base::<T>(Kind::$kind, name, View::$kind(view::<T>));
+                let behaviour = std::ptr::from_ref($table::of::<T>()).cast();
+                let table = ClassTable { check: Some(check_abi::<T>), behaviour, ..base.table };
+                let class = Self { check: check::<T>, table, ..base };
+                $(if T::DERIVED {
+                    unsafe fn $prepare<T: $trait>(p: *mut u8) {
+                        // SAFETY: the caller passes a valid struct of this class, not shared.
+                        unsafe { &mut *p.cast::<T>() }.prepare();
+                    }
+                    unsafe extern "C" fn prepare_abi<T: $trait>(p: *mut u8) -> Status {
+                        guarded(|| {
+                            // SAFETY: as above.
+                            unsafe { $prepare::<T>(p) };
+                            Status::OK
+                        })
+                    }
+                    let table = ClassTable { prepare: Some(prepare_abi::<T>), ..class.table };
+                    return Self { prepare: Some($prepare::<T>), table, ..class };
+                })?
+                class
             }
         }
     };
 }
-class!("A shape.", shape, Shape);
-class!("A material.", material, Material);
-class!("A texture.", texture, Texture);
-class!("A light.", light, Light);
-class!("A medium.", medium, Medium);
-class!("A phase function.", phase, Phase);
-class!("A camera.", camera, Camera);
-class!("A sampler.", sampler, Sampler);
-class!("A filter.", filter, Filter);
-
-/// Builds an object's shared table from its struct: what the derive puts into `SharedFns`.
-///
-/// # Safety
-/// `p` is the address of a valid struct whose type is `P` but for lifetimes.
-///
-/// # Errors
-/// What the plugin's `build` found.
-pub unsafe fn build_shared<P, T>(
-    p: *const u8,
-    context: &dyn BuildContext,
-) -> Result<SharedTable, Vec<Fault>>
-where
-    P: Build<T>,
-    T: Send + Sync + 'static,
-{
-    // SAFETY: the caller passes a valid struct of this type.
-    let params = unsafe { &*p.cast::<P>() };
-    let table = Box::new(params.build(context)?);
-    Ok(SharedTable { address: (&raw const *table).cast(), owner: table })
-}
+class!("A shape.", shape, Shape, Shape, ShapeTable, prepare);
+class!("A material.", material, Material, Material, MaterialTable, prepare);
+class!("A texture.", texture, Texture, Texture, TextureTable, prepare);
+class!("A light.", light, Light, Light, LightTable, prepare);
+class!("A medium.", medium, Medium, Medium, MediumTable, prepare);
+class!("A phase function.", phase, Phase, Phase, PhaseTable, prepare);
+class!("A camera.", camera, Camera, Camera, CameraTable, prepare);
+class!("A sampler.", sampler, Sampler, Sampler, SamplerTable, prepare);
+class!("A filter.", filter, Filter, Filter, FilterTable, prepare);
+class!("An integrator.", integrator, Integrator, PathIntegrator, IntegratorTable, prepare);
+class!("An importer.", importer, Importer, Importer, ImporterTable);

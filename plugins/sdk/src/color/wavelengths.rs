@@ -22,6 +22,7 @@ const TANH_MAX: f64 = 0.970_591_346_940_269_8;
 
 /// The four wavelengths of one path and their densities.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Wavelengths {
     /// Wavelengths, nm, in [360, 830].
     pub lambda: Spectrum,

@@ -1,5 +1,6 @@
 //! Bytes of another format into nodes of a scene.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -15,7 +16,7 @@ pub enum ImportValue {
     /// A number in SI units; the amounts of a light in their SI unit, see `ImportNode::units`.
     Number(f64),
     /// A number with its unit, as `40 cd`.
-    Quantity(f64, &'static str),
+    Quantity(f64, Cow<'static, str>),
     /// Two or three numbers in SI units.
     Vector(Vec<f64>),
     /// Text or a choice's word.
@@ -42,7 +43,7 @@ pub struct ImportNode {
     /// Its name in the file; may be empty. Materials can be overridden by it.
     pub label: String,
     /// Its parameters by name.
-    pub params: Vec<(&'static str, ImportValue)>,
+    pub params: Vec<(Cow<'static, str>, ImportValue)>,
 }
 
 /// A shape, light or camera in its place.

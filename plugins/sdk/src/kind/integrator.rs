@@ -6,10 +6,11 @@
 use glam::{DVec3, Vec2};
 
 use super::flags::flag_set;
-use super::{Output, Samples};
+use super::queue::Queue;
+use super::{Output, SampleAt, Sampler, Samples};
 use crate::color::Spectrum;
 use crate::num::{Ray, offset_origin};
-use crate::params::Fault;
+use crate::params::{Fault, Maybe};
 
 /// What the host prepares at every arrival: a set of flags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,7 @@ flag_set!(Wants);
 
 /// One path to be followed.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Job {
     /// The camera's ray, world space, unit direction.
     pub ray: Ray,
@@ -37,6 +39,7 @@ pub struct Job {
 
 /// Where a path arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[repr(u32)]
 pub enum ArrivalKind {
     /// It left the scene.
     #[default]
@@ -49,6 +52,7 @@ pub enum ArrivalKind {
 
 /// One light sample, with the material's answer.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Direct {
     /// From the arrival to the light, offset at both ends.
     pub ray: Ray,
@@ -60,8 +64,17 @@ pub struct Direct {
     pub f_pdf: f32,
 }
 
+impl Default for Direct {
+    /// No light, along any ray.
+    fn default() -> Self {
+        let ray = Ray::new(DVec3::ZERO, DVec3::Z);
+        Self { ray, f_le: Spectrum::ZERO, pdf: 0.0, f_pdf: 0.0 }
+    }
+}
+
 /// One scattering sample, in world space.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub struct Scatter {
     /// eval / pdf.
     pub weight: Spectrum,
@@ -75,6 +88,7 @@ pub struct Scatter {
 
 /// A point that a path arrived at, shaded as far as the integrator wants.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub struct Arrival {
     /// Where it is.
     pub kind: ArrivalKind,
@@ -101,9 +115,9 @@ pub struct Arrival {
     /// Density with which light sampling at the last point would have found it, sr⁻¹.
     pub le_pdf: f32,
     /// A light sample, if one may contribute.
-    pub direct: Option<Direct>,
+    pub direct: Maybe<Direct>,
     /// A scattering sample, if the path can go on.
-    pub scatter: Option<Scatter>,
+    pub scatter: Maybe<Scatter>,
 }
 
 impl Arrival {
@@ -128,8 +142,28 @@ pub trait Host {
     fn scene_sphere(&self) -> (DVec3, f64);
 }
 
+impl<H: Host + ?Sized> Host for &H {
+    fn occluded(&self, ray: &Ray) -> bool {
+        (**self).occluded(ray)
+    }
+    fn scene_sphere(&self) -> (DVec3, f64) {
+        (**self).scene_sphere()
+    }
+}
+
+/// A ray with the path that goes on along it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Onward {
+    /// Where it goes on.
+    pub ray: Ray,
+    /// Whose.
+    pub lane: u32,
+}
+
 /// A shadow ray with the light that it decides about.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Shadow {
     /// From the point to the light.
     pub ray: Ray,
@@ -141,11 +175,12 @@ pub struct Shadow {
 
 /// The rays that a round of arrivals asked for, in asking order.
 #[derive(Debug, Default)]
+#[repr(C)]
 pub struct Requests {
-    /// Paths that go on: ray and lane.
-    pub rays: Vec<(Ray, u32)>,
+    /// Paths that go on.
+    pub rays: Queue<Onward>,
     /// Light that depends on a shadow ray.
-    pub shadows: Vec<Shadow>,
+    pub shadows: Queue<Shadow>,
 }
 
 impl Requests {
@@ -157,13 +192,19 @@ impl Requests {
 }
 
 /// What an arrival leads to. Every call adds to the batch of the next round.
+#[repr(C)]
 pub struct Ask<'a> {
-    lane: u32,
-    l: &'a mut Spectrum,
-    requests: &'a mut Requests,
+    pub(crate) lane: u32,
+    pub(crate) l: &'a mut Spectrum,
+    pub(crate) requests: &'a mut Requests,
 }
 
-impl Ask<'_> {
+impl<'a> Ask<'a> {
+    /// For a path: its lane, its light so far, and where its requests go.
+    pub fn new(lane: u32, l: &'a mut Spectrum, requests: &'a mut Requests) -> Self {
+        Self { lane, l, requests }
+    }
+
     /// Light for the pixel.
     pub fn add(&mut self, l: Spectrum) {
         *self.l += l;
@@ -172,7 +213,7 @@ impl Ask<'_> {
     /// Goes on: `arrive` is called where this ray ends. A path that does not ask is done. Once per
     /// arrival.
     pub fn trace(&mut self, ray: Ray) {
-        self.requests.rays.push((ray, self.lane));
+        self.requests.rays.push(Onward { ray, lane: self.lane });
     }
 
     /// Light for the pixel if nothing lies between, dimmed by the media along the ray. Any number
@@ -224,14 +265,24 @@ pub trait PathIntegrator: Send + Sync {
 }
 
 /// One path in flight, as host and integrator share it.
-#[derive(Clone, Copy)]
-pub struct Lane<'a> {
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Lane {
     /// Where it arrived.
     pub at: Arrival,
     /// Light gathered so far.
     pub l: Spectrum,
-    /// Its numbers.
-    pub samples: Samples<'a>,
+    /// The next of its random numbers.
+    pub numbers: SampleAt,
+}
+
+/// What the host offers a round of arrivals.
+#[derive(Clone, Copy)]
+pub struct Round<'a> {
+    /// Answers while paths arrive.
+    pub host: &'a dyn Host,
+    /// Where the lanes' random numbers come from.
+    pub sampler: &'a dyn Sampler,
 }
 
 /// The states of many paths, their type forgotten.
@@ -242,9 +293,9 @@ pub trait Erased: Send {
     /// The paths in the lanes `arrived` did so.
     fn arrive_n(
         &mut self,
-        lanes: &mut [Lane<'_>],
+        lanes: &mut [Lane],
         arrived: &[u32],
-        host: &dyn Host,
+        round: Round<'_>,
         requests: &mut Requests,
     );
 }
@@ -274,17 +325,30 @@ impl<I: PathIntegrator> Erased for States<'_, I> {
 
     fn arrive_n(
         &mut self,
-        lanes: &mut [Lane<'_>],
+        lanes: &mut [Lane],
         arrived: &[u32],
-        host: &dyn Host,
+        round: Round<'_>,
         requests: &mut Requests,
     ) {
-        for &lane in arrived {
-            let path = &mut lanes[lane as usize];
-            let mut ask = Ask { lane, l: &mut path.l, requests };
-            let state = &mut self.states[lane as usize];
-            self.integrator.arrive(state, &path.at, &mut path.samples, host, &mut ask);
-        }
+        arrive_n(self.integrator, &mut self.states, (lanes, arrived), round, requests);
+    }
+}
+
+/// The paths in the lanes `arrived` did so, one after the other.
+pub(crate) fn arrive_n<I: PathIntegrator>(
+    integrator: &I,
+    states: &mut [I::State],
+    (lanes, arrived): (&mut [Lane], &[u32]),
+    round: Round<'_>,
+    requests: &mut Requests,
+) {
+    for &lane in arrived {
+        let path = &mut lanes[lane as usize];
+        let mut ask = Ask { lane, l: &mut path.l, requests };
+        let state = &mut states[lane as usize];
+        let mut samples = Samples::new(round.sampler, path.numbers);
+        integrator.arrive(state, &path.at, &mut samples, round.host, &mut ask);
+        path.numbers = samples.at();
     }
 }
 

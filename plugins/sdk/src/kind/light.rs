@@ -8,6 +8,7 @@ use crate::params::Fault;
 
 /// What form of source a light is: decides which of its methods the host calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
 pub enum LightForm {
     /// A shape's surface shines: `le`.
     Surface,

@@ -1,7 +1,5 @@
 //! How a surface scatters light, given its parameters at one point.
 
-use std::ops::Deref;
-
 use glam::Vec3;
 
 use super::flags::flag_set;
@@ -113,24 +111,5 @@ pub trait Material: Send + Sync {
     /// What it looks at here; the host leaves out the rest.
     fn needs(&self) -> Needs {
         Needs::ALL
-    }
-}
-
-/// Another material, resolved at the same point.
-#[derive(Clone, Copy)]
-#[repr(C)]
-pub struct MaterialRef<'a>(pub(crate) &'a dyn Material);
-
-impl<'a> MaterialRef<'a> {
-    /// Lends a material.
-    pub const fn new(material: &'a dyn Material) -> Self {
-        Self(material)
-    }
-}
-
-impl<'a> Deref for MaterialRef<'a> {
-    type Target = dyn Material + 'a;
-    fn deref(&self) -> &Self::Target {
-        self.0
     }
 }

@@ -1,16 +1,16 @@
 //! What fills space: absorption and scattering along a ray.
 
-use super::{Phase, Samples};
+use super::{PhaseRef, Samples};
 use crate::color::Spectrum;
 use crate::num::Ray;
-use crate::params::Fault;
+use crate::params::{Fault, Maybe};
 
 /// How far a ray flew freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct FreeFlight {
-    /// Where it met the medium; `None` when it passed through to `t_max`.
-    pub t: Option<f64>,
+    /// Where it met the medium; absent when it passed through to `t_max`.
+    pub t: Maybe<f64>,
     /// Transmittance (times the scattering coefficient where it met the medium) over the density
     /// with which this was chosen; its mean is 1 in a medium that absorbs nothing.
     pub weight: Spectrum,
@@ -36,5 +36,5 @@ pub trait Medium: Send + Sync {
     fn transmittance(&self, ray: &Ray, samples: &mut Samples<'_>) -> Spectrum;
 
     /// How it scatters.
-    fn phase(&self) -> &dyn Phase;
+    fn phase(&self) -> PhaseRef<'_>;
 }

@@ -9,6 +9,7 @@ mod light;
 mod material;
 mod medium;
 mod phase;
+mod queue;
 mod sampler;
 mod shape;
 mod texture;
@@ -16,16 +17,19 @@ mod texture;
 pub use camera::{Camera, CameraRay, Raster};
 pub use filter::Filter;
 pub use importer::{ImportNode, ImportValue, Imported, Importer};
+pub(crate) use integrator::arrive_n;
 pub use integrator::{
-    Arrival, ArrivalKind, Ask, Direct, Erased, Host, Integrator, Job, Lane, PathIntegrator,
-    Requests, Scatter, Shadow, Wants, mis,
+    Arrival, ArrivalKind, Ask, Direct, Erased, Host, Integrator, Job, Lane, Onward, PathIntegrator,
+    Requests, Round, Scatter, Shadow, Wants, mis,
 };
 pub use light::{Escaped, Light, LightForm, LightQuery, LightSample};
-pub use material::{Eval, Lobe, Material, MaterialRef, Needs, Sample, reflect};
+pub use material::{Eval, Lobe, Material, Needs, Sample, reflect};
 pub use medium::{FreeFlight, Medium};
-pub use phase::{Phase, PhaseRef};
+pub use phase::Phase;
+pub use queue::Queue;
 pub use sampler::{SampleAt, Sampler, Samples};
 pub use shape::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
 pub use texture::{Output, Texture, TexturePoint};
 
+pub use crate::abi::{MaterialRef, PhaseRef};
 pub use crate::params::Kind;

@@ -1,7 +1,5 @@
 //! How a medium scatters light, given its parameters at one point.
 
-use std::ops::Deref;
-
 use glam::Vec3;
 
 use super::{Eval, Sample};
@@ -28,23 +26,4 @@ pub trait Phase: Send + Sync {
 
     /// A direction, `u` uniform in [0, 1)².
     fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<Sample>;
-}
-
-/// A phase function, resolved at the same point.
-#[derive(Clone, Copy)]
-#[repr(C)]
-pub struct PhaseRef<'a>(pub(crate) &'a dyn Phase);
-
-impl<'a> PhaseRef<'a> {
-    /// Lends a phase function.
-    pub const fn new(phase: &'a dyn Phase) -> Self {
-        Self(phase)
-    }
-}
-
-impl<'a> Deref for PhaseRef<'a> {
-    type Target = dyn Phase + 'a;
-    fn deref(&self) -> &Self::Target {
-        self.0
-    }
 }

@@ -46,6 +46,24 @@ pub trait Sampler: Send + Sync {
     }
 }
 
+impl<S: Sampler + ?Sized> Sampler for &S {
+    fn samples(&self) -> u32 {
+        (**self).samples()
+    }
+    fn seed(&self) -> u32 {
+        (**self).seed()
+    }
+    fn get_1d(&self, at: SampleAt) -> f32 {
+        (**self).get_1d(at)
+    }
+    fn get_2d(&self, at: SampleAt) -> [f32; 2] {
+        (**self).get_2d(at)
+    }
+    fn get_2d_pair(&self, at: SampleAt) -> [[f32; 2]; 2] {
+        (**self).get_2d_pair(at)
+    }
+}
+
 /// The numbers of one path, taken in order.
 #[derive(Clone, Copy)]
 pub struct Samples<'a> {
@@ -87,6 +105,11 @@ impl<'a> Samples<'a> {
         let u = self.source.get_2d_pair(self.at);
         self.at.dimension += 4;
         u
+    }
+
+    /// Where its numbers come from.
+    pub fn source(&self) -> &'a dyn Sampler {
+        self.source
     }
 
     /// Where it stands.

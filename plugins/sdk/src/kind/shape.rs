@@ -1,5 +1,7 @@
 //! Geometry: where rays meet it, and how points on it are chosen.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::num::{Bounds3, Ray};
@@ -119,7 +121,7 @@ pub trait Shape: Send + Sync {
     }
 
     /// Triangles for the host to take over. Then no other method but `bounds` is called.
-    fn mesh(&self) -> Option<&TriangleMesh> {
+    fn mesh(&self) -> Option<Arc<TriangleMesh>> {
         None
     }
 }

@@ -20,6 +20,7 @@ pub struct TexturePoint {
 
 /// What the lanes of a texture's value mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
 pub enum Output {
     /// Values as they are: a number in every lane, or values at the path's wavelengths.
     Value,

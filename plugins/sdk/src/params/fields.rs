@@ -4,6 +4,7 @@
 //! `File`, `Shared`) borrows host memory that outlives the struct it stands in.
 #![expect(unsafe_code, reason = "field types state the layout that the host writes")]
 
+use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -38,7 +39,7 @@ pub unsafe trait Field: Copy {
 )]
 pub unsafe trait Choice: Copy {
     /// The words in a scene, in order.
-    const WORDS: &'static [&'static str];
+    const WORDS: &'static [Text<'static>];
 }
 
 /// A type whose all-zero bytes are a valid value: what a derived field may hold.
@@ -147,29 +148,58 @@ impl Look {
     }
 }
 
-/// A number that a scene may leave out.
+/// A value that may be absent: a number that a scene leaves out, a sample that there is none of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Maybe<T> {
-    /// Whether it was given.
+    /// Whether there is one.
     pub given: bool,
-    /// The value, if it was.
+    /// The value, if there is one; else any.
     pub value: T,
 }
 
+impl<T> Maybe<T> {
+    /// A value.
+    pub const fn some(value: T) -> Self {
+        Self { given: true, value }
+    }
+
+    /// The value, if there is one.
+    #[inline(always)]
+    pub fn as_ref(&self) -> Option<&T> {
+        if self.given { Some(&self.value) } else { None }
+    }
+
+    /// Takes a value, or none: the old one is then left as it is.
+    #[inline(always)]
+    pub fn set(&mut self, value: Option<T>) {
+        self.given = value.is_some();
+        if let Some(value) = value {
+            self.value = value;
+        }
+    }
+}
+
 impl<T: Copy> Maybe<T> {
-    /// The value, if it was given.
+    /// The value, if there is one.
     pub fn get(self) -> Option<T> {
-        self.given.then_some(self.value)
+        if self.given { Some(self.value) } else { None }
+    }
+}
+
+impl<T: Default> From<Option<T>> for Maybe<T> {
+    fn from(value: Option<T>) -> Self {
+        let given = value.is_some();
+        Self { given, value: value.unwrap_or_default() }
     }
 }
 
 /// Text, lent by the host for as long as the object lives.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Text<'a> {
-    ptr: *const u8,
-    len: usize,
+    pub(crate) ptr: *const u8,
+    pub(crate) len: usize,
     lent: PhantomData<&'a str>,
 }
 
@@ -191,10 +221,21 @@ unsafe impl Send for Table<'_> {}
 // SAFETY: as above.
 unsafe impl Sync for Table<'_> {}
 
+impl fmt::Debug for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.get().fmt(f)
+    }
+}
+
 impl<'a> Text<'a> {
     /// Lends text.
     pub const fn new(text: &'a str) -> Self {
         Self { ptr: text.as_ptr(), len: text.len(), lent: PhantomData }
+    }
+
+    /// The same text, for whoever knows how long it is lent.
+    pub(crate) const fn for_as_long_as_it_lives(self) -> Text<'static> {
+        Text { ptr: self.ptr, len: self.len, lent: PhantomData }
     }
 
     /// The text; empty when none was given.

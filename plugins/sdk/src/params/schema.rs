@@ -1,6 +1,7 @@
 //! The schema: what the derive writes down about each parameter.
 
-use super::{BuildContext, Kind};
+use super::{BuildContext, Kind, Text};
+use crate::abi::{Built, ContextRef, FaultSink, ParamTable, Status};
 
 /// How a parameter is stored in the struct, and so what the host writes at its offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -91,7 +92,7 @@ pub struct Param {
     /// Greatest legal value, in SI units.
     pub max: f64,
     /// The words of a choice.
-    pub choices: &'static [&'static str],
+    pub choices: &'static [Text<'static>],
     /// Exactly one parameter of a group is given; `""` for none.
     pub group: &'static str,
     /// Whether the scene must give it.
@@ -102,6 +103,13 @@ pub struct Param {
     pub deprecated: &'static str,
     /// Where the host writes it in the struct.
     pub offset: usize,
+}
+
+impl Param {
+    /// The words of a choice.
+    pub fn words(&self) -> impl Iterator<Item = &'static str> + Clone {
+        self.choices.iter().map(Text::get)
+    }
 }
 
 /// What is wrong with a value that no schema can tell: the field, and why.
@@ -139,6 +147,11 @@ pub struct SharedFns {
     pub offset: usize,
     /// Builds the table from the struct's bytes. The pointer is to a live struct of the class.
     pub build: unsafe fn(*const u8, &dyn BuildContext) -> Result<SharedTable, Vec<Fault>>,
+    /// The same, as it crosses the boundary.
+    pub build_abi:
+        unsafe extern "C" fn(*const u8, &ContextRef<'_>, &FaultSink, &mut Built) -> Status,
+    /// Frees what `build_abi` built.
+    pub free_abi: unsafe extern "C" fn(*mut u8) -> Status,
 }
 
 /// A table that an object owns: built once, read by every copy of the struct.
@@ -163,6 +176,8 @@ pub unsafe trait Params: Copy + Send + Sync {
     const DOC: &'static str;
     /// Every parameter, in the struct's order.
     const SCHEMA: &'static [Param];
+    /// The same, as it crosses the boundary.
+    const TABLE: &'static [ParamTable];
     /// Whether it has derived fields, which `prepare` fills.
     const DERIVED: bool;
     /// How its shared table is built, if it has one.

@@ -52,7 +52,7 @@ impl Builder<'_> {
         if amount <= 0.0 {
             return Ok(None);
         }
-        let candela = ("intensity", ImportValue::Quantity(amount, "cd"));
+        let candela = ("intensity", ImportValue::Quantity(amount, "cd".into()));
         let mut params = vec![("spectrum", rgb(light.color))];
         let class = match light.type_ {
             Checked::Valid(Type::Point) => {
@@ -73,7 +73,7 @@ impl Builder<'_> {
                 "spot"
             }
             Checked::Valid(Type::Directional) => {
-                let lux = ImportValue::Quantity(amount, "lx");
+                let lux = ImportValue::Quantity(amount, "lx".into());
                 params.extend([("illuminance", lux), ("direction", vector(DVec3::NEG_Z))]);
                 "directional"
             }

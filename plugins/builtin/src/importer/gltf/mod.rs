@@ -110,6 +110,7 @@ impl<'a> Builder<'a> {
         params: Vec<(&'static str, ImportValue)>,
     ) -> usize {
         let (class, label) = (class.to_owned(), label.to_owned());
+        let params = params.into_iter().map(|(name, value)| (name.into(), value)).collect();
         self.out.nodes.push(ImportNode { kind, class, label, params });
         self.out.nodes.len() - 1
     }

@@ -207,7 +207,7 @@ fn cameras_and_lights_keep_their_amounts() {
     let classes: Vec<_> = found.placed.iter().map(|(i, _)| found.nodes[*i].class.clone()).collect();
     assert_eq!(classes, ["perspective", "point", "directional", "spot"]);
     let amount = |i: usize, name| match param(&found.nodes[i], name) {
-        ImportValue::Quantity(x, unit) => (*x, *unit),
+        ImportValue::Quantity(x, unit) => (*x, unit.as_ref()),
         ImportValue::Number(x) => (*x, ""),
         other => panic!("{other:?}"),
     };

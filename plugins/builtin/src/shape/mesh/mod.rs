@@ -5,6 +5,8 @@ mod inline;
 mod obj;
 mod ply;
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
@@ -67,11 +69,11 @@ pub(crate) struct Mesh<'a> {
     #[param(choice, default = Shading::Keep)]
     pub(crate) smooth: Shading,
     #[param(shared)]
-    table: Shared<'a, TriangleMesh>,
+    table: Shared<'a, Arc<TriangleMesh>>,
 }
 
-impl Build<TriangleMesh> for Mesh<'_> {
-    fn build(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+impl Build<Arc<TriangleMesh>> for Mesh<'_> {
+    fn build(&self, context: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
         let path = self.file.path.get();
         let mut mesh = if path.is_empty() {
             inline::build(self)?
@@ -97,7 +99,7 @@ impl Build<TriangleMesh> for Mesh<'_> {
             let message = format!("{name}: {repaired} unusable normals were made from the faces");
             context.warn(&message);
         }
-        Ok(mesh)
+        Ok(mesh.into())
     }
 }
 
@@ -166,8 +168,8 @@ impl Shape for Mesh<'_> {
         0.0
     }
 
-    fn mesh(&self) -> Option<&TriangleMesh> {
-        Some(&self.table)
+    fn mesh(&self) -> Option<Arc<TriangleMesh>> {
+        Some(Arc::clone(&self.table))
     }
 }
 

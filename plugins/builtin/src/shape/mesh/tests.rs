@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt::Write;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use glam::{Vec2, Vec3};
 use luxel_sdk::params::Text;
@@ -29,13 +29,7 @@ impl BuildContext for OneFile {
 
 fn params(path: &'static str) -> Mesh<'static> {
     const NONE: Table<'static> = Table::new(&[]);
-    static EMPTY: TriangleMesh = TriangleMesh {
-        centre: DVec3::ZERO,
-        points: vec![],
-        indices: vec![],
-        normals: vec![],
-        uvs: vec![],
-    };
+    static EMPTY: LazyLock<Arc<TriangleMesh>> = LazyLock::new(Arc::default);
     Mesh {
         points: NONE,
         indices: NONE,
@@ -49,12 +43,12 @@ fn params(path: &'static str) -> Mesh<'static> {
     }
 }
 
-fn load(mesh: Mesh<'_>, bytes: &[u8]) -> Result<TriangleMesh, Vec<Fault>> {
+fn load(mesh: Mesh<'_>, bytes: &[u8]) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
     let host = OneFile { bytes: bytes.into(), warnings: RefCell::default() };
     mesh.build(&host)
 }
 
-fn ply_file(bytes: &[u8]) -> Result<TriangleMesh, Vec<Fault>> {
+fn ply_file(bytes: &[u8]) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
     load(params("a.ply"), bytes)
 }
 
@@ -69,7 +63,7 @@ fn square() -> Mesh<'static> {
 }
 
 /// The only fault of a build: its field, code and message.
-fn fault(found: Result<TriangleMesh, Vec<Fault>>) -> (&'static str, &'static str, String) {
+fn fault(found: Result<Arc<TriangleMesh>, Vec<Fault>>) -> (&'static str, &'static str, String) {
     let faults = found.unwrap_err();
     assert_eq!(faults.len(), 1, "{faults:?}");
     (faults[0].field, faults[0].code, faults[0].message.clone())

@@ -1,0 +1,144 @@
+//! What building may ask of the host, through the boundary.
+#![expect(clippy::cast_ptr_alignment, reason = "addresses that this file made, given back")]
+
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use super::plain::{ByteSink, Slice};
+use super::{Status, guarded};
+use crate::params::{BuildContext, Text};
+
+/// The host's functions, as C.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct ContextTable {
+    /// Bytes of this table as its maker knows it.
+    pub size: usize,
+    /// Reads a file that a parameter names (`base` empty), or one that the file at `base` names.
+    pub read: unsafe extern "C" fn(
+        at: *const u8,
+        base: Text<'_>,
+        path: Text<'_>,
+        sink: &mut ByteSink,
+    ) -> Status,
+    /// Tells the author of something odd.
+    pub warn: unsafe extern "C" fn(at: *const u8, message: Text<'_>) -> Status,
+    /// Whether the work is no longer wanted.
+    pub cancelled: unsafe extern "C" fn(at: *const u8) -> Status,
+}
+
+/// What building may ask of the host, lent for one call.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct ContextRef<'a> {
+    pub(super) table: &'a ContextTable,
+    pub(super) at: *const u8,
+    lent: PhantomData<&'a ()>,
+}
+
+const TABLE: ContextTable = ContextTable { size: size_of::<ContextTable>(), read, warn, cancelled };
+
+/// # Safety
+/// `at` is what `ContextRef::new` made.
+unsafe fn host<'a>(at: *const u8) -> &'a dyn BuildContext {
+    // SAFETY: the caller says so.
+    unsafe { *at.cast::<&dyn BuildContext>() }
+}
+
+unsafe extern "C" fn read(
+    at: *const u8,
+    base: Text<'_>,
+    path: Text<'_>,
+    sink: &mut ByteSink,
+) -> Status {
+    // SAFETY: the handle's own address.
+    let host = unsafe { host(at) };
+    let give = |bytes: &[u8]| {
+        // SAFETY: function and owner were made together by whoever asks.
+        unsafe { (sink.take)(sink.owner, Slice::new(bytes)) }
+    };
+    guarded(|| {
+        let (base, path) = (base.get(), path.get());
+        let found = if base.is_empty() { host.read(path) } else { host.read_beside(base, path) };
+        match found {
+            Ok(bytes) => {
+                give(&bytes);
+                Status::OK
+            }
+            Err(message) => {
+                give(message.as_bytes());
+                Status::REFUSED
+            }
+        }
+    })
+}
+
+unsafe extern "C" fn warn(at: *const u8, message: Text<'_>) -> Status {
+    // SAFETY: the handle's own address.
+    let host = unsafe { host(at) };
+    guarded(|| {
+        host.warn(message.get());
+        Status::OK
+    })
+}
+
+unsafe extern "C" fn cancelled(at: *const u8) -> Status {
+    // SAFETY: the handle's own address.
+    let host = unsafe { host(at) };
+    guarded(|| if host.cancelled() { Status::OK } else { Status::NOTHING })
+}
+
+impl<'a> ContextRef<'a> {
+    /// Lends a context to a library.
+    pub fn new(context: &'a &'a dyn BuildContext) -> Self {
+        Self { table: &TABLE, at: std::ptr::from_ref(context).cast(), lent: PhantomData }
+    }
+
+    fn ask(&self, base: &str, path: &str) -> Result<Arc<[u8]>, String> {
+        unsafe extern "C" fn take(owner: *mut u8, bytes: Slice<u8>) {
+            // SAFETY: the owner is the vector below.
+            let out = unsafe { &mut *owner.cast::<Vec<u8>>() };
+            // SAFETY: the bytes are lent for this call.
+            out.extend_from_slice(unsafe { bytes.get() });
+        }
+        let mut out = Vec::new();
+        let mut sink = ByteSink { take, owner: (&raw mut out).cast() };
+        // SAFETY: the handle lends the host; the sink lives.
+        let read =
+            || unsafe { (self.table.read)(self.at, Text::new(base), Text::new(path), &mut sink) };
+        match { read }() {
+            Status::OK => Ok(out.into()),
+            _ => Err(String::from_utf8_lossy(&out).into_owned()),
+        }
+    }
+}
+
+impl BuildContext for ContextRef<'_> {
+    fn read(&self, path: &str) -> Result<Arc<[u8]>, String> {
+        self.ask("", path)
+    }
+
+    fn read_beside(&self, base: &str, path: &str) -> Result<Arc<[u8]>, String> {
+        self.ask(base, path)
+    }
+
+    fn warn(&self, message: &str) {
+        // SAFETY: the handle lends the host.
+        unsafe { (self.table.warn)(self.at, Text::new(message)) };
+    }
+
+    fn cancelled(&self) -> bool {
+        // SAFETY: as above.
+        unsafe { (self.table.cancelled)(self.at) == Status::OK }
+    }
+}
+
+/// An object's shared table on its way through the boundary.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Built {
+    /// What the struct's `Shared` field points to.
+    pub address: *const u8,
+    /// What frees it: `ClassTable::free` takes it.
+    pub owner: *mut u8,
+}

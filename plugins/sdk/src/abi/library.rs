@@ -1,0 +1,310 @@
+//! The table that a library shows: what it is, and what it offers.
+
+use super::plain::{ByteSink, FaultSink, Slice};
+use super::{Built, Class, ContextRef, Status, answer, header};
+use crate::params::{Param, Preset, Text, Type};
+
+/// What a library's table begins with: `LUXEL` and three bytes that text never holds.
+pub const MAGIC: u64 = u64::from_le_bytes(*b"LUXEL\x0d\x1a\x00");
+/// Grows where tables stop being readable by older hosts.
+pub const ABI_MAJOR: u32 = 1;
+/// Grows where tables gain entries at their end.
+pub const ABI_MINOR: u32 = 0;
+/// What the frozen types look like here.
+pub const LAYOUT_HASH: u64 = header::HASH;
+
+/// A library's panics unwind, and its tables catch them.
+pub const PANIC_UNWIND: u32 = 0;
+/// A library cannot panic: it is not Rust.
+pub const PANIC_NONE: u32 = 1;
+/// A library's panics end the process: refused.
+pub const PANIC_ABORT: u32 = 2;
+
+/// What a library shows under the symbol `luxel_plugin_v1_<stem>`.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct LibraryTable {
+    /// `MAGIC`.
+    pub magic: u64,
+    /// `ABI_MAJOR`.
+    pub abi_major: u32,
+    /// `ABI_MINOR`.
+    pub abi_minor: u32,
+    /// `LAYOUT_HASH`.
+    pub layout_hash: u64,
+    /// Bytes of this table as its maker knows it.
+    pub size: usize,
+    /// Its name.
+    pub name: Text<'static>,
+    /// Its version, as `1.2.3`.
+    pub version: Text<'static>,
+    /// What compiled it: information for people.
+    pub compiler: Text<'static>,
+    /// What a panic does: `PANIC_UNWIND`, `PANIC_NONE`, or `PANIC_ABORT`.
+    pub panic: u32,
+    /// What it offers.
+    pub classes: Slice<ClassTable>,
+    /// Called once, before anything else; may be null.
+    pub begin: Option<unsafe extern "C" fn()>,
+    /// Tells what the last panic on this thread said; may be null.
+    pub last_panic: Option<unsafe extern "C" fn(&mut ByteSink)>,
+}
+
+// SAFETY: constants and functions.
+unsafe impl Sync for LibraryTable {}
+
+/// One plugin of a library.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct ClassTable {
+    /// Which kind, by its place in `Kind::ALL`.
+    pub kind: u32,
+    /// Bytes of its parameter struct, at most 256.
+    pub size: u32,
+    /// Its name in a scene.
+    pub name: Text<'static>,
+    /// Its manual page.
+    pub doc: Text<'static>,
+    /// Its parameters.
+    pub params: Slice<ParamTable>,
+    /// Computes the derived fields; null where there are none.
+    pub prepare: Option<unsafe extern "C" fn(*mut u8) -> Status>,
+    /// Its rules between parameters; may be null.
+    pub check: Option<unsafe extern "C" fn(*const u8, &FaultSink) -> Status>,
+    /// Builds the shared table; null where there is none.
+    pub build:
+        Option<unsafe extern "C" fn(*const u8, &ContextRef<'_>, &FaultSink, &mut Built) -> Status>,
+    /// Frees a shared table.
+    pub free: Option<unsafe extern "C" fn(*mut u8) -> Status>,
+    /// Where the address of the shared table is written.
+    pub shared_offset: u64,
+    /// The table of its kind, which begins with its size.
+    pub behaviour: *const u8,
+}
+
+// SAFETY: constants and functions.
+unsafe impl Send for ClassTable {}
+// SAFETY: as above.
+unsafe impl Sync for ClassTable {}
+
+/// One parameter of a class.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct ParamTable {
+    /// The name in a scene.
+    pub name: Text<'static>,
+    /// What it does.
+    pub doc: Text<'static>,
+    /// How it is stored: `TYPES` in order; a handle is 32 and its kind.
+    pub ty: u32,
+    /// What it stands for, by its place in `Role`.
+    pub role: u32,
+    /// Its unit.
+    pub unit: Text<'static>,
+    /// Which default there is: 0 none, 1 numbers, 2 a choice, 3 text.
+    pub preset: u32,
+    /// 1 required, 2 textured.
+    pub flags: u32,
+    /// The default: numbers; the first is the index of a choice.
+    pub numbers: [f64; 4],
+    /// The default: text.
+    pub text: Text<'static>,
+    /// Least legal value, SI.
+    pub min: f64,
+    /// Greatest legal value, SI.
+    pub max: f64,
+    /// The words of a choice.
+    pub choices: Slice<Text<'static>>,
+    /// Exactly one parameter of a group is given.
+    pub group: Text<'static>,
+    /// Its new name, where it is only kept for old scenes.
+    pub deprecated: Text<'static>,
+    /// Where it stands in the struct.
+    pub offset: u64,
+}
+
+/// How parameters are stored, by their number in the boundary; handles come after.
+pub const TYPES: [Type; 16] = [
+    Type::Float,
+    Type::Double,
+    Type::Int,
+    Type::Bool,
+    Type::Vec2,
+    Type::Vec3,
+    Type::DVec3,
+    Type::Spectrum,
+    Type::ComplexIor,
+    Type::Choice,
+    Type::Text,
+    Type::File,
+    Type::Table,
+    Type::Look,
+    Type::MaybeFloat,
+    Type::Emission,
+];
+/// What a handle's type is, before its kind is added.
+pub const HANDLE: u32 = 32;
+
+const fn type_number(ty: Type) -> u32 {
+    match ty {
+        Type::Float => 0,
+        Type::Double => 1,
+        Type::Int => 2,
+        Type::Bool => 3,
+        Type::Vec2 => 4,
+        Type::Vec3 => 5,
+        Type::DVec3 => 6,
+        Type::Spectrum => 7,
+        Type::ComplexIor => 8,
+        Type::Choice => 9,
+        Type::Text => 10,
+        Type::File => 11,
+        Type::Table => 12,
+        Type::Look => 13,
+        Type::MaybeFloat => 14,
+        Type::Emission => 15,
+        Type::Object(kind) => HANDLE + kind as u32,
+    }
+}
+
+/// A schema as it crosses the boundary: what the derive writes down beside it.
+pub const fn param_tables<const N: usize>(schema: &'static [Param]) -> [ParamTable; N] {
+    let mut out = [param_table(&schema[0]); N];
+    let mut i = 1;
+    while i < N {
+        out[i] = param_table(&schema[i]);
+        i += 1;
+    }
+    out
+}
+
+const fn param_table(param: &Param) -> ParamTable {
+    let none = ([0.0; 4], Text::new(""));
+    let (preset, (numbers, text)) = match param.default {
+        Preset::Absent => (0, none),
+        Preset::Numbers(numbers) => (1, (numbers, none.1)),
+        Preset::Index(index) => (2, ([index as f64, 0.0, 0.0, 0.0], none.1)),
+        Preset::Text(text) => (3, (none.0, Text::new(text))),
+    };
+    ParamTable {
+        name: Text::new(param.name),
+        doc: Text::new(param.doc),
+        ty: type_number(param.ty),
+        role: param.role as u32,
+        unit: Text::new(param.unit),
+        preset,
+        flags: param.required as u32 + 2 * param.textured as u32,
+        numbers,
+        text,
+        min: param.min,
+        max: param.max,
+        choices: Slice::new(param.choices),
+        group: Text::new(param.group),
+        deprecated: Text::new(param.deprecated),
+        offset: param.offset as u64,
+    }
+}
+
+/// The C form of several classes: what `export!` puts into a library.
+pub const fn class_tables<const N: usize>(lists: &[&[Class]]) -> [ClassTable; N] {
+    let mut out = [first(lists).table; N];
+    let (mut i, mut list) = (0, 0);
+    while list < lists.len() {
+        let mut j = 0;
+        while j < lists[list].len() {
+            out[i] = lists[list][j].table;
+            i += 1;
+            j += 1;
+        }
+        list += 1;
+    }
+    out
+}
+
+const fn first(lists: &[&[Class]]) -> Class {
+    let mut list = 0;
+    while lists[list].is_empty() {
+        list += 1;
+    }
+    lists[list][0]
+}
+
+/// How many classes there are in several lists.
+pub const fn count(lists: &[&[Class]]) -> usize {
+    let (mut n, mut list) = (0, 0);
+    while list < lists.len() {
+        n += lists[list].len();
+        list += 1;
+    }
+    n
+}
+
+/// What every Rust library's `begin` does: its panics are kept for the host, not printed.
+///
+/// # Safety
+/// Sound for any caller; it has the type that the table wants.
+pub unsafe extern "C" fn begin() {
+    answer::keep_panics();
+}
+
+/// What every Rust library's `last_panic` does.
+///
+/// # Safety
+/// Sound for any caller; it has the type that the table wants.
+pub unsafe extern "C" fn last_panic(sink: &mut ByteSink) {
+    let said = answer::last_panic();
+    // SAFETY: function and owner were made together by the host.
+    unsafe { (sink.take)(sink.owner, Slice::new(said.as_bytes())) }
+}
+
+/// Makes a dynamic library of lists of classes: the one line by which a crate with
+/// `crate-type = ["cdylib"]` differs from built-ins. The library's name is the crate's.
+///
+/// ```text
+/// luxel_sdk::export!(&[CLASSES]);
+/// ```
+#[macro_export]
+macro_rules! export {
+    ($lists:expr) => {
+        const _: () = {
+            const LISTS: &[&[$crate::abi::Class]] = $lists;
+            static TABLES: [$crate::abi::ClassTable; $crate::abi::count(LISTS)] =
+                $crate::abi::class_tables(LISTS);
+            #[expect(unsafe_code, reason = "the host finds the table by its symbol")]
+            #[unsafe(export_name = concat!("luxel_plugin_v1_", env!("CARGO_CRATE_NAME")))]
+            static LIBRARY: $crate::abi::LibraryTable = $crate::abi::LibraryTable {
+                magic: $crate::abi::MAGIC,
+                abi_major: $crate::abi::ABI_MAJOR,
+                abi_minor: $crate::abi::ABI_MINOR,
+                layout_hash: $crate::abi::LAYOUT_HASH,
+                size: ::core::mem::size_of::<$crate::abi::LibraryTable>(),
+                name: $crate::params::Text::new(env!("CARGO_CRATE_NAME")),
+                version: $crate::params::Text::new(env!("CARGO_PKG_VERSION")),
+                compiler: $crate::params::Text::new("Rust"),
+                panic: if cfg!(panic = "unwind") {
+                    $crate::abi::PANIC_UNWIND
+                } else {
+                    $crate::abi::PANIC_ABORT
+                },
+                classes: $crate::abi::Slice::new(&TABLES),
+                begin: Some($crate::abi::begin),
+                last_panic: Some($crate::abi::last_panic),
+            };
+        };
+    };
+}
+
+/// A library of a few plugins: `CLASSES`, and its export.
+///
+/// ```text
+/// luxel_sdk::plugin! { material "mirror" => Mirror; }
+/// ```
+#[macro_export]
+macro_rules! plugin {
+    ($($kind:ident $name:literal => $ty:ty;)+) => {
+        /// What this library offers.
+        pub const CLASSES: &[$crate::abi::Class] =
+            &[$($crate::abi::Class::$kind::<$ty>($name)),+];
+        $crate::export!(&[CLASSES]);
+    };
+}

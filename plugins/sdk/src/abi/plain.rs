@@ -1,0 +1,77 @@
+//! Plain data that crosses the boundary beside the types of the kinds.
+
+use super::Status;
+use crate::params::{Fault, Text};
+
+/// Values in a row, lent for as long as its maker says.
+#[derive(Debug)]
+#[repr(C)]
+pub struct Slice<T> {
+    pub(super) items: *const T,
+    pub(super) len: usize,
+}
+
+impl<T> Clone for Slice<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Copy for Slice<T> {}
+// SAFETY: a shared, read-only borrow.
+unsafe impl<T: Sync> Send for Slice<T> {}
+// SAFETY: as above.
+unsafe impl<T: Sync> Sync for Slice<T> {}
+
+impl<T> Slice<T> {
+    /// Lends values.
+    pub const fn new(items: &[T]) -> Self {
+        Self { items: items.as_ptr(), len: items.len() }
+    }
+
+    /// The values; none where the address is null.
+    ///
+    /// # Safety
+    /// Whoever made it lends the values for `'a`.
+    pub const unsafe fn get<'a>(self) -> &'a [T] {
+        if self.items.is_null() || self.len == 0 {
+            return &[];
+        }
+        // SAFETY: the caller says that they are lent.
+        unsafe { std::slice::from_raw_parts(self.items, self.len) }
+    }
+}
+
+/// Where bytes that the host read go, or the words that say why there are none.
+#[repr(C)]
+pub struct ByteSink {
+    /// Copies the bytes; `owner` comes first.
+    pub take: unsafe extern "C" fn(*mut u8, Slice<u8>),
+    /// Who asked.
+    pub owner: *mut u8,
+}
+
+/// Where faults in parameters go, as many as are found.
+#[repr(C)]
+pub struct FaultSink {
+    /// Takes a fault: the owner, the field (empty for the whole), the catalogue's code, the message.
+    pub take: unsafe extern "C" fn(*mut u8, Text<'_>, Text<'_>, Text<'_>),
+    /// The host's.
+    pub owner: *mut u8,
+}
+
+impl FaultSink {
+    /// Tells of a fault.
+    pub(super) fn tell(&self, fault: &Fault) {
+        let (field, code) = (Text::new(fault.field), Text::new(fault.code));
+        // SAFETY: function and owner were made together by the host; the texts live.
+        unsafe { (self.take)(self.owner, field, code, Text::new(&fault.message)) }
+    }
+
+    /// Tells of all, and refuses if there are any.
+    pub(super) fn judge(&self, faults: &[Fault]) -> Status {
+        for fault in faults {
+            self.tell(fault);
+        }
+        if faults.is_empty() { Status::OK } else { Status::REFUSED }
+    }
+}

@@ -19,6 +19,21 @@ pub(crate) struct LoadArgs {
     pub(crate) allow_path: Vec<PathBuf>,
 }
 
+/// Where plugin libraries come from.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct PluginArgs {
+    /// Look for plugin libraries in this folder first; then in those of `LUXEL_PLUGIN_PATH` and of
+    /// the configuration
+    #[arg(long = "plugin-dir", value_name = "DIR")]
+    pub(crate) dirs: Vec<PathBuf>,
+    /// Open libraries that plugins.lock does not list: for those who write plugins
+    #[arg(long)]
+    pub(crate) allow_unlocked_plugins: bool,
+    /// Take the built-in classes from this library: for tests and benchmarks
+    #[arg(long, hide = true, value_name = "FILE")]
+    pub(crate) builtins: Option<PathBuf>,
+}
+
 /// What is rendered and where it goes.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct RenderArgs {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use luxel_core::diag::Diagnostic;
 
-use crate::args::LoadArgs;
+use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure};
 use crate::load;
 use crate::report::{self, Form, Stream};
@@ -31,15 +31,18 @@ pub(crate) struct Args {
     json: bool,
     #[command(flatten)]
     load: LoadArgs,
+    #[command(flatten)]
+    plugins: PluginArgs,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let registry = load::registry();
+    let plugins = load::registry(&args.plugins)?;
     let form = if args.json { Form::Json } else { Form::Text };
     let stream = if args.json { Stream::Out } else { Stream::Error };
+    plugins.notes.tell(form, stream)?;
     let mut exit = Exit::Fine;
     for file in &args.files {
-        let loaded = load::load(file, &args.load, None, &registry, None)?;
+        let loaded = load::load(file, &args.load, None, &plugins, None)?;
         report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream)?;
         if loaded.stage.is_none() || loaded.diagnostics.iter().any(Diagnostic::is_error) {
             exit = Exit::Input;

@@ -11,8 +11,12 @@ use luxel_core::files::{FileError, Files, normalise};
 /// Bytes of one file, at most: far above any mesh, below what would take a machine down.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// Hash of a file's bytes; `None` when it could not be read.
+/// Hash of a file's bytes, or of the names of the libraries in a folder; `None` when it could not be
+/// read.
 pub(crate) type Seen = Option<blake3::Hash>;
+
+/// Paths with what was last seen there.
+pub(crate) type Watched = BTreeMap<PathBuf, Seen>;
 
 /// Reads below the scene's folder and the folders that were allowed, and remembers what was asked.
 #[derive(Debug)]
@@ -70,21 +74,49 @@ impl Files for DiskFiles {
     }
 }
 
-/// The bytes of a regular file; a pipe or a device would wait for ever or never end.
+/// What is there now.
+pub(crate) fn look(path: &Path) -> Seen {
+    if path.is_dir() {
+        return fs::read_dir(path).ok().map(|entries| names_of_libraries(entries.flatten()));
+    }
+    read_regular(path).ok().map(|bytes| blake3::hash(&bytes))
+}
+
+/// Other files come and go in a folder of libraries and concern nobody.
+fn names_of_libraries(entries: impl Iterator<Item = fs::DirEntry>) -> blake3::Hash {
+    let mut names: Vec<_> = entries.map(|entry| entry.file_name().into_encoded_bytes()).collect();
+    names.retain(|name| name.ends_with(std::env::consts::DLL_SUFFIX.as_bytes()));
+    names.sort_unstable();
+    blake3::hash(&names.join(&0))
+}
+
+/// The bytes of a regular file.
 pub(crate) fn read_regular(path: &Path) -> Result<Vec<u8>, FileError> {
+    read_limited(path, MAX_BYTES)
+}
+
+/// The bytes of a regular file, if it has at most so many.
+pub(crate) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
+    let file = open_regular(path, limit)?;
+    let length = file.metadata().map_or(0, |about| about.len().min(limit));
+    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| told(&error))?;
+    if bytes.len() as u64 > limit { Err(FileError::TooLarge(limit)) } else { Ok(bytes) }
+}
+
+/// A regular file to be read, if it has at most so many bytes; a pipe or a device would wait for
+/// ever or never end.
+pub(crate) fn open_regular(path: &Path, limit: u64) -> Result<fs::File, FileError> {
     let about = fs::metadata(path).map_err(|error| told(&error))?;
     if !about.is_file() {
         let what = if about.is_dir() { "it is a folder" } else { "it is not a regular file" };
         return Err(FileError::Unreadable(what.into()));
     }
-    if about.len() > MAX_BYTES {
-        return Err(FileError::TooLarge(MAX_BYTES));
+    if about.len() > limit {
+        return Err(FileError::TooLarge(limit));
     }
-    #[expect(clippy::disallowed_methods, reason = "the one place where scenes' files are read")]
-    let file = fs::File::open(path).map_err(|error| told(&error))?;
-    let mut bytes = Vec::with_capacity(usize::try_from(about.len()).unwrap_or(0));
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|error| told(&error))?;
-    if bytes.len() as u64 > MAX_BYTES { Err(FileError::TooLarge(MAX_BYTES)) } else { Ok(bytes) }
+    #[expect(clippy::disallowed_methods, reason = "the one place where files are opened")]
+    fs::File::open(path).map_err(|error| told(&error))
 }
 
 fn told(error: &io::Error) -> FileError {

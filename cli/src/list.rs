@@ -4,7 +4,9 @@ use luxel_core::diag::nearest;
 use luxel_sdk::kind::Kind;
 use serde_json::json;
 
+use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
+use crate::report::{Form, Stream};
 use crate::words::{self, WORDS, Word};
 use crate::{load, report};
 
@@ -22,6 +24,8 @@ pub(crate) struct Args {
     /// A JSON array
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    plugins: PluginArgs,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -32,8 +36,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         None if only.is_none() => &WORDS,
         None => &[],
     };
-    let registry = load::registry();
-    let entries = registry
+    let plugins = load::registry(&args.plugins)?;
+    plugins.notes.tell(Form::Text, Stream::Error)?;
+    let entries = plugins
+        .registry
         .all()
         .filter(|entry| word.is_none() && only.is_none_or(|kind| entry.class.kind == kind));
     if args.json {
@@ -59,7 +65,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         for entry in entries {
             let class = &entry.class;
             let (kind, summary) = (class.kind.word(), summary(class.doc));
-            report::out(&format!("{kind:<11}{:<20} {summary}\n", class.name))?;
+            let origin = match entry.origin.as_str() {
+                "builtin" | "host" => String::new(),
+                library => format!(" ({library})"),
+            };
+            report::out(&format!("{kind:<11}{:<20} {summary}{origin}\n", class.name))?;
         }
         for word in told {
             report::out(&format!("{:<11}{:<20} {}\n", word.name, "", summary(word.doc)))?;

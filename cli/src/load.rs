@@ -4,13 +4,13 @@ use std::path::Path;
 
 use glam::UVec2;
 use luxel_core::diag::{Diagnostic, Sources};
-use luxel_core::registry::Registry;
 use luxel_core::scene::Scene;
 use luxel_core::stage::{self, Stage};
 
-use crate::args::LoadArgs;
+use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Failure, blaming};
 use crate::files::DiskFiles;
+use crate::libraries::{Plugins, Session, Surroundings};
 
 /// A scene file as far as it could be read, with everything that was found.
 pub(crate) struct Loaded {
@@ -26,13 +26,12 @@ pub(crate) struct Loaded {
     pub(crate) files: DiskFiles,
 }
 
-/// Every class that a scene may name.
-pub(crate) fn registry() -> Registry {
-    let mut registry = Registry::new();
-    for classes in luxel_builtin::CLASSES {
-        registry.add("builtin", classes).expect("built-in classes have distinct names");
-    }
-    registry
+/// Every class that a scene may name: the built-in ones, and those of trusted libraries.
+///
+/// # Errors
+/// A configuration or lock that cannot be understood.
+pub(crate) fn registry(args: &PluginArgs) -> Result<Plugins, Failure> {
+    Session::new().refresh(args, &Surroundings::of_process())
 }
 
 /// Reads a scene and makes it ready to trace, at `size` if one is given, keeping what has not
@@ -44,12 +43,17 @@ pub(crate) fn load(
     path: &Path,
     args: &LoadArgs,
     size: Option<UVec2>,
-    registry: &Registry,
+    plugins: &Plugins,
     before: Option<&Stage>,
 ) -> Result<Loaded, Failure> {
     blaming(&path.display().to_string(), || {
         let files = DiskFiles::new(path, &args.allow_path);
-        let settings = luxel_lang::Settings { set: args.set.clone(), ..Default::default() };
+        let registry = &plugins.registry;
+        let settings = luxel_lang::Settings {
+            set: args.set.clone(),
+            unloaded: plugins.unloaded(),
+            ..Default::default()
+        };
         let read = luxel_lang::load(path, &files, registry, &settings);
         let (mut scene, mut diagnostics) = (read.scene, read.diagnostics);
         if let (Some(scene), Some(size)) = (&mut scene, size) {

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use luxel_core::render::{Control, Outcome};
 
-use crate::args::{LoadArgs, RenderArgs};
+use crate::args::{LoadArgs, PluginArgs, RenderArgs};
 use crate::exit::{Exit, Failure};
 use crate::load::{self, Loaded};
 use crate::measure::{self, Measured};
 use crate::output::Output;
-use crate::report::{self, Form};
+use crate::report::{self, Form, Stream};
 use crate::summary::Summary;
 use crate::{interrupt, picture};
 
@@ -33,6 +33,8 @@ pub(crate) struct Args {
     render: RenderArgs,
     #[command(flatten)]
     load: LoadArgs,
+    #[command(flatten)]
+    plugins: PluginArgs,
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
@@ -45,10 +47,11 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let registry = load::registry();
-    let loaded = load::load(&args.file, &args.load, args.render.size, &registry, None)?;
+    let plugins = load::registry(&args.plugins)?;
     let form = if args.json { Form::Json } else { Form::Text };
-    report::diagnostics(&loaded.diagnostics, &loaded.sources, form, report::Stream::Error)?;
+    plugins.notes.tell(form, Stream::Error)?;
+    let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, None)?;
+    report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
     let Loaded { stage: Some(stage), files, .. } = loaded else { return Ok(Exit::Input) };
 
     let options = args.render.options();

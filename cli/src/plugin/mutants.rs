@@ -11,10 +11,10 @@ use super::test::{Args, Choice, count};
 use crate::exit::{Exit, Failure};
 use crate::report;
 
-pub(super) fn run(args: &Args, options: &Options) -> Result<Exit, Failure> {
+pub(super) fn run(args: &Args, words: &[String], options: &Options) -> Result<Exit, Failure> {
     let mut chosen = mutants();
     let known: Vec<_> = chosen.iter().map(|mutant| mutant.class).collect();
-    let choice = Choice::new(args, &known)?;
+    let choice = Choice::new(words, &known)?;
     chosen.retain(|mutant| choice.takes(&mutant.class));
     let mut course = Course::new()?;
     let mut found = vec![];

@@ -2,21 +2,27 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::path::Path;
 
 use luxel_conformance::{Options, Report, Row, run_while};
+use luxel_core::registry::Registry;
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use serde_json::json;
 
 use super::course::Course;
 use super::mutants;
+use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
+use crate::libraries::{Session, Surroundings, is_library, open_file};
 use crate::progress::duration;
-use crate::{list, load, report, words};
+use crate::report::{Form, Stream};
+use crate::{list, load, report};
 
 /// Judge plugins: does each keep what its kind promises?
 ///
-/// Objects are made from each plugin's schema, at the ends of its ranges and at random inside, and
+/// Of the plugins that a scene may name, or of one library, which need not be trusted: naming it lets
+/// its code run. /// Objects are made from each plugin's schema, at the ends of its ranges and at random inside, and
 /// asked for what every plugin of the kind must satisfy. Prints each check with the worst figure that
 /// was found and its limit; below a check that failed, the parameters and the place. Equal seeds give
 /// equal reports. Ctrl-C ends after the class in hand, with what was judged so far.
@@ -29,12 +35,13 @@ Examples:
   luxel plugin test
   luxel plugin test material
   luxel plugin test filter box --json
+  luxel plugin test target/release/libvelvet.so
+  luxel plugin test target/release/libvelvet.so material velvet
   luxel plugin test --mutants")]
 pub(crate) struct Args {
-    /// Only this kind, as `luxel list` shows it
-    pub(super) kind: Option<String>,
-    /// Only the plugin of this name
-    pub(super) name: Option<String>,
+    /// Only the plugins of this library (a path), this kind (as `luxel list` shows it), this name
+    #[arg(num_args = 0..=3, value_name = "[LIBRARY] [KIND [NAME]]")]
+    what: Vec<String>,
     /// A JSON object
     #[arg(long)]
     pub(super) json: bool,
@@ -44,24 +51,66 @@ pub(crate) struct Args {
     /// Judge plugins that are wrong on purpose, to see whether the checks notice
     #[arg(long)]
     mutants: bool,
+    #[command(flatten)]
+    plugins: PluginArgs,
+}
+
+impl Args {
+    /// The library, if the first word is the path of one, and the words after it.
+    fn library(&self) -> (Option<&Path>, &[String]) {
+        let path = self.what.first().map(Path::new);
+        let names_file = |path: &&Path| {
+            is_library(path) || path.to_string_lossy().contains(std::path::is_separator)
+        };
+        match path.filter(names_file) {
+            Some(path) => (Some(path), &self.what[1..]),
+            None => (None, &self.what),
+        }
+    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let options = Options { seed: args.seed, ..Options::default() };
     if args.mutants {
-        return mutants::run(args, &options);
+        let (library, words) = args.library();
+        if let Some(file) = library {
+            let message = format!("--mutants judges its own plugins, not `{}`", file.display());
+            return Err(Failure::new(Exit::Usage, message).help("luxel plugin test --help"));
+        }
+        return mutants::run(args, words, &options);
     }
-    let registry = load::registry();
-    let known: Vec<_> = registry.all().map(|entry| entry.class).collect();
-    let choice = Choice::new(args, &known)?;
+    let (library, words) = args.library();
+    let (registry, own) = if let Some(file) = library {
+        with_library(file, &args.plugins)?
+    } else {
+        let plugins = load::registry(&args.plugins)?;
+        plugins.notes.tell(Form::Text, Stream::Error)?;
+        let all = plugins.registry.all().map(|entry| entry.class).collect();
+        (plugins.registry, all)
+    };
+    let choice = Choice::new(words, &own)?;
     let mut course = Course::new()?;
+    let is_own = |class: &Class| own.iter().any(|o| (o.kind, o.name) == (class.kind, class.name));
     let found = run_while(
         &registry,
-        |class| choice.takes(class),
+        |class| is_own(class) && choice.takes(class),
         &options,
         |step| course.next(&step.class, step.done, step.total),
     );
     tell(args, &found, course)
+}
+
+/// The built-in classes and those of a library, and the latter alone.
+fn with_library(file: &Path, args: &PluginArgs) -> Result<(Registry, Vec<Class>), Failure> {
+    let builtins = PluginArgs { builtins: args.builtins.clone(), ..PluginArgs::default() };
+    // No surroundings: no other library has a say in this.
+    let plugins = Session::new().refresh(&builtins, &Surroundings::default())?;
+    let mut registry = plugins.registry;
+    let (opened, _) = open_file(file)?;
+    registry.add(&opened.name, &opened.classes).map_err(|conflict| {
+        Failure::new(Exit::Input, format!("cannot use `{}`: {conflict}", file.display()))
+    })?;
+    Ok((registry, opened.classes))
 }
 
 fn tell(args: &Args, found: &Report, course: Course) -> Result<Exit, Failure> {
@@ -137,10 +186,19 @@ impl Choice {
     /// # Errors
     /// A kind or name that none of `known` has, with the nearest or those that there are; a kind
     /// without behaviour.
-    pub(super) fn new(args: &Args, known: &[Class]) -> Result<Self, Failure> {
-        let Some(word) = &args.kind else { return Ok(Self { kind: None, name: None }) };
+    pub(super) fn new(words: &[String], known: &[Class]) -> Result<Self, Failure> {
+        let (word, name) = match words {
+            [] => return Ok(Self { kind: None, name: None }),
+            [word] => (word, None),
+            [word, name] => (word, Some(name)),
+            _ => {
+                let message = format!("`{}` is neither a library nor expected here", words[0]);
+                let help = "a library is a path, as in ./libvelvet.so";
+                return Err(Failure::new(Exit::Usage, message).help(help));
+            }
+        };
         let usage = |failure| Failure { exit: Exit::Usage, ..failure };
-        if words::find(word).is_some() {
+        if crate::words::find(word).is_some() {
             let message = format!("`{word}` is a word of the language, not a kind of plugin");
             return Err(Failure::new(Exit::Usage, message).help("luxel plugin test --help"));
         }
@@ -156,10 +214,10 @@ impl Choice {
             let help = format!("known: {}", kinds.join(", "));
             return Err(Failure::new(Exit::Usage, message).help(help));
         }
-        if let Some(name) = args.name.as_deref().filter(|name| !names.contains(name)) {
+        if let Some(name) = name.filter(|name| !names.contains(&name.as_str())) {
             return Err(usage(list::unknown(kind.word(), name, &names)));
         }
-        Ok(Self { kind: Some(kind), name: args.name.clone() })
+        Ok(Self { kind: Some(kind), name: name.cloned() })
     }
 
     pub(super) fn takes(&self, class: &Class) -> bool {

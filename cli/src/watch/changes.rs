@@ -14,7 +14,7 @@ use notify::event::{AccessKind, AccessMode};
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 
 use crate::exit::{Exit, Failure};
-use crate::files::{Seen, read_regular};
+use crate::files::{Seen, Watched, look};
 
 /// What ends a wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ const ANYWAY: Duration = Duration::from_millis(500);
 pub(super) struct Changes {
     watcher: RecommendedWatcher,
     folders: BTreeSet<PathBuf>,
-    seen: BTreeMap<PathBuf, Seen>,
+    seen: Watched,
     stamps: BTreeMap<PathBuf, Stamp>,
     wakes: Receiver<Wake>,
 }
@@ -62,7 +62,8 @@ impl Changes {
         Ok((Self { watcher, folders, seen, stamps, wakes }, sender))
     }
 
-    /// Watches the folders of these files, those that links lead to included.
+    /// Watches the folders of these files, those that links lead to included, and folders among
+    /// them.
     ///
     /// # Errors
     /// If the system refuses.
@@ -72,6 +73,7 @@ impl Changes {
     ) -> Result<(), Failure> {
         let mut wanted = BTreeSet::new();
         for file in files {
+            wanted.extend(file.is_dir().then(|| file.to_path_buf()));
             wanted.extend(nearest_folder(file));
             wanted.extend(fs::canonicalize(file).ok().and_then(|place| nearest_folder(&place)));
         }
@@ -86,12 +88,28 @@ impl Changes {
     ///
     /// # Errors
     /// If a folder cannot be watched.
-    pub(super) fn expect(&mut self, seen: BTreeMap<PathBuf, Seen>) -> Result<(), Failure> {
+    pub(super) fn expect(&mut self, seen: Watched) -> Result<(), Failure> {
         self.arm(seen.keys().map(PathBuf::as_path))?;
         // Stamps that are not known count as changed, so that the contents are looked at once.
         self.stamps.clear();
         self.seen = seen;
         Ok(())
+    }
+
+    /// Waits for a change of what is there now, these files included: the last load told nothing.
+    ///
+    /// # Errors
+    /// If a folder cannot be watched.
+    pub(super) fn expect_news<'a>(
+        &mut self,
+        files: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<(), Failure> {
+        let mut seen = std::mem::take(&mut self.seen);
+        seen.extend(files.into_iter().map(|file| (file.to_path_buf(), None)));
+        for (path, seen) in &mut seen {
+            *seen = look(path);
+        }
+        self.expect(seen)
     }
 
     /// Waits until a file's contents differ from what was seen (true) or the end is asked for
@@ -157,10 +175,6 @@ fn matters(kind: EventKind) -> bool {
         EventKind::Access(kind) => kind == AccessKind::Close(AccessMode::Write),
         _ => true,
     }
-}
-
-fn look(path: &Path) -> Seen {
-    read_regular(path).ok().map(|bytes| blake3::hash(&bytes))
 }
 
 fn stamp(path: &Path) -> Stamp {

@@ -8,10 +8,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use luxel_core::render::{Control, Options, Outcome};
 use luxel_core::stage::Stage;
 
-use crate::args::{LoadArgs, RenderArgs};
+use crate::args::{LoadArgs, PluginArgs, RenderArgs};
 use crate::exit::{Exit, Failure};
-use crate::files::DiskFiles;
+use crate::files::{DiskFiles, look};
 use crate::interrupt::Guard;
+use crate::libraries::{Plugins, Session, Surroundings};
 use crate::load::{self, Loaded};
 use crate::measure::{self, Measured};
 use crate::output::Output;
@@ -36,6 +37,8 @@ pub(crate) struct Args {
     render: RenderArgs,
     #[command(flatten)]
     load: LoadArgs,
+    #[command(flatten)]
+    plugins: PluginArgs,
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
@@ -45,7 +48,9 @@ pub(crate) struct Args {
 type Current = Arc<Mutex<Arc<Control>>>;
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let registry = load::registry();
+    let (mut session, surroundings) = (Session::new(), Surroundings::of_process());
+    let mut plugins = session.refresh(&args.plugins, &surroundings)?;
+    plugins.notes.tell(Form::Text, Stream::Error)?;
     let (mut changes, waker) = Changes::new()?;
     let current = Current::default();
     let stopped = current.clone();
@@ -61,13 +66,15 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             &args.file,
             &args.load,
             args.render.size,
-            &registry,
+            &plugins,
             last_good.as_ref(),
         ) {
-            Ok(loaded) => take(loaded, &mut last_good, &mut changes)?,
+            Ok(loaded) => take(loaded, &plugins, &mut last_good, &mut changes)?,
             // A panic in a plugin ends this attempt, not the watch.
             Err(failure) => {
                 report::failure(&failure);
+                let libraries = plugins.watched.keys().map(PathBuf::as_path);
+                changes.expect_news(libraries.chain([args.file.as_path()]))?;
                 None
             }
         };
@@ -81,16 +88,47 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             report::note("watching has ended");
             return Ok(Exit::Fine);
         }
+        renew(&mut plugins, &mut session, (&args.plugins, &surroundings))?;
+    }
+}
+
+/// Opens libraries anew if one has changed, or what is trusted has.
+///
+/// # Errors
+/// If standard error cannot be written.
+fn renew(
+    plugins: &mut Plugins,
+    session: &mut Session,
+    (args, surroundings): (&PluginArgs, &Surroundings),
+) -> Result<(), Failure> {
+    if plugins.watched.iter().all(|(path, seen)| look(path) == *seen) {
+        return Ok(());
+    }
+    match session.refresh(args, surroundings) {
+        Ok(renewed) => {
+            *plugins = renewed;
+            plugins.notes.tell(Form::Text, Stream::Error)
+        }
+        // A lock or configuration that cannot be understood leaves everything as it was.
+        Err(failure) => {
+            report::failure(&failure);
+            let seen = |path: &PathBuf| (path.clone(), look(path));
+            plugins.watched = plugins.watched.keys().map(seen).collect();
+            Ok(())
+        }
     }
 }
 
 /// Tells what was found and watches what was asked for. The files, if there is a new stage.
 fn take(
     loaded: Loaded,
+    plugins: &Plugins,
     last_good: &mut Option<Stage>,
     changes: &mut Changes,
 ) -> Result<Option<DiskFiles>, Failure> {
-    changes.expect(loaded.files.asked())?;
+    let mut watched = loaded.files.asked();
+    watched.extend(plugins.watched.clone());
+    changes.expect(watched)?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, Form::Text, Stream::Error)?;
     let Loaded { stage: Some(stage), files, .. } = loaded else { return Ok(None) };
     *last_good = Some(stage);

@@ -22,7 +22,7 @@ use crate::files::Watched;
 pub(crate) use lock::{Entry, Lock};
 pub(crate) use note::Notes;
 pub(crate) use open::{Opened, open_file};
-pub(crate) use search::{is_library, stem_of};
+pub(crate) use search::{is_library, is_searched, stem_of};
 pub(crate) use session::{Session, builtins};
 pub(crate) use surroundings::Surroundings;
 

@@ -13,6 +13,7 @@ use super::config::Config;
 use super::note::Notes;
 use super::surroundings::Surroundings;
 use crate::args::PluginArgs;
+use crate::exit::Failure;
 
 /// Letters of a stem, at most: it is part of the name of a symbol.
 const MAX_STEM: usize = 64;
@@ -26,10 +27,12 @@ pub(super) fn folders(
 ) -> Vec<PathBuf> {
     let mut folders = vec![];
     for folder in &args.dirs {
-        match std::path::absolute(folder) {
-            Ok(place) if place.is_dir() => folders.push(place),
-            _ => notes.warn(format!("there is no plugin folder `{}`", folder.display())),
+        let place = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
+        if !place.is_dir() {
+            notes.warn(format!("there is no plugin folder `{}`", folder.display()));
         }
+        // A watch waits for one that is not there yet.
+        folders.push(place);
     }
     let path = surroundings.plugin_path.iter().flat_map(std::env::split_paths);
     let path = path.filter(|folder| folder.as_os_str() != "").map(|f| (f, "LUXEL_PLUGIN_PATH"));
@@ -73,6 +76,22 @@ pub(super) fn candidates(folders: &[PathBuf], notes: &mut Notes) -> BTreeMap<Str
         }
     }
     found
+}
+
+/// Whether the libraries of a file's folder are found without being told of it.
+///
+/// # Errors
+/// A configuration that cannot be understood.
+pub(crate) fn is_searched(file: &Path, surroundings: &Surroundings) -> Result<bool, Failure> {
+    let config = Config::read(surroundings.folder.as_deref())?;
+    let folders = folders(&PluginArgs::default(), surroundings, &config, &mut Notes::default());
+    let own = file.parent().unwrap_or(file);
+    Ok(folders.iter().any(|folder| is_same(folder, own)))
+}
+
+/// Whether two paths lead to the same place.
+pub(super) fn is_same(a: &Path, b: &Path) -> bool {
+    a == b || fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
 }
 
 /// Whether a file's name ends like that of a library.
@@ -147,17 +166,21 @@ mod tests {
     fn relative_folders_come_from_the_command_line_alone() {
         let folder = Folder::new("folders");
         folder.write("a/x", b"");
-        let args = PluginArgs { dirs: vec![folder.path("a"), "src".into()], ..Default::default() };
+        let args = PluginArgs {
+            dirs: vec![folder.path("a"), "src".into(), "none".into()],
+            ..Default::default()
+        };
         let plugin_path = Some(std::ffi::OsString::from(".:/usr/none::lib:/tmp"));
         let surroundings = Surroundings { folder: None, plugin_path };
         let config = Config { plugin_dirs: vec!["plugins".into(), "/tmp/".into()] };
         let mut notes = Notes::default();
         let found = folders(&args, &surroundings, &config, &mut notes);
         assert!(found.iter().all(|folder| folder.is_absolute()), "{found:?}");
-        assert_eq!(found.len(), 4, "{found:?}");
+        assert_eq!(found.len(), 5, "{found:?}");
         let told = notes.messages();
-        assert_eq!(told.len(), 3, "{told:?}");
-        assert!(told[0].starts_with("`.` of LUXEL_PLUGIN_PATH"), "{told:?}");
-        assert!(told[2].starts_with("`plugins` of `plugin_dirs`"), "{told:?}");
+        assert_eq!(told.len(), 4, "{told:?}");
+        assert!(told[0].contains("no plugin folder `none`"), "{told:?}");
+        assert!(told[1].starts_with("`.` of LUXEL_PLUGIN_PATH"), "{told:?}");
+        assert!(told[3].starts_with("`plugins` of `plugin_dirs`"), "{told:?}");
     }
 }

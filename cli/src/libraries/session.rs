@@ -1,7 +1,6 @@
 //! One run of the program: which libraries it has opened, and what became of each.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use luxel_core::registry::Registry;
@@ -104,7 +103,7 @@ impl Session {
             Ok(copy) if trust.all || trust.lock.trusts(&stem, &copy.sha256) => {
                 self.opened(&stem, &copy, notes)
             }
-            Ok(_) if trust.lock.of_stem(&stem).any(|entry| is_same(&entry.path, &path)) => {
+            Ok(_) if trust.lock.of_stem(&stem).any(|entry| search::is_same(&entry.path, &path)) => {
                 State::Changed
             }
             Ok(_) => State::Untrusted,
@@ -213,16 +212,12 @@ fn beside(lock: &Lock, libraries: &[Found], folders: &[PathBuf]) -> Vec<Found> {
         lock.entries.iter().filter(|entry| !libraries.iter().any(|found| found.stem == entry.stem));
     let found = listed.map(|entry| {
         let searched =
-            |folder: &PathBuf| entry.path.parent().is_some_and(|own| is_same(own, folder));
+            |folder: &PathBuf| entry.path.parent().is_some_and(|own| search::is_same(own, folder));
         let elsewhere = entry.path.is_file() && !folders.iter().any(searched);
         let state = if elsewhere { State::Elsewhere } else { State::Missing };
         Found { stem: entry.stem.clone(), path: entry.path.clone(), state }
     });
     found.collect()
-}
-
-fn is_same(a: &Path, b: &Path) -> bool {
-    a == b || fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
 }
 
 #[cfg(test)]

@@ -32,6 +32,19 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let sdk = sdk();
+    let folder = begin(args, sdk.as_deref())?;
+    report::out(&format!("wrote {}: its README.md says how to go on\n", folder.display()))?;
+    if sdk.is_none() {
+        report::warning(
+            "this luxel does not know its source: give the path of luxel-sdk in Cargo.toml",
+        );
+    }
+    Ok(Exit::Fine)
+}
+
+/// Writes the crate and gives its folder.
+fn begin(args: &Args, sdk: Option<&Path>) -> Result<PathBuf, Failure> {
     let name = args.name.as_str();
     let usage = |message: String| Failure::new(Exit::Usage, message);
     // A class of this kind is an importer to the SDK and an asset to scenes.
@@ -48,8 +61,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(usage(message).help("another name, so that scenes can tell them apart"));
     }
     let folder = args.dir.clone().unwrap_or_else(|| name.into());
-    let sdk = sdk();
-    let files = files(kind, name, &template, sdk.as_deref());
+    let files = files(kind, name, &template, sdk);
     if let Some((file, _)) = files.iter().find(|(file, _)| folder.join(file).exists()) {
         let message = format!("`{}` is there already", folder.join(file).display());
         return Err(Failure::new(Exit::Input, message).help("another folder: --dir DIR"));
@@ -57,14 +69,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     for (file, text) in &files {
         write_new(&folder.join(file), text)?;
     }
-    let told = format!("wrote {}: its README.md says how to go on\n", folder.display());
-    report::out(&told)?;
-    if sdk.is_none() {
-        report::warning(
-            "this luxel does not know its source: give the path of luxel-sdk in Cargo.toml",
-        );
-    }
-    Ok(Exit::Fine)
+    Ok(folder)
 }
 
 /// The SDK that this program was built with, if its source is still there.
@@ -129,8 +134,8 @@ mod tests {
                 continue;
             }
             let dir = folder.path(word);
-            assert_eq!(run(&args(word, "my_own", dir.clone())).unwrap(), Exit::Fine);
-            let again = run(&args(word, "my_own", dir.clone())).unwrap_err();
+            assert_eq!(begin(&args(word, "my_own", dir.clone()), None).unwrap(), dir);
+            let again = begin(&args(word, "my_own", dir.clone()), None).unwrap_err();
             assert!(again.exit == Exit::Input && again.message.contains("Cargo.toml"));
             for file in ["Cargo.toml", "src/lib.rs", "my_own.scene", "README.md"] {
                 let bytes = crate::files::read_regular(&dir.join(file)).unwrap();
@@ -157,7 +162,7 @@ mod tests {
             ("shape", "Mine", "a to z"),
             ("shape", "loop", "Rust"),
         ] {
-            let failure = run(&args(kind, name, folder.path("x"))).unwrap_err();
+            let failure = begin(&args(kind, name, folder.path("x")), None).unwrap_err();
             assert!(failure.exit == Exit::Usage && failure.message.contains(told), "{failure:?}");
         }
         assert!(folder.names().is_empty());

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use crate::exit::{Exit, Failure};
-use crate::libraries::{Entry, Lock, Surroundings, open_file, stem_of};
+use crate::libraries::{Entry, Lock, Surroundings, is_searched, open_file, stem_of};
 use crate::{list, report};
 
 /// Let plugin libraries run as you
@@ -45,15 +45,16 @@ pub(super) struct DistrustArgs {
 ///
 /// # Errors
 /// An environment without a home.
-fn home() -> Result<PathBuf, Failure> {
-    Surroundings::of_process().folder.ok_or_else(|| {
+fn home(surroundings: &Surroundings) -> Result<PathBuf, Failure> {
+    surroundings.folder.clone().ok_or_else(|| {
         Failure::new(Exit::Input, "there is no configuration folder for plugins.lock")
             .help("set HOME or XDG_CONFIG_HOME to an absolute path")
     })
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let home = home()?;
+    let surroundings = Surroundings::of_process();
+    let home = home(&surroundings)?;
     // One that cannot be understood is told before any code runs.
     Lock::read(Some(&home))?;
     let mut exit = Exit::Fine;
@@ -61,6 +62,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         if let Err(failure) = trust(file, &home, args.json) {
             report::failure(&failure);
             exit = Exit::Input;
+        } else if !is_searched(&fs::canonicalize(file).unwrap_or_default(), &surroundings)? {
+            report::note(
+                "its folder is not searched: give --plugin-dir, or name it in `plugin_dirs` of \
+                 config.toml or in LUXEL_PLUGIN_PATH",
+            );
         }
     }
     Ok(exit)
@@ -110,7 +116,7 @@ fn trust(file: &Path, home: &Path, as_json: bool) -> Result<(), Failure> {
 }
 
 pub(super) fn distrust(args: &DistrustArgs) -> Result<Exit, Failure> {
-    let home = home()?;
+    let home = home(&Surroundings::of_process())?;
     let mut lock = Lock::read(Some(&home))?;
     let is_meant = |entry: &Entry| entry.name == args.name || entry.stem == args.name;
     let (out, kept): (Vec<_>, Vec<_>) = lock.entries.into_iter().partition(is_meant);

@@ -1,6 +1,7 @@
 //! Which libraries are opened, without one that opens.
 
 use std::cell::RefCell;
+use std::fs;
 use std::rc::Rc;
 
 use super::*;

@@ -2,16 +2,42 @@
 
 use std::path::Path;
 
+use glam::UVec2;
 use luxel_core::diag::Diagnostic;
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
 use luxel_core::stage::{self, Stage};
 
-/// Every class that a scene may name.
+use crate::dynamic;
+
+/// How the built-ins come into the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Builtins {
+    /// Linked in, as they ship.
+    Linked,
+    /// From the dynamic library of the same sources.
+    Loaded,
+}
+
+/// Every class that a scene may name. With `LUXEL_TEST_BUILTINS=loaded` in the environment all tests
+/// take the built-ins from their dynamic library.
 pub(crate) fn registry() -> Registry {
+    #[expect(clippy::disallowed_methods, reason = "one run of the tests takes the other way")]
+    let wanted = std::env::var("LUXEL_TEST_BUILTINS");
+    let loaded = wanted.is_ok_and(|wanted| wanted == "loaded");
+    registry_of(if loaded { Builtins::Loaded } else { Builtins::Linked })
+}
+
+/// The same, by one of the two ways.
+pub(crate) fn registry_of(builtins: Builtins) -> Registry {
     let mut registry = Registry::new();
-    for classes in luxel_builtin::CLASSES {
-        registry.add("builtin", classes).unwrap();
+    match builtins {
+        Builtins::Linked => {
+            for classes in luxel_builtin::CLASSES {
+                registry.add("builtin", classes).unwrap();
+            }
+        }
+        Builtins::Loaded => registry.add("builtin", &dynamic::open("builtins").classes).unwrap(),
     }
     registry
 }
@@ -23,9 +49,22 @@ pub(crate) fn stage_of(
     set: &[(String, String)],
     before: Option<&Stage>,
 ) -> Result<Stage, Vec<Diagnostic>> {
-    let registry = registry();
     let settings = luxel_lang::Settings { set: set.to_vec(), ..Default::default() };
+    let registry = registry();
     let loaded = luxel_lang::load(path, files, &registry, &settings);
     let Some(scene) = loaded.scene else { return Err(loaded.diagnostics) };
     stage::build(&scene, &registry, files, before).map(|built| built.stage)
+}
+
+/// A scene file at another size, with the classes of any registry.
+pub(crate) fn stage_with(
+    registry: &Registry,
+    path: &Path,
+    files: &dyn Files,
+    size: UVec2,
+) -> Result<Stage, Vec<Diagnostic>> {
+    let loaded = luxel_lang::load(path, files, registry, &luxel_lang::Settings::default());
+    let Some(mut scene) = loaded.scene else { return Err(loaded.diagnostics) };
+    scene.set_resolution(size);
+    stage::build(&scene, registry, files, None).map(|built| built.stage)
 }

@@ -9,6 +9,8 @@ mod cli;
 #[cfg(test)]
 mod determinism;
 #[cfg(test)]
+mod dynamic;
+#[cfg(test)]
 mod disk;
 #[cfg(test)]
 mod house;

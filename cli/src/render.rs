@@ -52,7 +52,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     plugins.notes.tell(form, Stream::Error)?;
     let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, None)?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
-    let Loaded { stage: Some(stage), files, .. } = loaded else { return Ok(Exit::Input) };
+    let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
+        return Ok(Exit::Input);
+    };
 
     let options = args.render.options();
     measure::window(&stage, &options)?;
@@ -69,6 +71,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let line = !args.quiet;
     let measured = measure::measure((&args.file, &stage), &options, &control, line)?;
     let Measured { film, outcome, seconds } = measured;
+    if outcome == Outcome::Failed {
+        // What was measured may be wrong: there is no picture of it.
+        report::diagnostics(&stage.failures(), &sources, form, Stream::Error)?;
+        return Ok(Exit::Input);
+    }
     let saving = guard.saving();
     let samples = control.samples_done();
     if samples == 0 {
@@ -81,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     tell(args, &summary, &output)?;
     Ok(match outcome {
         _ if args.strict && summary.bad > 0 => Exit::Ours,
-        Outcome::Cancelled => Exit::Incomplete,
+        Outcome::Cancelled | Outcome::Failed => Exit::Incomplete,
         Outcome::Complete => Exit::Fine,
     })
 }

@@ -114,7 +114,9 @@ impl Summary {
         let percent = self.samples as f64 * 100.0 / self.wanted().max(1) as f64;
         let done = match self.outcome {
             Outcome::Complete => String::new(),
-            Outcome::Cancelled => format!(", interrupted after {percent:.1} % of the samples"),
+            Outcome::Cancelled | Outcome::Failed => {
+                format!(", interrupted after {percent:.1} % of the samples")
+            }
         };
         format!(
             "wrote {exr} and {png}{done}\n\

@@ -78,6 +78,7 @@ pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0418", "a transform where nothing has a place"),
     ("E0419", "a second film, integrator, sampler, filter or medium"),
     ("E0420", "an object that is seen nowhere (warning)"),
+    ("E0421", "a plugin that failed while it was asked"),
     ("E0501", "too many nodes or placements"),
     ("E0502", "too many steps of evaluation"),
     ("E0503", "a list that is too long"),

@@ -21,6 +21,7 @@ use crate::cast::{self, narrow, whole};
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::registry::Registry;
+use crate::registry::dynamic::{Alarm, Head, Watch, remote};
 use crate::scene::{Argument, Color, Hash, Node, NodeId, Scene, Value};
 
 /// How colour is carried along a path.
@@ -33,7 +34,19 @@ pub enum ColorMode {
 }
 
 /// Objects of the last builds, by content.
-pub type Objects = BTreeMap<(Hash, ColorMode), Arc<Object>>;
+#[derive(Debug, Default)]
+pub struct Objects {
+    by_content: BTreeMap<(Hash, ColorMode), Arc<Object>>,
+    /// Raised by the first of them that fails.
+    pub alarm: Alarm,
+}
+
+impl Objects {
+    /// Every object that has failed, by its content: who and how.
+    pub fn failures(&self) -> impl Iterator<Item = (&Hash, String)> {
+        self.by_content.iter().filter_map(|((hash, _), object)| Some((hash, object.failure()?)))
+    }
+}
 
 /// Makes objects of the nodes of one scene.
 pub struct Builder<'a> {
@@ -59,7 +72,8 @@ impl<'a> Builder<'a> {
         before: &'a Objects,
     ) -> Self {
         let embedded = embedded_files(scene);
-        let (objects, diagnostics) = (Objects::new(), vec![]);
+        let objects = Objects { by_content: BTreeMap::new(), alarm: before.alarm.clone() };
+        let diagnostics = vec![];
         Self { registry, scene, files, mode, embedded, before, objects, diagnostics }
     }
 
@@ -67,13 +81,14 @@ impl<'a> Builder<'a> {
     pub fn build(&mut self, id: NodeId) -> Option<Arc<Object>> {
         let node = self.scene.node(id);
         let key = (self.scene.own_hash(id), self.mode);
-        if let Some(object) = self.objects.get(&key) {
+        if let Some(object) = self.objects.by_content.get(&key) {
             return Some(object.clone());
         }
-        if let Some(object) = self.before.get(&key)
+        if let Some(object) = self.before.by_content.get(&key)
+            && object.is_current(self.registry)
             && context::unchanged(&object.reads, self.files)
         {
-            self.objects.insert(key, object.clone());
+            self.objects.by_content.insert(key, object.clone());
             return Some(object.clone());
         }
         let Some(class) = self.registry.class(node.kind, &node.class) else {
@@ -82,7 +97,7 @@ impl<'a> Builder<'a> {
             return None;
         };
         let object = self.make(class, Some(node))?;
-        self.objects.insert(key, object.clone());
+        self.objects.by_content.insert(key, object.clone());
         Some(object)
     }
 
@@ -101,8 +116,15 @@ impl<'a> Builder<'a> {
             block: Block::zeroed(class.size),
             patches: Patches::default(),
             owned: vec![],
+            parts: vec![],
             mode: self.mode,
         };
+        let watch = remote(class).map(|remote| {
+            let who = format!("{} `{}` of {}", class.kind, class.name, remote.origin());
+            let watch = Arc::new(Watch::new(who, self.objects.alarm.clone()));
+            draft.block.write_raw(0, Head::new(remote, &watch));
+            watch
+        });
         for param in class.params.iter().filter(|param| param.offset != usize::MAX) {
             let argument = node.and_then(|node| node.get(param.name));
             if let Err(message) = self.field(&mut draft, param, argument, node) {
@@ -116,6 +138,8 @@ impl<'a> Builder<'a> {
             template: draft.block,
             patches: draft.patches,
             owned: draft.owned,
+            parts: draft.parts,
+            watch,
             reads: vec![],
         };
         if object.need > SCRATCH {
@@ -272,6 +296,7 @@ struct Draft {
     block: Block,
     patches: Patches,
     owned: Vec<Arc<dyn std::any::Any + Send + Sync>>,
+    parts: Vec<Arc<Object>>,
     mode: ColorMode,
 }
 
@@ -296,9 +321,8 @@ impl Draft {
     fn child(&mut self, offset: usize, child: &Arc<Object>) {
         // A handle is never null: where the child varies, this one is replaced at each point.
         self.block.write_raw(offset, child.fixed().handle());
-        if child.is_constant() {
-            self.owned.push(child.clone());
-        } else {
+        self.parts.push(child.clone());
+        if !child.is_constant() {
             self.patches.children.push(ChildPatch { offset, child: child.clone() });
         }
     }
@@ -315,6 +339,7 @@ impl Draft {
             (_, _, Role::Illuminant) => Uplift::Illuminant,
             _ => Uplift::Reflectance,
         };
+        self.parts.push(texture.clone());
         self.patches.textures.push(TexturePatch {
             offset: param.offset,
             output: texture.fixed().texture().output(),

@@ -19,6 +19,8 @@ use std::sync::Arc;
 
 use luxel_sdk::abi::Class;
 
+use crate::registry::Registry;
+use crate::registry::dynamic::Watch;
 use block::Block;
 use patch::Patches;
 
@@ -34,8 +36,12 @@ pub struct Object {
     patches: Patches,
     /// Scratch that resolving takes, children included, in chunks.
     need: usize,
-    /// Objects and tables that the template's bytes point into.
+    /// Tables and texts that the template's bytes point into.
     owned: Vec<Arc<dyn Any + Send + Sync>>,
+    /// Objects that this one is made of.
+    parts: Vec<Arc<Object>>,
+    /// What becomes of it, if its class came from a library.
+    watch: Option<Arc<Watch>>,
     /// Files that were read to build it, with the hash of their bytes.
     reads: Vec<context::Read>,
 }
@@ -44,6 +50,21 @@ impl Object {
     /// Its class.
     pub fn class(&self) -> &Class {
         &self.class
+    }
+
+    /// Who failed and how, if a library's code has failed in this object.
+    pub fn failure(&self) -> Option<String> {
+        self.watch.as_ref()?.told()
+    }
+
+    /// Whether it may be used again: its class and those of its parts are still the registry's own,
+    /// and none of them has failed.
+    fn is_current(&self, registry: &Registry) -> bool {
+        let class = &self.class;
+        let now = registry.class(class.kind, class.name);
+        now.is_some_and(|now| now.is_same(class))
+            && self.failure().is_none()
+            && self.parts.iter().all(|part| part.is_current(registry))
     }
 
     /// Whether its parameters are the same everywhere and at every wavelength.

@@ -165,7 +165,7 @@ impl World {
     }
 
     fn build(&self, id: NodeId, mode: ColorMode) -> Result<Arc<Object>, Vec<&'static str>> {
-        let (files, before) = (MemoryFiles::default(), Objects::new());
+        let (files, before) = (MemoryFiles::default(), Objects::default());
         let mut builder = Builder::new(&self.registry, &self.scene, &files, mode, &before);
         let object = builder.build(id);
         object.ok_or_else(|| builder.diagnostics.iter().map(|d| d.code).collect())

@@ -12,6 +12,7 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use crate::film::{Film, Rect};
+use crate::registry::dynamic::Alarm;
 use crate::stage::Stage;
 
 /// What is asked of a render beyond the scene.
@@ -68,6 +69,8 @@ impl Control {
 pub enum Outcome {
     /// Every pixel has all its samples.
     Complete,
+    /// Code of a library failed in an object of the scene; what was measured may be wrong.
+    Failed,
     /// It was cancelled; pixels have different numbers of samples, some perhaps none.
     Cancelled,
 }
@@ -91,20 +94,44 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
         .build()
         .expect("the system gives threads");
     let (spp, seed) = (options.samples(stage), options.seed(stage));
+    let stop = Stop { control, alarm: stage.alarm(), failures: stage.alarm().count() };
     pool.install(|| {
         let mut from = 0;
-        while from < spp && !control.is_cancelled() {
+        while from < spp && !stop.is_asked() {
             // Passes grow: a first picture comes soon, later ones cost little to gather.
             let to = spp.min(from + from.clamp(1, PASS));
             film.tiles_mut().par_iter_mut().for_each_init(
                 || tile::Worker::new(stage, seed),
-                |worker, tile| worker.pass(tile, from..to, control),
+                |worker, tile| worker.pass(tile, from..to, stop),
             );
             from = to;
         }
     });
-    let outcome = if control.is_cancelled() { Outcome::Cancelled } else { Outcome::Complete };
+    let outcome = match (stop.is_failure(), control.is_cancelled()) {
+        (true, _) => Outcome::Failed,
+        (_, true) => Outcome::Cancelled,
+        _ => Outcome::Complete,
+    };
     (film, outcome)
+}
+
+/// Whether to go on: polled between rounds.
+#[derive(Clone, Copy)]
+struct Stop<'a> {
+    control: &'a Control,
+    alarm: &'a Alarm,
+    /// How many objects had failed before.
+    failures: u64,
+}
+
+impl Stop<'_> {
+    fn is_failure(self) -> bool {
+        self.alarm.count() != self.failures
+    }
+
+    fn is_asked(self) -> bool {
+        self.control.is_cancelled() || self.is_failure()
+    }
 }
 
 impl Control {

@@ -13,7 +13,7 @@ use luxel_sdk::sampling::hash_combine;
 
 use super::arrival::Shader;
 use super::path::Path;
-use super::{Control, shadow};
+use super::{Stop, shadow};
 use crate::accel::{Work, widest};
 use crate::cast;
 use crate::film::Tile;
@@ -71,8 +71,8 @@ impl<'s> Worker<'s> {
     }
 
     /// Adds the samples of a range to every pixel of a tile. A pass that is cancelled adds none.
-    pub(super) fn pass(&mut self, tile: &mut Tile, range: Range<u32>, control: &Control) {
-        if control.is_cancelled() {
+    pub(super) fn pass(&mut self, tile: &mut Tile, range: Range<u32>, stop: Stop<'_>) {
+        if stop.is_asked() {
             return;
         }
         let n_pixels = tile.rect.area();
@@ -80,7 +80,7 @@ impl<'s> Worker<'s> {
         self.results.clear();
         self.results.resize(n_pixels * n, DVec3::ZERO);
         let jobs = Jobs { origin: tile.rect.min, width: tile.rect.size.x, n_pixels, range };
-        if !self.run(&jobs, control) {
+        if !self.run(&jobs, stop) {
             return;
         }
         for (pixel, estimate) in tile.pixels.iter_mut().enumerate() {
@@ -88,11 +88,11 @@ impl<'s> Worker<'s> {
                 estimate.push(self.results[sample * n_pixels + pixel]);
             }
         }
-        control.add((n_pixels * n) as u64);
+        stop.control.add((n_pixels * n) as u64);
     }
 
     /// Rounds until every job is done; false when cancelled.
-    fn run(&mut self, jobs: &Jobs, control: &Control) -> bool {
+    fn run(&mut self, jobs: &Jobs, stop: Stop<'_>) -> bool {
         let mut started = 0;
         self.free.clear();
         self.free.extend((0..cast::index(LANES)).rev());
@@ -102,7 +102,7 @@ impl<'s> Worker<'s> {
             if self.next.rays.is_empty() && self.next.shadows.is_empty() {
                 return true;
             }
-            if control.is_cancelled() {
+            if stop.is_asked() {
                 return false;
             }
             std::mem::swap(&mut self.now, &mut self.next);

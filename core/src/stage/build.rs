@@ -11,7 +11,7 @@ use luxel_sdk::sampling::Alias;
 use super::flatten::{Flat, flatten};
 use super::lights::LightSource;
 use super::{Cache, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage};
-use super::{features, import};
+use super::{failures, features, import};
 use crate::accel::{BuildError, MeshBvh, TopBvh};
 use crate::cast::index;
 use crate::diag::Diagnostic;
@@ -57,9 +57,17 @@ pub fn build(
     match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
             let stage = finish(made, settings, objects, (scene, film, mode));
-            Ok(Built { stage, warnings: diagnostics })
+            let failed = stage.failures();
+            if failed.is_empty() {
+                return Ok(Built { stage, warnings: diagnostics });
+            }
+            diagnostics.extend(failed);
+            Err(diagnostics)
         }
-        _ => Err(diagnostics),
+        _ => {
+            diagnostics.extend(failures(&objects, &scene));
+            Err(diagnostics)
+        }
     }
 }
 

@@ -77,7 +77,7 @@ impl Import<'_> {
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<GroupId> {
         let node = scene.node(id);
-        let none = Objects::new();
+        let none = Objects::default();
         let mut builder = Builder::new(self.registry, scene, self.files, ColorMode::Rgb, &none);
         let object = builder.build(id);
         diagnostics.append(&mut builder.diagnostics);

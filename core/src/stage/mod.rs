@@ -21,7 +21,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::accel::TopBvh;
+use crate::cast::index;
+use crate::diag::Diagnostic;
 use crate::object::{ColorMode, Object, Objects};
+use crate::registry::dynamic::{Alarm, FAILED};
 use crate::scene::{Hash, NodeId, Scene};
 
 pub use build::{Built, build};
@@ -75,6 +78,30 @@ pub struct Stage {
     pub camera_media: MediumStack,
     /// For the next build.
     cache: Cache,
+}
+
+impl Stage {
+    /// Counts the failures of objects from libraries.
+    pub fn alarm(&self) -> &Alarm {
+        &self.cache.objects.alarm
+    }
+
+    /// What objects from libraries said when they failed, each where the scene made it.
+    pub fn failures(&self) -> Vec<Diagnostic> {
+        failures(&self.cache.objects, &self.scene)
+    }
+}
+
+fn failures(objects: &Objects, scene: &Scene) -> Vec<Diagnostic> {
+    let place = |hash: &Hash| {
+        let ids = (0..scene.nodes.len()).map(|i| NodeId(index(i)));
+        ids.into_iter().find(|id| scene.own_hash(*id) == *hash).map(|id| scene.node(id).span)
+    };
+    let told = objects.failures().map(|(hash, message)| match place(hash) {
+        Some(span) => Diagnostic::error(FAILED, span, message).label(span, "this object"),
+        None => Diagnostic::unplaced(FAILED, message),
+    });
+    told.collect()
 }
 
 /// What one build leaves for the next.

@@ -102,7 +102,7 @@ impl Bench {
     ) -> Result<Arc<Object>, Vec<Diagnostic>> {
         let mut scene = self.props.clone();
         let id = node(&mut scene, class.kind, class.name, given);
-        let before = Objects::new();
+        let before = Objects::default();
         let mut builder = Builder::new(&self.registry, &scene, &self.files, mode, &before);
         let object = builder.build(id);
         object.ok_or(builder.diagnostics)

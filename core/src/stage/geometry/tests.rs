@@ -89,7 +89,7 @@ fn mesh_of(corners: [DVec3; 3]) -> Mesh {
         span,
         hash: [0; 32],
     });
-    let (files, before) = (MemoryFiles::default(), Objects::new());
+    let (files, before) = (MemoryFiles::default(), Objects::default());
     let object =
         Builder::new(&registry, &scene, &files, ColorMode::Rgb, &before).build(id).unwrap();
     let mesh = object.fixed().shape().mesh().unwrap();

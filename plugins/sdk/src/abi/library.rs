@@ -257,6 +257,34 @@ pub unsafe extern "C" fn last_panic(sink: &mut ByteSink) {
     unsafe { (sink.take)(sink.owner, Slice::new(said.as_bytes())) }
 }
 
+/// The table of a library with these lists of classes, named like the crate.
+#[macro_export]
+macro_rules! library_table {
+    ($lists:expr) => {{
+        const LISTS: &[&[$crate::abi::Class]] = $lists;
+        const TABLES: &[$crate::abi::ClassTable] =
+            &$crate::abi::class_tables::<{ $crate::abi::count(LISTS) }>(LISTS);
+        $crate::abi::LibraryTable {
+            magic: $crate::abi::MAGIC,
+            abi_major: $crate::abi::ABI_MAJOR,
+            abi_minor: $crate::abi::ABI_MINOR,
+            layout_hash: $crate::abi::LAYOUT_HASH,
+            size: ::core::mem::size_of::<$crate::abi::LibraryTable>(),
+            name: $crate::params::Text::new(env!("CARGO_CRATE_NAME")),
+            version: $crate::params::Text::new(env!("CARGO_PKG_VERSION")),
+            compiler: $crate::params::Text::new("Rust"),
+            panic: if cfg!(panic = "unwind") {
+                $crate::abi::PANIC_UNWIND
+            } else {
+                $crate::abi::PANIC_ABORT
+            },
+            classes: $crate::abi::Slice::new(TABLES),
+            begin: Some($crate::abi::begin),
+            last_panic: Some($crate::abi::tell_last_panic),
+        }
+    }};
+}
+
 /// Makes a dynamic library of lists of classes: the one line by which a crate with
 /// `crate-type = ["cdylib"]` differs from built-ins. The library's name is the crate's.
 ///
@@ -267,29 +295,9 @@ pub unsafe extern "C" fn last_panic(sink: &mut ByteSink) {
 macro_rules! export {
     ($lists:expr) => {
         const _: () = {
-            const LISTS: &[&[$crate::abi::Class]] = $lists;
-            static TABLES: [$crate::abi::ClassTable; $crate::abi::count(LISTS)] =
-                $crate::abi::class_tables(LISTS);
             #[expect(unsafe_code, reason = "the host finds the table by its symbol")]
             #[unsafe(export_name = concat!("luxel_plugin_v1_", env!("CARGO_CRATE_NAME")))]
-            static LIBRARY: $crate::abi::LibraryTable = $crate::abi::LibraryTable {
-                magic: $crate::abi::MAGIC,
-                abi_major: $crate::abi::ABI_MAJOR,
-                abi_minor: $crate::abi::ABI_MINOR,
-                layout_hash: $crate::abi::LAYOUT_HASH,
-                size: ::core::mem::size_of::<$crate::abi::LibraryTable>(),
-                name: $crate::params::Text::new(env!("CARGO_CRATE_NAME")),
-                version: $crate::params::Text::new(env!("CARGO_PKG_VERSION")),
-                compiler: $crate::params::Text::new("Rust"),
-                panic: if cfg!(panic = "unwind") {
-                    $crate::abi::PANIC_UNWIND
-                } else {
-                    $crate::abi::PANIC_ABORT
-                },
-                classes: $crate::abi::Slice::new(&TABLES),
-                begin: Some($crate::abi::begin),
-                last_panic: Some($crate::abi::last_panic),
-            };
+            static LIBRARY: $crate::abi::LibraryTable = $crate::library_table!($lists);
         };
     };
 }

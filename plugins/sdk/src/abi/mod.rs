@@ -117,6 +117,13 @@ unsafe fn no_check(_: *const u8) -> Result<(), Fault> {
 }
 
 impl Class {
+    /// Whether this is the same class of the same origin: of the same generation, if it came from a
+    /// library.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let origin = |class: &Self| class.host.map(|host| std::ptr::from_ref(host).cast::<()>());
+        (self.kind, self.name) == (other.kind, other.name) && origin(self) == origin(other)
+    }
+
     const fn base<T: Params>(kind: Kind, name: &'static str, view: View) -> Self {
         let table = ClassTable {
             kind: kind as u32,

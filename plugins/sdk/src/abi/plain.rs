@@ -7,8 +7,8 @@ use crate::params::{Fault, Text};
 #[derive(Debug)]
 #[repr(C)]
 pub struct Slice<T> {
-    pub(super) items: *const T,
-    pub(super) len: usize,
+    pub(crate) items: *const T,
+    pub(crate) len: usize,
 }
 
 impl<T> Clone for Slice<T> {
@@ -26,6 +26,21 @@ impl<T> Slice<T> {
     /// Lends values.
     pub const fn new(items: &[T]) -> Self {
         Self { items: items.as_ptr(), len: items.len() }
+    }
+
+    /// How many there are said to be.
+    pub const fn len(self) -> usize {
+        self.len
+    }
+
+    /// Whether there are said to be none.
+    pub const fn is_empty(self) -> bool {
+        self.len == 0
+    }
+
+    /// Whether they stand nowhere.
+    pub const fn is_null(self) -> bool {
+        self.items.is_null()
     }
 
     /// The values; none where the address is null.

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{Fault, Kind, Type};
+use crate::abi::Slice;
 use crate::color::Spectrum;
 
 /// A type that the host may write at an offset.
@@ -231,6 +232,11 @@ impl<'a> Text<'a> {
     /// Lends text.
     pub const fn new(text: &'a str) -> Self {
         Self { ptr: text.as_ptr(), len: text.len(), lent: PhantomData }
+    }
+
+    /// The bytes, which a foreign library may have filled with anything.
+    pub const fn bytes(self) -> Slice<u8> {
+        Slice { items: self.ptr, len: self.len }
     }
 
     /// The same text, for whoever knows how long it is lent.

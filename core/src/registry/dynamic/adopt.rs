@@ -1,0 +1,146 @@
+//! A library's table of functions, copied and completed: what an older table lacks at its end, or
+//! leaves null, takes its default where there is one.
+
+use glam::{DVec3, Vec3};
+use luxel_sdk::abi::{
+    CameraTable, FilterTable, ImporterTable, IntegratorTable, LightTable, MaterialTable,
+    MediumTable, PhaseTable, SamplerTable, ShapeTable, TextureTable,
+};
+use luxel_sdk::color::Spectrum;
+use luxel_sdk::kind::{
+    Eval, Hit, Kind, Light, LightForm, Material, Sample, Shape, ShapeSample, Surface, Texture,
+    TexturePoint,
+};
+use luxel_sdk::num::{Bounds3, Ray};
+
+/// Most bytes that a table may claim: more is no table.
+const MOST: usize = 1 << 16;
+
+/// The complete table of a kind, which lives as long as the process.
+///
+/// # Safety
+/// `raw` is null or the address of a table of this kind that begins with its size in bytes.
+///
+/// # Errors
+/// What is missing.
+pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, String> {
+    if raw.is_null() {
+        return Err("it has no table of functions".to_owned());
+    }
+    macro_rules! table {
+        ($table:ident) => {
+            table!($table, None)
+        };
+        ($table:ident, $defaults:expr) => {{
+            let defaults: Option<(&$table, &[&str])> = $defaults;
+            // SAFETY: the caller says so; the sizes are checked against each other.
+            unsafe { complete::<$table>(raw, $table::NAMES, defaults) }
+        }};
+    }
+    match kind {
+        Kind::Shape => {
+            table!(ShapeTable, Some((ShapeTable::of::<Without>(), &["is_closed", "mesh"])))
+        }
+        Kind::Material => table!(MaterialTable, Some((MaterialTable::of::<Without>(), &["needs"]))),
+        Kind::Texture => table!(TextureTable, Some((TextureTable::of::<Without>(), &["output"]))),
+        Kind::Light => table!(
+            LightTable,
+            Some((LightTable::of::<Without>(), &["le", "sample", "escaped", "output"]))
+        ),
+        Kind::Medium => table!(MediumTable),
+        Kind::Phase => table!(PhaseTable),
+        Kind::Camera => table!(CameraTable),
+        Kind::Sampler => table!(SamplerTable),
+        Kind::Filter => table!(FilterTable),
+        Kind::Integrator => table!(IntegratorTable),
+        Kind::Importer => table!(ImporterTable),
+        Kind::Film => Err("the film belongs to the host".to_owned()),
+    }
+}
+
+/// Word by word: a table is its size and then one address for each name.
+///
+/// # Safety
+/// `raw` is the address of a table that begins with its size; `T` is a size and one function for
+/// each name.
+unsafe fn complete<T>(
+    raw: *const u8,
+    names: &[&str],
+    defaults: Option<(&T, &[&str])>,
+) -> Result<*const u8, String> {
+    const WORD: usize = size_of::<usize>();
+    assert_eq!(size_of::<T>(), WORD * (1 + names.len()), "a size and a function for each name");
+    // SAFETY: the caller says that a size stands there.
+    let size = unsafe { raw.cast::<usize>().read_unaligned() };
+    if !(WORD..=MOST).contains(&size) {
+        return Err(format!("its table of functions claims to be {size} bytes long"));
+    }
+    let mut words = vec![size_of::<T>()];
+    for (i, name) in names.iter().enumerate() {
+        let offset = WORD * (i + 1);
+        let mut word = 0;
+        if offset + WORD <= size {
+            // SAFETY: inside the table, by its own size.
+            word = unsafe { raw.wrapping_add(offset).cast::<usize>().read_unaligned() };
+        }
+        if let (0, Some((table, optional))) = (word, defaults)
+            && optional.contains(name)
+        {
+            // SAFETY: inside the default table, which has one word for each name.
+            word = unsafe { std::ptr::from_ref(table).cast::<usize>().wrapping_add(i + 1).read() };
+        }
+        if word == 0 {
+            return Err(format!("its table of functions lacks `{name}`"));
+        }
+        words.push(word);
+    }
+    Ok(Box::leak(words.into_boxed_slice()).as_ptr().cast())
+}
+
+/// Has nothing but defaults: where its functions come from.
+struct Without;
+
+impl Material for Without {
+    fn eval(&self, _: Vec3, _: Vec3) -> Eval {
+        Eval::ZERO
+    }
+    fn sample(&self, _: Vec3, _: [f32; 3]) -> Option<Sample> {
+        None
+    }
+}
+
+impl Texture for Without {
+    fn eval(&self, _: &TexturePoint) -> Spectrum {
+        Spectrum::ZERO
+    }
+}
+
+impl Light for Without {
+    fn form(&self) -> LightForm {
+        LightForm::Point
+    }
+    fn power(&self, _: f64, _: f64) -> f32 {
+        0.0
+    }
+}
+
+impl Shape for Without {
+    fn bounds(&self) -> Bounds3 {
+        Bounds3::EMPTY
+    }
+    fn intersect(&self, _: &Ray) -> Option<Hit> {
+        None
+    }
+    fn surface(&self, _: &Ray, _: &Hit) -> Surface {
+        super::remote::NOWHERE
+    }
+    fn area(&self) -> f64 {
+        0.0
+    }
+    fn sample(&self, _: Option<DVec3>, _: [f32; 2]) -> Option<ShapeSample> {
+        None
+    }
+    fn pdf(&self, _: Option<DVec3>, _: &Surface) -> f64 {
+        0.0
+    }
+}

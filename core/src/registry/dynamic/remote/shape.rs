@@ -1,0 +1,145 @@
+use std::sync::Arc;
+
+use glam::DVec3;
+use luxel_sdk::abi::{MeshSink, ShapeTable, Triangles};
+use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::num::{Bounds3, Ray};
+
+use super::Head;
+
+/// A library's shape.
+#[repr(transparent)]
+pub(super) struct RemoteShape(Head);
+
+// SAFETY: the SDK demands of shapes that they are `Send + Sync`.
+unsafe impl Send for RemoteShape {}
+// SAFETY: as above.
+unsafe impl Sync for RemoteShape {}
+
+impl RemoteShape {
+    #[inline(always)]
+    fn table(&self) -> &'static ShapeTable {
+        // SAFETY: the view was made for shapes.
+        unsafe { self.0.table() }
+    }
+
+    /// A point, if it is one: what a library gives is not taken on trust.
+    #[inline(always)]
+    fn usable(&self, surface: Surface) -> Surface {
+        let Surface { p, p_err, ng, ns, .. } = surface;
+        if p.is_finite() && p_err.is_finite() && ng.is_finite() && ns.is_finite() {
+            return surface;
+        }
+        self.0.wrong("gave a point of its surface that is not finite");
+        NOWHERE
+    }
+}
+
+/// What a shape that has failed is left with.
+pub(in super::super) const NOWHERE: Surface = Surface {
+    p: DVec3::ZERO,
+    p_err: DVec3::ZERO,
+    ng: DVec3::Z,
+    ns: DVec3::Z,
+    uv: glam::DVec2::ZERO,
+    dp_du: DVec3::X,
+    dp_dv: DVec3::Y,
+};
+
+impl Shape for RemoteShape {
+    fn bounds(&self) -> Bounds3 {
+        // SAFETY: the struct behind the head is of the class that the table belongs to.
+        self.0.found(unsafe { self.table().bounds(self.0.at()) }).unwrap_or(Bounds3::EMPTY)
+    }
+
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        if self.0.is_poisoned() {
+            return None;
+        }
+        // SAFETY: as above.
+        let hit = self.0.found(unsafe { self.table().intersect(self.0.at(), ray) })?;
+        if hit.t > 0.0 && hit.t <= ray.t_max && hit.at.is_finite() {
+            return Some(hit);
+        }
+        self.0.wrong("gave a hit beyond the ray's limits");
+        None
+    }
+
+    #[inline(always)]
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        if self.0.is_poisoned() {
+            return NOWHERE;
+        }
+        // SAFETY: as above.
+        let found = self.0.found(unsafe { self.table().surface(self.0.at(), ray, hit) });
+        self.usable(found.unwrap_or(NOWHERE))
+    }
+
+    fn area(&self) -> f64 {
+        // SAFETY: as above.
+        self.0.found(unsafe { self.table().area(self.0.at()) }).unwrap_or(0.0)
+    }
+
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        if self.0.is_poisoned() {
+            return None;
+        }
+        // SAFETY: as above.
+        let answer = unsafe { self.table().sample(self.0.at(), from.as_ref(), &u) };
+        let sample = self.0.found(answer)?;
+        if sample.pdf > 0.0 && sample.pdf.is_finite() {
+            return Some(ShapeSample { surface: self.usable(sample.surface), ..sample });
+        }
+        self.0.wrong("gave a sample whose density is not positive and finite");
+        None
+    }
+
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        if self.0.is_poisoned() {
+            return 0.0;
+        }
+        // SAFETY: as above.
+        let found = self.0.found(unsafe { self.table().pdf(self.0.at(), from.as_ref(), at) });
+        let pdf = found.unwrap_or(0.0);
+        if pdf >= 0.0 && pdf.is_finite() {
+            return pdf;
+        }
+        self.0.wrong("gave a density that is negative or not finite");
+        0.0
+    }
+
+    fn is_closed(&self) -> bool {
+        // SAFETY: as above.
+        self.0.found(unsafe { self.table().is_closed(self.0.at()) }) == Some(1)
+    }
+
+    fn mesh(&self) -> Option<Arc<TriangleMesh>> {
+        let mut copied: Option<TriangleMesh> = None;
+        let mut sink = MeshSink { take: copy, owner: (&raw mut copied).cast() };
+        // SAFETY: as above.
+        self.0.found(unsafe { self.table().mesh(self.0.at(), &mut sink) })?;
+        copied.map(Arc::new)
+    }
+}
+
+/// Takes triangles over, into the `Option` that the sink belongs to.
+unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
+    // SAFETY: the sink's own owner.
+    let out = unsafe { &mut *owner.cast::<Option<TriangleMesh>>() };
+    // SAFETY: the library lends its triangles to this call.
+    let points = unsafe { triangles.points.get() };
+    // SAFETY: as above.
+    let indices = unsafe { triangles.indices.get() };
+    // SAFETY: as above.
+    let normals = unsafe { triangles.normals.get() };
+    // SAFETY: as above.
+    let uvs = unsafe { triangles.uvs.get() };
+    *out = Some(TriangleMesh {
+        centre: triangles.centre,
+        points: points.to_vec(),
+        indices: indices.to_vec(),
+        normals: normals.to_vec(),
+        uvs: uvs.to_vec(),
+    });
+}

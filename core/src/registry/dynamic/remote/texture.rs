@@ -1,0 +1,56 @@
+use luxel_sdk::abi::TextureTable;
+use luxel_sdk::color::Spectrum;
+use luxel_sdk::kind::{Output, Texture, TexturePoint};
+
+use super::Head;
+
+/// A library's texture.
+#[repr(transparent)]
+pub(super) struct RemoteTexture(Head);
+
+// SAFETY: the SDK demands of textures that they are `Send + Sync`.
+unsafe impl Send for RemoteTexture {}
+// SAFETY: as above.
+unsafe impl Sync for RemoteTexture {}
+
+/// What the lanes mean, by its number.
+pub(super) fn output(head: &Head, found: Option<u32>) -> Output {
+    match found {
+        Some(0) | None => Output::Value,
+        Some(1) => Output::Rgb,
+        Some(_) => {
+            head.wrong("gave an output that is none");
+            Output::Value
+        }
+    }
+}
+
+impl RemoteTexture {
+    #[inline(always)]
+    fn table(&self) -> &'static TextureTable {
+        // SAFETY: the view was made for textures.
+        unsafe { self.0.table() }
+    }
+}
+
+impl Texture for RemoteTexture {
+    #[inline(always)]
+    fn eval(&self, at: &TexturePoint) -> Spectrum {
+        if self.0.is_poisoned() {
+            return Spectrum::ZERO;
+        }
+        // SAFETY: the struct behind the head is of the class that the table belongs to.
+        let found = self.0.found(unsafe { self.table().eval(self.0.at(), at) });
+        let value = found.unwrap_or(Spectrum::ZERO);
+        if value.is_finite() {
+            return value;
+        }
+        self.0.wrong("gave a value that is not finite");
+        Spectrum::ZERO
+    }
+
+    fn output(&self) -> Output {
+        // SAFETY: as above.
+        output(&self.0, self.0.found(unsafe { self.table().output(self.0.at()) }))
+    }
+}

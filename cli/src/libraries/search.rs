@@ -85,7 +85,8 @@ pub(super) fn candidates(folders: &[PathBuf], notes: &mut Notes) -> BTreeMap<Str
 pub(crate) fn is_searched(file: &Path, surroundings: &Surroundings) -> Result<bool, Failure> {
     let config = Config::read(surroundings.folder.as_deref())?;
     let folders = folders(&PluginArgs::default(), surroundings, &config, &mut Notes::default());
-    let own = file.parent().unwrap_or(file);
+    let file = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
+    let own = file.parent().unwrap_or(&file);
     Ok(folders.iter().any(|folder| is_same(folder, own)))
 }
 

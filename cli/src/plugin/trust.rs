@@ -1,5 +1,6 @@
 //! `luxel plugin trust` and `distrust`: whose code may run.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -57,17 +58,22 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let home = home(&surroundings)?;
     // One that cannot be understood is told before any code runs.
     Lock::read(Some(&home))?;
-    let mut exit = Exit::Fine;
+    let (mut exit, mut unsearched) = (Exit::Fine, BTreeSet::new());
     for file in &args.files {
         if let Err(failure) = trust(file, &home, args.json) {
             report::failure(&failure);
             exit = Exit::Input;
-        } else if !is_searched(&fs::canonicalize(file).unwrap_or_default(), &surroundings)? {
-            report::note(
-                "its folder is not searched: give --plugin-dir, or name it in `plugin_dirs` of \
-                 config.toml or in LUXEL_PLUGIN_PATH",
-            );
+        } else if !is_searched(file, &surroundings)? {
+            let file = std::path::absolute(file).unwrap_or_else(|_| file.clone());
+            unsearched.extend(file.parent().map(Path::to_path_buf));
         }
+    }
+    for folder in unsearched {
+        report::note(&format!(
+            "`{}` is not searched: give --plugin-dir, or name it in `plugin_dirs` of config.toml or \
+             in LUXEL_PLUGIN_PATH",
+            folder.display()
+        ));
     }
     Ok(exit)
 }

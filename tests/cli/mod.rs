@@ -1,5 +1,6 @@
 //! The program as a person runs it: exit codes, files, interrupts.
 
+mod grown;
 mod hostile;
 mod libraries;
 mod plugin;

@@ -19,12 +19,22 @@ light constant { scale = 1 }
 shape sphere { radius = 1 m, material = material diffuse { reflectance = 0.5 } }
 ";
 
+/// A path from the folder in which cargo builds this workspace.
+pub(crate) fn below_target(name: &str) -> PathBuf {
+    profile().parent().unwrap().join(name)
+}
+
+/// Where the tests were built.
+fn profile() -> PathBuf {
+    let tests = std::env::current_exe().unwrap();
+    tests.parent().and_then(Path::parent).unwrap().to_path_buf()
+}
+
 /// The program, built once with the profile of the tests.
 fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
-        let tests = std::env::current_exe().unwrap();
-        let profile = tests.parent().and_then(Path::parent).unwrap();
+        let profile = profile();
         let mut build = Command::new(option_env!("CARGO").unwrap_or("cargo"));
         build.args(["build", "--quiet", "--workspace", "--bin", "luxel", "--target-dir"]);
         build.arg(profile.parent().unwrap());

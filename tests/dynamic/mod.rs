@@ -3,6 +3,8 @@
 mod builtins;
 mod c_example;
 mod compiler;
+mod forge;
+mod schema;
 
 use std::path::{Path, PathBuf};
 

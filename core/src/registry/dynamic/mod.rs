@@ -282,10 +282,15 @@ unsafe fn class(table: &'static ClassTable, library: &Arc<Shared>) -> Result<Cla
     }
     // SAFETY: as above.
     let params = unsafe { schema::params(table) }.map_err(of)?;
-    let shared_offset = usize::try_from(table.shared_offset).unwrap_or(usize::MAX);
-    if table.build.is_some() && shared_offset.saturating_add(size_of::<usize>()) > size {
-        return Err(of(format!("its shared table at {shared_offset} is not inside its struct")));
-    }
+    let shared = match table.build {
+        Some(build) => Some(SharedFns {
+            offset: schema::shared_offset(table, &params).map_err(of)?,
+            build: remote::build,
+            build_abi: build,
+            free_abi: remote::free_nothing,
+        }),
+        None => None,
+    };
     // SAFETY: as above.
     let behaviour = unsafe { adopt::adopt(kind, table.behaviour) }.map_err(of)?;
     let params: &'static [Param] = params.leak();
@@ -299,12 +304,7 @@ unsafe fn class(table: &'static ClassTable, library: &Arc<Shared>) -> Result<Cla
         size: size + remote::HEAD,
         prepare: table.prepare.map(|_| remote::prepare as _),
         check: remote::check,
-        shared: table.build.map(|build| SharedFns {
-            offset: shared_offset + remote::HEAD,
-            build: remote::build,
-            build_abi: build,
-            free_abi: remote::free_nothing,
-        }),
+        shared,
         view: remote::view(kind),
         table: ClassTable { behaviour: remote::relay(kind), ..*table },
         host: Some(kept),

@@ -30,7 +30,10 @@ const ROLES: [Role; 6] = [
 /// # Safety
 /// A library that is never unloaded lends them.
 pub(super) unsafe fn items<T>(of: Slice<T>, most: usize) -> Result<&'static [T], String> {
-    if of.len() > most || (of.is_null() && !of.is_empty()) {
+    if of.is_null() && !of.is_empty() {
+        return Err("stands nowhere".to_owned());
+    }
+    if of.len() > most {
         return Err(format!("claims {} values where at most {most} can be", of.len()));
     }
     // SAFETY: the caller says so.
@@ -77,12 +80,44 @@ pub(super) unsafe fn params(class: &ClassTable) -> Result<Vec<Param>, String> {
         // SAFETY: as above.
         let param = unsafe { param(name, table, class.size as usize) }
             .map_err(|why| format!("parameter `{name}` {why}"))?;
+        if let Some(other) = out.iter().find(|other| stand_together(other, &param)) {
+            return Err(format!("parameter `{name}` stands on `{}`", other.name));
+        }
         out.push(param);
         if !name_is_free(&out, i) {
             return Err(format!("parameter `{name}` is there twice"));
         }
     }
     Ok(out)
+}
+
+/// Whether the host would write one over the other. The amounts of a light share their field, and a
+/// metal's `k` stands inside the field of its `eta`.
+fn stand_together(a: &Param, b: &Param) -> bool {
+    let light = a.ty == Type::Emission && b.ty == Type::Emission;
+    let metal = a.role == Role::ComplexIor && b.role == Role::ComplexIor;
+    !(light || metal) && covers(a, b.offset, layout(b.ty).0)
+}
+
+/// Whether these bytes of the host's block hold a part of a parameter.
+fn covers(param: &Param, start: usize, bytes: usize) -> bool {
+    start < param.offset + layout(param.ty).0 && param.offset < start + bytes
+}
+
+/// Where the address of a shared table is written, as the host knows it.
+pub(super) fn shared_offset(class: &ClassTable, params: &[Param]) -> Result<usize, String> {
+    const BYTES: usize = size_of::<usize>();
+    let (at, size) = (class.shared_offset, class.size as usize);
+    let offset = usize::try_from(at).unwrap_or(usize::MAX);
+    if offset.saturating_add(BYTES) > size || !offset.is_multiple_of(BYTES) {
+        return Err(format!(
+            "its shared table at {at} is not inside its struct of {size} bytes or not aligned"
+        ));
+    }
+    match params.iter().find(|param| covers(param, offset + HEAD, BYTES)) {
+        Some(other) => Err(format!("its shared table at {at} stands on `{}`", other.name)),
+        None => Ok(offset + HEAD),
+    }
 }
 
 /// # Safety
@@ -155,16 +190,32 @@ fn judge(param: &Param) -> Result<(), String> {
         format!("has the unknown unit `{unit}`")
     } else if !range_is_ordered(param) {
         format!("has the empty range [{min}, {max}]")
+    } else if !default_is_of_type(param) {
+        "has a default that is of another type".to_owned()
     } else if !default_is_in_range(param) {
         format!("has a default outside its range [{min}, {max}]")
     } else if !choice_is_said(param) {
         "is a choice without words, or has words and is none".to_owned()
     } else if param.textured && !textured {
         "is of a type that a texture cannot drive".to_owned()
+    } else if param.ty == Type::Object(Kind::Material) && !param.required {
+        "is a handle that a scene may leave out: handles are required".to_owned()
     } else {
         return Ok(());
     };
     Err(wrong)
+}
+
+fn default_is_of_type(param: &Param) -> bool {
+    match param.default {
+        Preset::Absent => true,
+        Preset::Index(_) => param.ty == Type::Choice,
+        Preset::Text(_) => param.ty == Type::Text,
+        Preset::Numbers(_) => !matches!(
+            param.ty,
+            Type::Choice | Type::Text | Type::File | Type::Table | Type::Look | Type::Object(_)
+        ),
+    }
 }
 
 fn index(number: f64, n: usize) -> Result<u32, String> {

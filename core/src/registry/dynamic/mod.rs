@@ -131,7 +131,11 @@ impl Library {
     /// # Errors
     /// What is wrong with the library, with the first class at fault.
     pub fn open(copy: &Path, stem: &str, generation: u32) -> Result<Self, LoadError> {
-        let library = load(copy).map_err(|error| LoadError::new(format!("not loaded: {error}")))?;
+        let library = load(copy).map_err(|error| {
+            // The system's own words stand below the error.
+            let cause = std::error::Error::source(&error).map(|cause| format!(": {cause}"));
+            LoadError::new(format!("not loaded: {error}{}", cause.unwrap_or_default()))
+        })?;
         let symbol = format!("{SYMBOL}{stem}");
         // SAFETY: the type is that of an address; what stands there is checked before use.
         let found = unsafe { library.get::<*const LibraryTable>(symbol.as_bytes()) };

@@ -140,6 +140,7 @@ impl<'a> Builder<'a> {
             owned: draft.owned,
             parts: draft.parts,
             watch,
+            needs: None,
             reads: vec![],
         };
         if object.need > SCRATCH {
@@ -179,6 +180,9 @@ impl<'a> Builder<'a> {
             return None;
         }
         object.prepare();
+        if object.class.kind == Kind::Material && object.is_constant() {
+            object.needs = Some(object.fixed().material().needs());
+        }
         Some(())
     }
 

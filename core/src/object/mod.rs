@@ -18,6 +18,7 @@ use std::any::Any;
 use std::sync::Arc;
 
 use luxel_sdk::abi::Class;
+use luxel_sdk::kind::Needs;
 
 use crate::registry::Registry;
 use crate::registry::dynamic::Watch;
@@ -40,6 +41,8 @@ pub struct Object {
     owned: Vec<Arc<dyn Any + Send + Sync>>,
     /// Objects that this one is made of.
     parts: Vec<Arc<Object>>,
+    /// What a material looks at, where that is the same everywhere.
+    needs: Option<Needs>,
     /// What becomes of it, if its class came from a library.
     watch: Option<Arc<Watch>>,
     /// Files that were read to build it, with the hash of their bytes.
@@ -50,6 +53,12 @@ impl Object {
     /// Its class.
     pub fn class(&self) -> &Class {
         &self.class
+    }
+
+    /// What a material looks at, where that is the same everywhere.
+    #[inline(always)]
+    pub fn needs(&self) -> Option<Needs> {
+        self.needs
     }
 
     /// Who failed and how, if a library's code has failed in this object.

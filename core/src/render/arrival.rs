@@ -104,7 +104,7 @@ impl Shader<'_, '_> {
         let scratch: &Scratch = self.scratch;
         let object = &self.stage.materials[at.material as usize];
         let material = object.resolve(&site, scratch).material();
-        let needs = material.needs();
+        let needs = object.needs().unwrap_or_else(|| material.needs());
         let local = Local::new(at, surface, needs);
         if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
             let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };

@@ -156,10 +156,10 @@ fn power(light: &LightSource, radius: f64, mode: ColorMode) -> f32 {
 
 /// Lanes of what a light emits: RGB is uplifted where the path is spectral.
 fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palette) -> Spectrum {
-    match (light.output(), mode) {
-        (Output::Rgb, ColorMode::Spectral) => palette.illuminant(value.rgb()),
-        _ => value,
+    if mode == ColorMode::Spectral && light.output() == Output::Rgb {
+        return palette.illuminant(value.rgb());
     }
+    value
 }
 
 impl Stage {

@@ -1,6 +1,9 @@
+use std::mem::MaybeUninit;
+
 use glam::{DVec2, DVec3};
 use luxel_sdk::abi::CameraTable;
 use luxel_sdk::kind::{Camera, CameraRay, Raster};
+use luxel_sdk::num::Ray;
 
 use super::Head;
 
@@ -25,12 +28,16 @@ impl Camera for RemoteCamera {
         if self.0.is_poisoned() {
             return None;
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: the struct behind the head is of the class that the table belongs to.
-        let found = self.0.found(unsafe { self.table().ray(self.0.at(), &raster, &p, &lens) })?;
-        let ray = &found.ray;
-        let weighs = found.weight >= 0.0 && found.weight.is_finite();
-        if ray.o.is_finite() && ray.d.is_normalized() && weighs {
-            return Some(found);
+        let status = unsafe { (self.table().ray)(self.0.at(), &raster, &p, &lens, &mut out) };
+        if !self.0.is_ok(status) {
+            return None;
+        }
+        // SAFETY: the library has written a result.
+        let CameraRay { ray: Ray { o, d, t_max }, weight } = *unsafe { out.assume_init_ref() };
+        if o.is_finite() && d.is_normalized() && (0.0..f32::INFINITY).contains(&weight) {
+            return Some(CameraRay { ray: Ray { o, d, t_max }, weight });
         }
         self.0.wrong("gave a ray that is not finite or not of unit length");
         None

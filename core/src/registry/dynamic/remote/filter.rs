@@ -1,3 +1,5 @@
+use std::mem::MaybeUninit;
+
 use luxel_sdk::abi::FilterTable;
 use luxel_sdk::kind::Filter;
 
@@ -34,9 +36,14 @@ impl Filter for RemoteFilter {
         if self.0.is_poisoned() {
             return [0.0; 2];
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: as above.
-        let found = self.0.found(unsafe { self.table().sample(self.0.at(), &u) });
-        let [x, y] = found.unwrap_or_default();
+        let status = unsafe { (self.table().sample)(self.0.at(), &u, &mut out) };
+        if !self.0.is_ok(status) {
+            return [0.0; 2];
+        }
+        // SAFETY: the library has written a result.
+        let [x, y] = *unsafe { out.assume_init_ref() };
         if x.is_finite() && y.is_finite() {
             return [x, y];
         }

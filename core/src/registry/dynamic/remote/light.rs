@@ -1,3 +1,5 @@
+use std::mem::MaybeUninit;
+
 use glam::{DVec3, Vec2};
 use luxel_sdk::abi::LightTable;
 use luxel_sdk::color::Spectrum;
@@ -54,9 +56,14 @@ impl Light for RemoteLight {
         if self.0.is_poisoned() {
             return Spectrum::ZERO;
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: as above.
-        let found = self.0.found(unsafe { self.table().le(self.0.at(), cos_o, &uv, area) });
-        self.lit(found.unwrap_or(Spectrum::ZERO))
+        let status = unsafe { (self.table().le)(self.0.at(), cos_o, &uv, area, &mut out) };
+        if !self.0.is_ok(status) {
+            return Spectrum::ZERO;
+        }
+        // SAFETY: the library has written a result.
+        self.lit(unsafe { out.assume_init() })
     }
 
     #[inline(always)]
@@ -64,11 +71,16 @@ impl Light for RemoteLight {
         if self.0.is_poisoned() {
             return None;
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: as above.
-        let mut sample = self.0.found(unsafe { self.table().sample(self.0.at(), query) })?;
-        if sample.wi.is_finite() && sample.pdf > 0.0 && sample.pdf.is_finite() {
-            sample.le = self.lit(sample.le);
-            return Some(sample);
+        let status = unsafe { (self.table().sample)(self.0.at(), query, &mut out) };
+        if !self.0.is_ok(status) {
+            return None;
+        }
+        // SAFETY: as above.
+        let LightSample { le, wi, distance, pdf, delta } = *unsafe { out.assume_init_ref() };
+        if wi.is_finite() && distance > 0.0 && pdf > 0.0 && pdf < f32::INFINITY {
+            return Some(LightSample { le: self.lit(le), wi, distance, pdf, delta });
         }
         self.0.wrong("gave a sample that is not finite");
         None

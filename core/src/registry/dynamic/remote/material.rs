@@ -1,4 +1,6 @@
-use glam::Vec3;
+use std::mem::MaybeUninit;
+
+use glam::{Vec3, Vec4};
 use luxel_sdk::abi::MaterialTable;
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample};
@@ -17,7 +19,7 @@ unsafe impl Sync for RemoteMaterial {}
 /// Finite and not negative in every lane.
 #[inline(always)]
 pub(super) fn is_light(f: Spectrum) -> bool {
-    f.0.min_element() >= 0.0 && f.is_finite()
+    (f.0.cmpge(Vec4::ZERO) & f.0.cmplt(Vec4::INFINITY)).all()
 }
 
 impl RemoteMaterial {
@@ -43,11 +45,16 @@ impl Material for RemoteMaterial {
         if self.0.is_poisoned() {
             return Eval::ZERO;
         }
-        // SAFETY: as above.
-        let found = self.0.found(unsafe { self.table().eval(self.0.at(), &wo, &wi) });
-        let eval = found.unwrap_or(Eval::ZERO);
-        if is_light(eval.f) && eval.pdf >= 0.0 && eval.pdf.is_finite() {
-            return eval;
+        let mut out = MaybeUninit::uninit();
+        // SAFETY: the struct behind the head is of the class that the table belongs to.
+        let status = unsafe { (self.table().eval)(self.0.at(), &wo, &wi, &mut out) };
+        if !self.0.is_ok(status) {
+            return Eval::ZERO;
+        }
+        // SAFETY: the library has written a result.
+        let Eval { f, pdf } = *unsafe { out.assume_init_ref() };
+        if is_light(f) && (0.0..f32::INFINITY).contains(&pdf) {
+            return Eval { f, pdf };
         }
         self.0.wrong("gave an eval that is negative or not finite");
         Eval::ZERO
@@ -58,8 +65,15 @@ impl Material for RemoteMaterial {
         if self.0.is_poisoned() {
             return None;
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: as above.
-        let sample = self.0.found(unsafe { self.table().sample(self.0.at(), &wo, &u) })?;
+        let status = unsafe { (self.table().sample)(self.0.at(), &wo, &u, &mut out) };
+        if !self.0.is_ok(status) {
+            return None;
+        }
+        // SAFETY: as above.
+        let Sample { weight, wi, pdf, eta, lobe } = *unsafe { out.assume_init_ref() };
+        let sample = Sample { weight, wi, pdf, eta, lobe };
         if is_sample(&sample) {
             return Some(sample);
         }
@@ -75,7 +89,7 @@ pub(super) fn is_sample(sample: &Sample) -> bool {
     is_light(sample.weight)
         && sample.wi.is_finite()
         && (delta || sample.pdf > 0.0)
-        && sample.pdf.is_finite()
+        && sample.pdf < f32::INFINITY
         && sample.eta > 0.0
-        && sample.eta.is_finite()
+        && sample.eta < f32::INFINITY
 }

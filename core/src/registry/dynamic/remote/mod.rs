@@ -76,6 +76,19 @@ impl Head {
         }
     }
 
+    /// Whether a call has left a result. For calls at every hit, which read the result where it was
+    /// written, field by field: copied as a whole it is waited for (measured: 12 ns for an `Eval`).
+    #[inline(always)]
+    fn is_ok(&self, status: Status) -> bool {
+        if status == Status::OK {
+            return true;
+        }
+        if status != Status::NOTHING {
+            self.failed(status);
+        }
+        false
+    }
+
     #[cold]
     fn failed(&self, status: Status) {
         let said = self.class.library.last_panic();

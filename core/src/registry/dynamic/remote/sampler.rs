@@ -1,4 +1,6 @@
-use luxel_sdk::abi::{Answer, SamplerTable};
+use std::mem::MaybeUninit;
+
+use luxel_sdk::abi::{SamplerTable, Status};
 use luxel_sdk::kind::{SampleAt, Sampler};
 
 use super::Head;
@@ -26,8 +28,17 @@ impl RemoteSampler {
 
     /// Numbers, if they are some: what a library gives is not taken on trust.
     #[inline(always)]
-    fn numbers<T: Default>(&self, answer: Answer<T>, fine: impl FnOnce(&T) -> bool) -> T {
-        let found = self.0.found(answer).unwrap_or_default();
+    fn numbers<T: Copy + Default>(
+        &self,
+        ask: impl FnOnce(&mut MaybeUninit<T>) -> Status,
+        fine: impl FnOnce(&T) -> bool,
+    ) -> T {
+        let mut out = MaybeUninit::uninit();
+        if !self.0.is_ok(ask(&mut out)) {
+            return T::default();
+        }
+        // SAFETY: the library has written a result.
+        let found = *unsafe { out.assume_init_ref() };
         if fine(&found) {
             return found;
         }
@@ -50,20 +61,21 @@ impl Sampler for RemoteSampler {
     #[inline(always)]
     fn get_1d(&self, which: SampleAt) -> f32 {
         // SAFETY: as above.
-        self.numbers(unsafe { self.table().get_1d(self.0.at(), &which) }, |u| is_unit(*u))
+        let ask = |out: &mut _| unsafe { (self.table().get_1d)(self.0.at(), &which, out) };
+        self.numbers(ask, |u| is_unit(*u))
     }
 
     #[inline(always)]
     fn get_2d(&self, which: SampleAt) -> [f32; 2] {
         // SAFETY: as above.
-        let answer = unsafe { self.table().get_2d(self.0.at(), &which) };
-        self.numbers(answer, |u| u.iter().all(|u| is_unit(*u)))
+        let ask = |out: &mut _| unsafe { (self.table().get_2d)(self.0.at(), &which, out) };
+        self.numbers(ask, |u| u.iter().all(|u| is_unit(*u)))
     }
 
     #[inline(always)]
     fn get_2d_pair(&self, which: SampleAt) -> [[f32; 2]; 2] {
         // SAFETY: as above.
-        let answer = unsafe { self.table().get_2d_pair(self.0.at(), &which) };
-        self.numbers(answer, |pair| pair.as_flattened().iter().all(|u| is_unit(*u)))
+        let ask = |out: &mut _| unsafe { (self.table().get_2d_pair)(self.0.at(), &which, out) };
+        self.numbers(ask, |pair| pair.as_flattened().iter().all(|u| is_unit(*u)))
     }
 }

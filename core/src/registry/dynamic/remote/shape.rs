@@ -1,3 +1,4 @@
+use std::mem::MaybeUninit;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -23,15 +24,15 @@ impl RemoteShape {
         unsafe { self.0.table() }
     }
 
-    /// A point, if it is one: what a library gives is not taken on trust.
+    /// Whether a point is one: what a library gives is not taken on trust.
     #[inline(always)]
-    fn usable(&self, surface: Surface) -> Surface {
+    fn is_usable(&self, surface: &Surface) -> bool {
         let Surface { p, p_err, ng, ns, .. } = surface;
         if p.is_finite() && p_err.is_finite() && ng.is_finite() && ns.is_finite() {
-            return surface;
+            return true;
         }
         self.0.wrong("gave a point of its surface that is not finite");
-        NOWHERE
+        false
     }
 }
 
@@ -57,10 +58,16 @@ impl Shape for RemoteShape {
         if self.0.is_poisoned() {
             return None;
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: as above.
-        let hit = self.0.found(unsafe { self.table().intersect(self.0.at(), ray) })?;
-        if hit.t > 0.0 && hit.t <= ray.t_max && hit.at.is_finite() {
-            return Some(hit);
+        let status = unsafe { (self.table().intersect)(self.0.at(), ray, &mut out) };
+        if !self.0.is_ok(status) {
+            return None;
+        }
+        // SAFETY: the library has written a result.
+        let Hit { t, at, face } = *unsafe { out.assume_init_ref() };
+        if t > 0.0 && t <= ray.t_max && at.is_finite() {
+            return Some(Hit { t, at, face });
         }
         self.0.wrong("gave a hit beyond the ray's limits");
         None
@@ -71,9 +78,18 @@ impl Shape for RemoteShape {
         if self.0.is_poisoned() {
             return NOWHERE;
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: as above.
-        let found = self.0.found(unsafe { self.table().surface(self.0.at(), ray, hit) });
-        self.usable(found.unwrap_or(NOWHERE))
+        let status = unsafe { (self.table().surface)(self.0.at(), ray, hit, &mut out) };
+        if !self.0.is_ok(status) {
+            return NOWHERE;
+        }
+        // SAFETY: the library has written a result.
+        if !self.is_usable(unsafe { out.assume_init_ref() }) {
+            return NOWHERE;
+        }
+        // SAFETY: as above.
+        unsafe { out.assume_init() }
     }
 
     fn area(&self) -> f64 {
@@ -85,14 +101,20 @@ impl Shape for RemoteShape {
         if self.0.is_poisoned() {
             return None;
         }
+        let mut out = MaybeUninit::<ShapeSample>::uninit();
         // SAFETY: as above.
-        let answer = unsafe { self.table().sample(self.0.at(), from.as_ref(), &u) };
-        let sample = self.0.found(answer)?;
-        if sample.pdf > 0.0 && sample.pdf.is_finite() {
-            return Some(ShapeSample { surface: self.usable(sample.surface), ..sample });
+        let status = unsafe { (self.table().sample)(self.0.at(), from.as_ref(), &u, &mut out) };
+        if !self.0.is_ok(status) {
+            return None;
         }
-        self.0.wrong("gave a sample whose density is not positive and finite");
-        None
+        // SAFETY: the library has written a result.
+        let sample = unsafe { out.assume_init_ref() };
+        if !(sample.pdf > 0.0 && sample.pdf < f64::INFINITY) {
+            self.0.wrong("gave a sample whose density is not positive and finite");
+            return None;
+        }
+        // SAFETY: as above.
+        self.is_usable(&sample.surface).then(|| unsafe { out.assume_init() })
     }
 
     fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {

@@ -1,3 +1,5 @@
+use std::mem::MaybeUninit;
+
 use luxel_sdk::abi::TextureTable;
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{Output, Texture, TexturePoint};
@@ -39,9 +41,14 @@ impl Texture for RemoteTexture {
         if self.0.is_poisoned() {
             return Spectrum::ZERO;
         }
+        let mut out = MaybeUninit::uninit();
         // SAFETY: the struct behind the head is of the class that the table belongs to.
-        let found = self.0.found(unsafe { self.table().eval(self.0.at(), at) });
-        let value = found.unwrap_or(Spectrum::ZERO);
+        let status = unsafe { (self.table().eval)(self.0.at(), at, &mut out) };
+        if !self.0.is_ok(status) {
+            return Spectrum::ZERO;
+        }
+        // SAFETY: the library has written a result.
+        let value = unsafe { out.assume_init() };
         if value.is_finite() {
             return value;
         }

@@ -93,8 +93,9 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
         .num_threads(threads)
         .build()
         .expect("the system gives threads");
-    let (spp, seed) = (options.samples(stage), options.seed(stage));
+    // Before anything of the stage is asked: the sampler may fail at once.
     let stop = Stop { control, alarm: stage.alarm(), failures: stage.alarm().count() };
+    let (spp, seed) = (options.samples(stage), options.seed(stage));
     pool.install(|| {
         let mut from = 0;
         while from < spp && !stop.is_asked() {

@@ -27,11 +27,12 @@ impl RemoteShape {
     /// Whether a point is one: what a library gives is not taken on trust.
     #[inline(always)]
     fn is_usable(&self, surface: &Surface) -> bool {
-        let Surface { p, p_err, ng, ns, .. } = surface;
-        if p.is_finite() && p_err.is_finite() && ng.is_finite() && ns.is_finite() {
+        let Surface { p, p_err, ng, ns, uv, dp_du, .. } = surface;
+        let finite = p.is_finite() && p_err.is_finite() && uv.is_finite() && dp_du.is_finite();
+        if finite && ng.is_normalized() && ns.is_normalized() {
             return true;
         }
-        self.0.wrong("gave a point of its surface that is not finite");
+        self.0.wrong("gave a point of its surface that is not finite or has no unit normal");
         false
     }
 }
@@ -50,7 +51,13 @@ pub(in super::super) const NOWHERE: Surface = Surface {
 impl Shape for RemoteShape {
     fn bounds(&self) -> Bounds3 {
         // SAFETY: the struct behind the head is of the class that the table belongs to.
-        self.0.found(unsafe { self.table().bounds(self.0.at()) }).unwrap_or(Bounds3::EMPTY)
+        let found = self.0.found(unsafe { self.table().bounds(self.0.at()) });
+        let bounds = found.unwrap_or(Bounds3::EMPTY);
+        if !(bounds.min.is_nan() || bounds.max.is_nan()) {
+            return bounds;
+        }
+        self.0.wrong("gave bounds that are no numbers");
+        Bounds3::EMPTY
     }
 
     #[inline(always)]
@@ -82,6 +89,9 @@ impl Shape for RemoteShape {
         // SAFETY: as above.
         let status = unsafe { (self.table().surface)(self.0.at(), ray, hit, &mut out) };
         if !self.0.is_ok(status) {
+            if !self.0.is_poisoned() {
+                self.0.wrong("gave a hit and no point of its surface");
+            }
             return NOWHERE;
         }
         // SAFETY: the library has written a result.
@@ -94,7 +104,12 @@ impl Shape for RemoteShape {
 
     fn area(&self) -> f64 {
         // SAFETY: as above.
-        self.0.found(unsafe { self.table().area(self.0.at()) }).unwrap_or(0.0)
+        let area = self.0.found(unsafe { self.table().area(self.0.at()) }).unwrap_or(0.0);
+        if area >= 0.0 && area < f64::INFINITY {
+            return area;
+        }
+        self.0.wrong("gave an area that is negative or not finite");
+        0.0
     }
 
     fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
@@ -137,18 +152,43 @@ impl Shape for RemoteShape {
     }
 
     fn mesh(&self) -> Option<Arc<TriangleMesh>> {
-        let mut copied: Option<TriangleMesh> = None;
+        let mut copied: Option<Option<TriangleMesh>> = None;
         let mut sink = MeshSink { take: copy, owner: (&raw mut copied).cast() };
         // SAFETY: as above.
         self.0.found(unsafe { self.table().mesh(self.0.at(), &mut sink) })?;
-        copied.map(Arc::new)
+        let mesh = copied?;
+        if mesh.as_ref().is_none_or(|mesh| !fits_together(mesh)) {
+            self.0.wrong("hands over triangles that are not finite or do not fit together");
+            return None;
+        }
+        mesh.map(Arc::new)
     }
 }
 
-/// Takes triangles over, into the `Option` that the sink belongs to.
+/// What the tree over the triangles does not look at: one normal and one place for each corner, or
+/// none, and numbers.
+fn fits_together(mesh: &TriangleMesh) -> bool {
+    let n = mesh.points.len();
+    let per_corner = |len: usize| len == 0 || len == n;
+    per_corner(mesh.normals.len())
+        && per_corner(mesh.uvs.len())
+        && mesh.centre.is_finite()
+        && mesh.normals.iter().all(|normal| normal.is_finite())
+        && mesh.uvs.iter().all(|uv| uv.is_finite())
+}
+
+/// Most corners or triangles that can be counted: a longer list is none.
+const MOST: usize = 1 << 32;
+
+/// Takes triangles over, into the `Option` that the sink belongs to; none that cannot be counted.
 unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
     // SAFETY: the sink's own owner.
-    let out = unsafe { &mut *owner.cast::<Option<TriangleMesh>>() };
+    let out = unsafe { &mut *owner.cast::<Option<Option<TriangleMesh>>>() };
+    let Triangles { points, indices, normals, uvs, .. } = triangles;
+    if points.len().max(indices.len()).max(normals.len()).max(uvs.len()) > MOST {
+        *out = Some(None);
+        return;
+    }
     // SAFETY: the library lends its triangles to this call.
     let points = unsafe { triangles.points.get() };
     // SAFETY: as above.
@@ -157,11 +197,11 @@ unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
     let normals = unsafe { triangles.normals.get() };
     // SAFETY: as above.
     let uvs = unsafe { triangles.uvs.get() };
-    *out = Some(TriangleMesh {
+    *out = Some(Some(TriangleMesh {
         centre: triangles.centre,
         points: points.to_vec(),
         indices: indices.to_vec(),
         normals: normals.to_vec(),
         uvs: uvs.to_vec(),
-    });
+    }));
 }

@@ -79,10 +79,10 @@ impl Light for RemoteLight {
         }
         // SAFETY: as above.
         let LightSample { le, wi, distance, pdf, delta } = *unsafe { out.assume_init_ref() };
-        if wi.is_finite() && distance > 0.0 && pdf > 0.0 && pdf < f32::INFINITY {
+        if wi.is_normalized() && distance > 0.0 && pdf > 0.0 && pdf < f32::INFINITY {
             return Some(LightSample { le: self.lit(le), wi, distance, pdf, delta });
         }
-        self.0.wrong("gave a sample that is not finite");
+        self.0.wrong("gave a sample that is not finite or not of unit length");
         None
     }
 
@@ -103,7 +103,12 @@ impl Light for RemoteLight {
     fn power(&self, area: f64, scene_radius: f64) -> f32 {
         // SAFETY: as above.
         let found = self.0.found(unsafe { self.table().power(self.0.at(), area, scene_radius) });
-        found.unwrap_or(0.0)
+        let power = found.unwrap_or(0.0);
+        if power >= 0.0 {
+            return power;
+        }
+        self.0.wrong("gave a power that is negative or no number");
+        0.0
     }
 
     fn output(&self) -> Output {

@@ -77,7 +77,7 @@ impl Material for RemoteMaterial {
         if is_sample(&sample) {
             return Some(sample);
         }
-        self.0.wrong("gave a sample that is negative or not finite");
+        self.0.wrong("gave a sample that is negative, not finite or not of unit length");
         None
     }
 }
@@ -87,7 +87,7 @@ impl Material for RemoteMaterial {
 pub(super) fn is_sample(sample: &Sample) -> bool {
     let delta = sample.lobe.has(Lobe::DELTA);
     is_light(sample.weight)
-        && sample.wi.is_finite()
+        && sample.wi.is_normalized()
         && (delta || sample.pdf > 0.0)
         && sample.pdf < f32::INFINITY
         && sample.eta > 0.0

@@ -45,7 +45,7 @@ impl Phase for RemotePhase {
         if is_sample(&sample) {
             return Some(sample);
         }
-        self.0.wrong("gave a sample that is negative or not finite");
+        self.0.wrong("gave a sample that is negative, not finite or not of unit length");
         None
     }
 }

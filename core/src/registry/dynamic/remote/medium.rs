@@ -1,11 +1,14 @@
-use luxel_sdk::abi::{MediumTable, PhaseRef, SamplesRef};
+use std::mem::MaybeUninit;
+
+use glam::Vec3;
+use luxel_sdk::abi::{Answer, MediumTable, PhaseRef, PhaseTable, SamplesRef};
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{FreeFlight, Medium, Samples};
+use luxel_sdk::kind::{Eval, FreeFlight, Medium, Phase, Sample, SampleAt, Samples};
 use luxel_sdk::num::Ray;
 use luxel_sdk::params::Maybe;
 
 use super::Head;
-use super::material::is_light;
+use super::material::{is_light, is_sample};
 
 /// A library's medium.
 #[repr(transparent)]
@@ -21,6 +24,32 @@ impl RemoteMedium {
         // SAFETY: the view was made for media.
         unsafe { self.0.table() }
     }
+
+    /// Lends random numbers to a call. Those of others stay theirs.
+    fn lend<T>(
+        &self,
+        samples: &mut Samples<'_>,
+        call: impl FnOnce(&mut SamplesRef<'_>) -> Answer<T>,
+    ) -> Option<T> {
+        let before = samples.at();
+        let found = self.0.found(SamplesRef::lend(samples, call));
+        if goes_on(before, samples.at()) {
+            return found;
+        }
+        *samples = Samples::new(samples.source(), before);
+        self.0.wrong(NOT_ITS_OWN);
+        None
+    }
+}
+
+/// Numbers that one call may take: enough for any walk, too few to run out of dimensions.
+const MOST_NUMBERS: u32 = 1 << 16;
+pub(super) const NOT_ITS_OWN: &str = "took random numbers that are not its own";
+
+/// Whether a call has left the numbers of a path where they may be after it.
+pub(super) fn goes_on(before: SampleAt, now: SampleAt) -> bool {
+    (before.stream, before.index) == (now.stream, now.index)
+        && now.dimension.checked_sub(before.dimension).is_some_and(|taken| taken <= MOST_NUMBERS)
 }
 
 const THROUGH: FreeFlight =
@@ -32,11 +61,11 @@ impl Medium for RemoteMedium {
             return THROUGH;
         }
         let table = self.table();
-        let answer = SamplesRef::lend(samples, |samples| {
+        let found = self.lend(samples, |samples| {
             // SAFETY: the struct behind the head is of the class that the table belongs to.
             unsafe { table.sample(self.0.at(), ray, samples) }
         });
-        let flight = self.0.found(answer).unwrap_or(THROUGH);
+        let flight = found.unwrap_or(THROUGH);
         let inside = flight.t.as_ref().is_none_or(|t| *t >= 0.0 && *t <= ray.t_max);
         if inside && is_light(flight.weight) {
             return flight;
@@ -50,11 +79,11 @@ impl Medium for RemoteMedium {
             return Spectrum::ONE;
         }
         let table = self.table();
-        let answer = SamplesRef::lend(samples, |samples| {
+        let found = self.lend(samples, |samples| {
             // SAFETY: as above.
             unsafe { table.transmittance(self.0.at(), ray, samples) }
         });
-        let left = self.0.found(answer).unwrap_or(Spectrum::ONE);
+        let left = found.unwrap_or(Spectrum::ONE);
         if is_light(left) {
             return left;
         }
@@ -63,20 +92,69 @@ impl Medium for RemoteMedium {
     }
 
     fn phase(&self) -> PhaseRef<'_> {
-        // SAFETY: as above.
-        let found = self.0.found(unsafe { self.table().phase(self.0.at()) });
-        found.unwrap_or(PhaseRef::new(&Nowhere))
+        PhaseRef::new(Scattering::of(&self.0))
     }
 }
 
-/// Scatters nothing: what a medium that has failed is left with.
-struct Nowhere;
+/// How a library's medium scatters. The handle that it gives may name a phase function of its own:
+/// what that answers is not taken on trust either.
+#[repr(transparent)]
+struct Scattering(Head);
 
-impl luxel_sdk::kind::Phase for Nowhere {
-    fn eval(&self, _wo: glam::Vec3, _wi: glam::Vec3) -> luxel_sdk::kind::Eval {
-        luxel_sdk::kind::Eval::ZERO
+// SAFETY: the SDK demands of media that they are `Send + Sync`.
+unsafe impl Send for Scattering {}
+// SAFETY: as above.
+unsafe impl Sync for Scattering {}
+
+impl Scattering {
+    fn of(medium: &Head) -> &Self {
+        // SAFETY: of the same layout.
+        unsafe { &*std::ptr::from_ref(medium).cast() }
     }
-    fn sample(&self, _wo: glam::Vec3, _u: [f32; 2]) -> Option<luxel_sdk::kind::Sample> {
+
+    /// The medium's phase function: its table and its struct.
+    fn phase(&self) -> Option<(&PhaseTable, *const u8)> {
+        if self.0.is_poisoned() {
+            return None;
+        }
+        // SAFETY: the head is that of a medium.
+        let table = unsafe { self.0.table::<MediumTable>() };
+        let mut out = MaybeUninit::<PhaseRef<'static>>::zeroed();
+        // SAFETY: the struct behind the head is of the class that the table belongs to.
+        let status = unsafe { (table.phase)(self.0.at(), &mut out) };
+        // SAFETY: a handle is a table's address and a struct's; zero where nothing was written.
+        let (table, at) = unsafe { out.as_ptr().cast::<(*const PhaseTable, *const u8)>().read() };
+        if self.0.is_ok(status) && !table.is_null() {
+            // SAFETY: the library lends the table as long as the medium's parameters.
+            return Some((unsafe { &*table }, at));
+        }
+        if !self.0.is_poisoned() {
+            self.0.wrong("gave no phase function");
+        }
+        None
+    }
+}
+
+impl Phase for Scattering {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
+        let Some((table, at)) = self.phase() else { return Eval::ZERO };
+        // SAFETY: the medium gave table and struct together.
+        let eval = self.0.found(unsafe { table.eval(at, &wo, &wi) }).unwrap_or(Eval::ZERO);
+        if is_light(eval.f) && (0.0..f32::INFINITY).contains(&eval.pdf) {
+            return eval;
+        }
+        self.0.wrong("gave an eval that is negative or not finite");
+        Eval::ZERO
+    }
+
+    fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<Sample> {
+        let (table, at) = self.phase()?;
+        // SAFETY: as above.
+        let sample = self.0.found(unsafe { table.sample(at, &wo, &u) })?;
+        if is_sample(&sample) {
+            return Some(sample);
+        }
+        self.0.wrong("gave a sample that is negative, not finite or not of unit length");
         None
     }
 }

@@ -37,7 +37,33 @@ unsafe extern "C" fn grow<T: Copy>(queue: *mut Queue<T>) {
     (queue.items, queue.capacity) = (items.as_mut_ptr(), items.capacity());
 }
 
+/// Items of a queue that is filled by code which may not know an end.
+const MOST: usize = 1 << 20;
+
+/// The same up to a limit; there the queue begins anew, and shows that it is full.
+unsafe extern "C" fn grow_to_limit<T: Copy>(queue: *mut Queue<T>) {
+    // SAFETY: as above.
+    let room = unsafe { (*queue).capacity };
+    if room >= MOST {
+        // SAFETY: as above; fewer items are valid too.
+        unsafe { (*queue).len = 0 };
+        return;
+    }
+    // SAFETY: as above.
+    unsafe { grow(queue) }
+}
+
 impl<T: Copy> Queue<T> {
+    /// From now on the queue has a limit, for whoever fills it without an end.
+    pub fn limit(&mut self) {
+        self.grow = grow_to_limit::<T>;
+    }
+
+    /// Whether it has come to its limit: what it holds is then not all that was asked for.
+    pub fn is_full(&self) -> bool {
+        self.capacity >= MOST
+    }
+
     /// One more item, at the end.
     #[inline(always)]
     pub fn push(&mut self, item: T) {
@@ -82,6 +108,16 @@ impl<T: Copy + fmt::Debug> fmt::Debug for Queue<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_queue_with_a_limit_ends_and_says_so() {
+        let mut queue = Queue::default();
+        queue.limit();
+        (0..MOST / 4).for_each(|i| queue.push(i));
+        assert!(!queue.is_full() && queue.len() == MOST / 4);
+        (0..8 * MOST).for_each(|i| queue.push(i));
+        assert!(queue.is_full() && queue.capacity < 4 * MOST && queue.len() <= queue.capacity);
+    }
 
     #[test]
     fn a_queue_keeps_what_is_pushed_in_order_and_its_memory_when_cleared() {

@@ -3,6 +3,7 @@
 mod builtins;
 mod c_example;
 mod compiler;
+mod examples;
 mod files;
 mod forge;
 mod schema;

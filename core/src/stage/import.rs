@@ -12,7 +12,10 @@ use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Embedded, Objects, Reader};
 use crate::registry::Registry;
-use crate::scene::{Argument, Color, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value};
+use crate::registry::dynamic::FAILED;
+use crate::scene::{
+    Argument, Color, Given, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value, conform,
+};
 
 /// The scene with every asset replaced by a group, and what was found wrong.
 pub(super) fn expand(
@@ -91,7 +94,10 @@ impl Import<'_> {
                 for warning in warnings.iter().chain(&imported.warnings) {
                     diagnostics.push(Diagnostic::warning("E0417", node.span, warning));
                 }
-                Some(self.adopt(node, &imported))
+                let mut wrong = Wrong::default();
+                let group = self.adopt(node, &imported, &mut wrong);
+                wrong.tell(node, diagnostics);
+                Some(group)
             }
             Err(faults) => {
                 for fault in faults {
@@ -103,7 +109,7 @@ impl Import<'_> {
         }
     }
 
-    fn adopt(&mut self, asset: &Node, imported: &Imported) -> GroupId {
+    fn adopt(&mut self, asset: &Node, imported: &Imported, wrong: &mut Wrong) -> GroupId {
         let mut ids: Vec<Option<NodeId>> = vec![];
         for node in &imported.nodes {
             let replaced = asset.overrides.iter().find(|(name, _)| {
@@ -111,20 +117,34 @@ impl Import<'_> {
             });
             let id = match replaced {
                 Some((_, material)) => Some(*material),
-                None => self.node(node, &ids, asset.span),
+                None => match self.node(node, &ids, asset.span) {
+                    Ok(id) => Some(id),
+                    Err(why) => {
+                        let ImportNode { kind, class, .. } = node;
+                        wrong.add(|| format!("node {} ({kind} `{class}`) {why}", ids.len()));
+                        None
+                    }
+                },
             };
             ids.push(id);
         }
         let mut group = Group { label: asset.label.clone(), items: vec![] };
         let mut camera = None;
         for (index, transform) in &imported.placed {
-            let Some(id) = ids.get(*index).copied().flatten() else { continue };
+            let Some(id) = ids.get(*index) else {
+                wrong.add(|| format!("it places node {index} of {}", ids.len()));
+                continue;
+            };
+            // What is wrong with a node that was not made has been said.
+            let Some(id) = *id else { continue };
             let (transform, span) = (*transform, asset.span);
-            if self.out.node(id).kind == Kind::Camera {
-                camera = camera.or(Some((id, transform)));
-            } else {
-                let target = Target::Node(id);
-                group.items.push(Placed { target, transform, material: None, span });
+            match self.out.node(id).kind {
+                Kind::Camera => camera = camera.or(Some((id, transform))),
+                Kind::Shape | Kind::Light => {
+                    let target = Target::Node(id);
+                    group.items.push(Placed { target, transform, material: None, span });
+                }
+                kind => wrong.add(|| format!("it places node {index}, which is a {kind}")),
             }
         }
         let id = self.group(group);
@@ -164,14 +184,31 @@ impl Import<'_> {
         self.out.camera = Some(self.out.add(node));
     }
 
-    fn node(&mut self, node: &ImportNode, ids: &[Option<NodeId>], span: Span) -> Option<NodeId> {
-        let class = self.registry.class(node.kind, &node.class)?;
-        let mut params = vec![];
-        for (name, value) in &node.params {
-            let param = Registry::params(class).find(|param| param.name == *name)?;
-            params.push(Argument { name: param.name, value: convert(param, value, ids)?, span });
+    fn node(
+        &mut self,
+        node: &ImportNode,
+        ids: &[Option<NodeId>],
+        span: Span,
+    ) -> Result<NodeId, String> {
+        if !MADE.contains(&node.kind) {
+            return Err("is of a kind that no file holds".to_owned());
         }
-        Some(self.out.add(Node {
+        let class = self.registry.class(node.kind, &node.class).ok_or("is of no known class")?;
+        let mut params: Vec<Argument> = vec![];
+        for (name, value) in &node.params {
+            let param = Registry::params(class).find(|param| param.name == *name);
+            let param = param.ok_or_else(|| format!("has no parameter `{name}`"))?;
+            let value = convert(param, value, ids)
+                .ok_or_else(|| format!("has a `{name}` that is not there: {value:?}"))?;
+            self.suits(param, &value)?;
+            params.push(Argument { name: param.name, value, span });
+        }
+        let given = |name| params.iter().any(|argument| argument.name == name);
+        let mut needed = Registry::params(class).filter(|p| p.required && p.group.is_empty());
+        if let Some(lacking) = needed.find(|param| !given(param.name)) {
+            return Err(format!("lacks `{}`", lacking.name));
+        }
+        Ok(self.out.add(Node {
             kind: node.kind,
             class: Arc::from(class.name),
             label: (!node.label.is_empty()).then(|| Arc::from(node.label.as_str())),
@@ -181,6 +218,75 @@ impl Import<'_> {
             hash: [0; 32],
         }))
     }
+
+    /// Whether a value is of the parameter's type. Numbers beyond its range are left to the class:
+    /// files of other formats know other ranges.
+    fn suits(&self, param: &Param, value: &Value) -> Result<(), String> {
+        let dimension = own_dimension(param);
+        let given = match value.clone() {
+            Value::Bool(b) => Given::Bool(b),
+            Value::Number(x, dimension) => Given::Number(x, dimension),
+            Value::Vector(v) => Given::Numbers(v.into(), dimension),
+            Value::Table(table) => Given::Numbers(table, dimension),
+            Value::Text(text) => Given::Text(text),
+            Value::Path(path) => Given::Path(path),
+            Value::Bytes(name, bytes) => Given::Bytes(name, bytes),
+            Value::Color(color, dimension) => Given::Color(color, dimension),
+            Value::Look(look) => Given::Look(look),
+            Value::Node(id) => Given::Node(id, self.out.node(id).kind),
+        };
+        match conform(param, given, &|_| None) {
+            Err(misfit) if !["E0405", "E0210"].contains(&misfit.code) => Err(misfit.message),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Kinds of node that a file of another format may hold.
+const MADE: [Kind; 7] = [
+    Kind::Shape,
+    Kind::Material,
+    Kind::Texture,
+    Kind::Light,
+    Kind::Medium,
+    Kind::Phase,
+    Kind::Camera,
+];
+
+/// What an importer got wrong: our mistake or a library's, never the file's.
+#[derive(Default)]
+struct Wrong {
+    told: Vec<String>,
+    n: usize,
+}
+
+impl Wrong {
+    /// Most that are told one by one.
+    const MOST: usize = 8;
+
+    fn add(&mut self, told: impl FnOnce() -> String) {
+        self.n += 1;
+        if self.n <= Self::MOST {
+            self.told.push(told());
+        }
+    }
+
+    fn tell(mut self, asset: &Node, diagnostics: &mut Vec<Diagnostic>) {
+        if self.n > Self::MOST {
+            self.told.push(format!("{} more faults", self.n - Self::MOST));
+        }
+        let class = &asset.class;
+        diagnostics.extend(self.told.into_iter().map(|told| {
+            let message = format!("what the importer `{class}` gives is wrong: {told}");
+            Diagnostic::error(FAILED, asset.span, message)
+        }));
+    }
+}
+
+/// The dimension of a parameter's first unit.
+fn own_dimension(param: &Param) -> Dimension {
+    let unit = param.unit.split('|').next().unwrap_or_default();
+    Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension)
 }
 
 /// A name in another format as an identifier of the language: other characters become `_`.
@@ -189,10 +295,7 @@ fn identifier(name: &str) -> String {
 }
 
 fn convert(param: &Param, value: &ImportValue, ids: &[Option<NodeId>]) -> Option<Value> {
-    let own = || {
-        let unit = param.unit.split('|').next().unwrap_or_default();
-        Unit::parse(unit).map_or(Dimension::NONE, |unit| unit.dimension)
-    };
+    let own = || own_dimension(param);
     Some(match value {
         ImportValue::Bool(b) => Value::Bool(*b),
         ImportValue::Number(x) => match param.ty {

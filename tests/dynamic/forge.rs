@@ -19,7 +19,6 @@ enum Word {
     /// The first.
     One,
     /// The second.
-    #[expect(dead_code, reason = "a scene may choose it")]
     Two,
 }
 

@@ -1,11 +1,14 @@
 //! Plugins from dynamic libraries, as the host opens them.
 
+mod bad;
 mod builtins;
 mod c_example;
 mod compiler;
 mod examples;
 mod files;
 mod forge;
+mod judged;
+mod misbehave;
 mod schema;
 
 use std::path::{Path, PathBuf};

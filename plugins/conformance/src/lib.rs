@@ -47,6 +47,8 @@ pub use statistics::SIGNIFICANCE;
 
 /// The check that is skipped when no object of a class can be made.
 const UNMADE: &str = "parameters";
+/// Whether code of a library panicked or gave what no plugin may.
+const FAILS: &str = "never ends a render";
 
 /// How much is tried.
 #[derive(Clone, Copy, Debug)]
@@ -110,6 +112,13 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
             Ok(sets) => {
                 let subject = Subject { bench, class, sets, options: *options };
                 by_kind(&subject, &mut judge);
+                for set in &subject.sets {
+                    // What a library answers after a failure says nothing of it.
+                    let failure = set.object.failure();
+                    judge.holds(FAILS, failure.is_none(), || {
+                        format!("{}: {}", set.label, failure.unwrap_or_default())
+                    });
+                }
             }
             Err(why) => judge.skip(UNMADE, why),
         }

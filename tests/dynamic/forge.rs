@@ -42,8 +42,8 @@ impl Material for Honest {
         Eval::ZERO
     }
     fn sample(&self, _: Vec3, _: [f32; 3]) -> Option<Sample> {
-        let used = self.amount + self.far as f32 + self.word as u32 as f32;
-        Some(Sample::delta(Vec3::Z, Spectrum::splat(used)))
+        let far = self.far > f64::from(self.amount) && self.word as u32 == 0;
+        Some(Sample::delta(Vec3::Z, Spectrum::splat(f32::from(u8::from(far)))))
     }
 }
 
@@ -94,7 +94,7 @@ impl Forge {
 
     fn put_together(self) -> &'static LibraryTable {
         let Self { library, class, params, table, times } = self;
-        let params = if class.params.is_null() && class.params.len() > 0 {
+        let params = if class.params.is_null() && !class.params.is_empty() {
             class.params
         } else {
             Slice::new(params.leak())

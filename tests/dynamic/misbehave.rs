@@ -8,12 +8,13 @@ use luxel_core::stage::Stage;
 use super::{bad, registered, stage_after};
 
 /// The scene's statements by kind; `{}` is the object that may be wrong.
-const CAMERA: &str = "camera perspective {
+pub(super) const CAMERA: &str = "camera perspective {
     look = look_at(from = (0, 0, 4) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }\n";
-const LIGHT: &str = "light constant { spectrum = rgb.linear_srgb(1, 1, 1), scale = 1 }\n";
+pub(super) const LIGHT: &str =
+    "light constant { spectrum = rgb.linear_srgb(1, 1, 1), scale = 1 }\n";
 const POINT: &str = "light point { position = (0, 0, 3) m, spectrum = rgb.linear_srgb(1, 1, 1), intensity = 8 W/sr }\n";
-const FILM: &str = "film rgb { resolution = (6, 6) }\nsampler sobol { samples = 4 }\n";
-const FLOOR: &str = "shape rectangle { u = (8, 0, 0) m, v = (0, 8, 0) m }\n";
+pub(super) const FILM: &str = "film rgb { resolution = (6, 6) }\nsampler sobol { samples = 4 }\n";
+pub(super) const FLOOR: &str = "shape rectangle { u = (8, 0, 0) m, v = (0, 8, 0) m }\n";
 
 fn registry() -> Registry {
     registered(&[bad::library()])

@@ -9,6 +9,7 @@ mod files;
 mod forge;
 mod judged;
 mod misbehave;
+mod raw;
 mod schema;
 
 use std::path::{Path, PathBuf};

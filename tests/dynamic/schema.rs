@@ -109,7 +109,7 @@ fn classes_that_cannot_be_are_refused() {
     check("class 1: 99 is no kind of plugin", |f| f.class.kind = 99);
     check("class 1: 11 is no kind of plugin", |f| f.class.kind = 11);
     check(&format!("{of}: it has no doc: it is the manual page"), |f| {
-        f.class.doc = text(null(), 0)
+        f.class.doc = text(null(), 0);
     });
     check(&format!("{of}: its doc is not UTF-8"), |f| f.class.doc = bytes(b"\xff"));
     check(&format!("{of}: its parameters take 257 bytes, at most 256 are allowed"), |f| {

@@ -27,7 +27,7 @@ impl Square {
         Self { wrong: Wrong::Nothing, mesh: false }
     }
 
-    fn surface_at(&self, at: DVec2) -> Surface {
+    fn surface_at(self, at: DVec2) -> Surface {
         let normal = if self.wrong == Wrong::SampleLong { DVec3::ZERO } else { DVec3::Z };
         let p = if self.wrong == Wrong::SampleNan { DVec3::NAN } else { at.extend(0.0) };
         let (ng, ns) = (normal, normal);

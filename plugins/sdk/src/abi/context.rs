@@ -45,6 +45,15 @@ unsafe fn host<'a>(at: *const u8) -> &'a dyn BuildContext {
     unsafe { *at.cast::<&dyn BuildContext>() }
 }
 
+/// A library's text, if it is one.
+fn words(text: Text<'_>) -> Option<&str> {
+    if text.bytes().len() > 1 << 20 {
+        return None;
+    }
+    // SAFETY: the library lends it to the call.
+    std::str::from_utf8(unsafe { text.bytes().get() }).ok()
+}
+
 unsafe extern "C" fn read(
     at: *const u8,
     base: Text<'_>,
@@ -58,7 +67,10 @@ unsafe extern "C" fn read(
         unsafe { (sink.take)(sink.owner, Slice::new(bytes)) }
     };
     guarded(|| {
-        let (base, path) = (base.get(), path.get());
+        let (Some(base), Some(path)) = (words(base), words(path)) else {
+            give(b"a path that is not UTF-8");
+            return Status::REFUSED;
+        };
         let found = if base.is_empty() { host.read(path) } else { host.read_beside(base, path) };
         match found {
             Ok(bytes) => {
@@ -77,7 +89,7 @@ unsafe extern "C" fn warn(at: *const u8, message: Text<'_>) -> Status {
     // SAFETY: the handle's own address.
     let host = unsafe { host(at) };
     guarded(|| {
-        host.warn(message.get());
+        host.warn(words(message).unwrap_or("a warning that is not UTF-8"));
         Status::OK
     })
 }

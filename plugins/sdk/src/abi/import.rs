@@ -89,6 +89,9 @@ impl Value {
     /// Its text, table and bytes are lent for the call.
     pub unsafe fn take(&self) -> Option<ImportValue> {
         let n = self.numbers;
+        if self.table.len().max(self.bytes.len()).max(self.text.bytes().len()) > MOST {
+            return None;
+        }
         // SAFETY: the caller says so.
         let table = unsafe { self.table.get() };
         // SAFETY: as above.
@@ -96,9 +99,9 @@ impl Value {
         Some(match self.tag {
             0 => ImportValue::Bool(self.index != 0),
             1 => ImportValue::Number(n[0]),
-            2 => ImportValue::Quantity(n[0], Cow::Owned(self.text.get().to_owned())),
+            2 => ImportValue::Quantity(n[0], Cow::Owned(said(self.text))),
             3 => ImportValue::Vector(table.to_vec()),
-            4 => ImportValue::Text(self.text.get().to_owned()),
+            4 => ImportValue::Text(said(self.text)),
             5 => ImportValue::Rgb([n[0], n[1], n[2]]),
             6 => ImportValue::Table(table.into()),
             7 => ImportValue::Look(Look {
@@ -106,11 +109,23 @@ impl Value {
                 to: DVec3::new(n[3], n[4], n[5]),
                 up: DVec3::new(n[6], n[7], n[8]),
             }),
-            8 => ImportValue::Bytes(self.text.get().to_owned(), bytes.into()),
+            8 => ImportValue::Bytes(said(self.text), bytes.into()),
             9 => ImportValue::Node(self.index as usize),
             _ => return None,
         })
     }
+}
+
+/// Most items of a list that a file holds: a longer one is none.
+const MOST: usize = u32::MAX as usize;
+
+/// An importer's words, which need not be UTF-8.
+fn said(text: Text<'_>) -> String {
+    if text.bytes().len() > MOST {
+        return String::new();
+    }
+    // SAFETY: the importer lends it to the call.
+    String::from_utf8_lossy(unsafe { text.bytes().get() }).into_owned()
 }
 
 /// The same text, for a value that is gone before it.
@@ -161,7 +176,7 @@ unsafe extern "C" fn node(owner: *mut u8, kind: u32, class: Text<'_>, label: Tex
     let imported = unsafe { collected(owner) };
     // A kind that is none becomes one that no importer may make: the host tells it.
     let kind = Kind::ALL.get(kind as usize).map_or(Kind::Film, |(kind, _)| *kind);
-    let (class, label) = (class.get().to_owned(), label.get().to_owned());
+    let (class, label) = (said(class), said(label));
     imported.nodes.push(ImportNode { kind, class, label, params: vec![] });
 }
 
@@ -170,8 +185,10 @@ unsafe extern "C" fn value(owner: *mut u8, name: Text<'_>, value: &Value) {
     let imported = unsafe { collected(owner) };
     // SAFETY: the importer lends what the value points to.
     let value = unsafe { value.take() };
-    if let (Some(node), Some(value)) = (imported.nodes.last_mut(), value) {
-        node.params.push((Cow::Owned(name.get().to_owned()), value));
+    // A value that is none becomes a node that is none: the host tells it.
+    let value = value.unwrap_or(ImportValue::Node(usize::MAX));
+    if let Some(node) = imported.nodes.last_mut() {
+        node.params.push((Cow::Owned(said(name)), value));
     }
 }
 
@@ -184,7 +201,7 @@ unsafe extern "C" fn place(owner: *mut u8, node: u32, columns: &[f64; 12]) {
 unsafe extern "C" fn warn(owner: *mut u8, message: Text<'_>) {
     // SAFETY: the sink's own owner.
     let imported = unsafe { collected(owner) };
-    imported.warnings.push(message.get().to_owned());
+    imported.warnings.push(said(message));
 }
 
 table! {

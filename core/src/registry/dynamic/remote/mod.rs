@@ -15,6 +15,7 @@ mod sampler;
 mod shape;
 mod texture;
 
+use std::borrow::Cow;
 use std::marker::PhantomData;
 
 use luxel_sdk::abi::{Answer, Built, ClassTable, ContextRef, FaultSink, Life, Status, View};
@@ -221,6 +222,11 @@ pub(super) unsafe fn build(
     if let Some(found) = faults.verdict(head, status) {
         return Err(found);
     }
+    if out.address.is_null() {
+        head.wrong("built no shared table");
+        let message = head.watch().told().unwrap_or_default();
+        return Err(vec![Fault { field: "", code: FAILED, message }]);
+    }
     Ok(SharedTable { address: out.address, owner: Box::new(Owned { owner: out.owner, free }) })
 }
 
@@ -264,6 +270,20 @@ pub(crate) const FAILED: &str = "E0421";
 /// Codes of faults that plugins tell. What they make up counts as out of range.
 const CODES: [&str; 5] = ["E0405", "E0411", "E0412", "E0413", "E0415"];
 
+/// Faults of one object that are told.
+const MOST_FAULTS: usize = 100;
+/// Bytes of a message: more is none.
+const MOST_TEXT: usize = 1 << 20;
+
+/// A library's words, which need not be UTF-8.
+fn said(text: Text<'_>) -> Cow<'_, str> {
+    if text.bytes().len() > MOST_TEXT {
+        return Cow::Borrowed("a text that is too long");
+    }
+    // SAFETY: the library lends it to this call.
+    String::from_utf8_lossy(unsafe { text.bytes().get() })
+}
+
 impl Faults<'_> {
     fn of(class: &'static Remote) -> Self {
         Self { class, found: vec![], lent: PhantomData }
@@ -273,16 +293,18 @@ impl Faults<'_> {
         unsafe extern "C" fn take(owner: *mut u8, field: Text<'_>, code: Text<'_>, told: Text<'_>) {
             // SAFETY: the sink's own owner, which outlives it.
             let faults = unsafe { &mut *owner.cast::<Faults<'_>>() };
-            faults.take(field.get(), code.get(), told.get());
+            faults.take(&said(field), &said(code), said(told).into_owned());
         }
         FaultSink { take, owner: std::ptr::from_mut(self).cast() }
     }
 
-    fn take(&mut self, field: &str, code: &str, message: &str) {
+    fn take(&mut self, field: &str, code: &str, message: String) {
         let known = self.class.params.iter().map(|param| param.name);
         let field = known.into_iter().find(|name| *name == field).unwrap_or("");
         let code = CODES.into_iter().find(|known| *known == code).unwrap_or(CODES[0]);
-        self.found.push(Fault { field, code, message: message.to_owned() });
+        if self.found.len() < MOST_FAULTS {
+            self.found.push(Fault { field, code, message });
+        }
     }
 
     /// What was told; a panic, and a refusal without a word, is a fault too.

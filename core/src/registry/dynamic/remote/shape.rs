@@ -105,7 +105,7 @@ impl Shape for RemoteShape {
     fn area(&self) -> f64 {
         // SAFETY: as above.
         let area = self.0.found(unsafe { self.table().area(self.0.at()) }).unwrap_or(0.0);
-        if area >= 0.0 && area < f64::INFINITY {
+        if (0.0..f64::INFINITY).contains(&area) {
             return area;
         }
         self.0.wrong("gave an area that is negative or not finite");
@@ -178,7 +178,7 @@ fn fits_together(mesh: &TriangleMesh) -> bool {
 }
 
 /// Most corners or triangles that can be counted: a longer list is none.
-const MOST: usize = 1 << 32;
+const MOST: usize = u32::MAX as usize;
 
 /// Takes triangles over, into the `Option` that the sink belongs to; none that cannot be counted.
 unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {

@@ -6,6 +6,7 @@ use luxel_core::diag::Diagnostic;
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure};
+use crate::isolate::Beat;
 use crate::load;
 use crate::report::{self, Form, Stream};
 
@@ -42,7 +43,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     plugins.notes.tell(form, stream)?;
     let mut exit = Exit::Fine;
     for file in &args.files {
-        let loaded = load::load(file, &args.load, None, &plugins, None)?;
+        let loaded = load::load(file, &args.load, None, &plugins, None, &Beat::silent())?;
         report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream)?;
         if loaded.stage.is_none() || loaded.diagnostics.iter().any(Diagnostic::is_error) {
             exit = Exit::Input;

@@ -18,6 +18,14 @@ pub(crate) enum Exit {
     Ours = 4,
 }
 
+impl Exit {
+    /// The exit with this code.
+    pub(crate) fn of(code: i32) -> Option<Self> {
+        let all = [Self::Fine, Self::Input, Self::Usage, Self::Incomplete, Self::Ours];
+        all.into_iter().find(|exit| *exit as i32 == code)
+    }
+}
+
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         Self::from(exit as u8)

@@ -18,11 +18,14 @@ pub(crate) type Seen = Option<blake3::Hash>;
 /// Paths with what was last seen there.
 pub(crate) type Watched = BTreeMap<PathBuf, Seen>;
 
+/// What has been asked for so far, as others may see it.
+pub(crate) type Asked = Arc<Mutex<Watched>>;
+
 /// Reads below the scene's folder and the folders that were allowed, and remembers what was asked.
 #[derive(Debug)]
 pub(crate) struct DiskFiles {
     allowed: Vec<PathBuf>,
-    asked: Mutex<BTreeMap<PathBuf, Seen>>,
+    asked: Asked,
 }
 
 impl DiskFiles {
@@ -35,11 +38,16 @@ impl DiskFiles {
         let allowed = std::iter::once(own).chain(allow.iter().map(PathBuf::as_path));
         // A folder that does not exist holds nothing that could be allowed.
         let allowed = allowed.filter_map(|folder| fs::canonicalize(folder).ok()).collect();
-        Self { allowed, asked: Mutex::default() }
+        Self { allowed, asked: Asked::default() }
+    }
+
+    /// The paths that are asked for, now and later.
+    pub(crate) fn shared(&self) -> &Asked {
+        &self.asked
     }
 
     /// Every path that was asked for, with the hash of what was found there.
-    pub(crate) fn asked(&self) -> BTreeMap<PathBuf, Seen> {
+    pub(crate) fn asked(&self) -> Watched {
         self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 

@@ -1,6 +1,7 @@
 //! Ctrl-C: the first one asks for an orderly end, a later one gives up what is not yet saved.
 //! A picture that is being written is always finished: no half file, no new EXR beside an old PNG.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -10,6 +11,29 @@ use crate::report;
 /// Interrupts within this time of the first are taken for the same one (a double press, a signal
 /// sent to the whole group as well): most renders have ended in order by then.
 const SAME: Duration = Duration::from_secs(2);
+
+/// What an interrupt runs.
+pub(crate) type Interrupt = Arc<dyn Fn() + Send + Sync>;
+
+/// Whether Ctrl-C has been pressed, from now on; it does nothing else any more.
+///
+/// # Errors
+/// If the system refuses the handler.
+pub(crate) fn pressed() -> Result<Arc<AtomicBool>, Failure> {
+    let pressed = Arc::new(AtomicBool::new(false));
+    let shared = pressed.clone();
+    on_each(move || shared.store(true, Ordering::Relaxed))?;
+    Ok(pressed)
+}
+
+/// Calls `handler` at each Ctrl-C, which does nothing else any more.
+///
+/// # Errors
+/// If the system refuses the handler.
+pub(crate) fn on_each(handler: impl Fn() + Send + 'static) -> Result<(), Failure> {
+    ctrlc::set_handler(handler)
+        .map_err(|error| Failure::new(Exit::Ours, format!("cannot listen for Ctrl-C: {error}")))
+}
 
 /// How far the picture has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,13 +103,17 @@ impl Guard {
     }
 
     /// Calls `first` at the first interrupt; a later one ends the program with a word on what was
-    /// kept, at once or when the picture in hand is written. Termination counts as one.
+    /// kept, at once or when the picture in hand is written. Termination counts as one. Gives what
+    /// does the same as an interrupt.
     ///
     /// # Errors
     /// If the system refuses the handler.
-    pub(crate) fn on_ctrl_c(&self, first: impl Fn() + Send + 'static) -> Result<(), Failure> {
+    pub(crate) fn on_ctrl_c(
+        &self,
+        first: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Interrupt, Failure> {
         let guard = self.clone();
-        let handler = move || {
+        let handler: Interrupt = Arc::new(move || {
             // Held to the end: nothing begins to be written while the program is on its way out.
             let mut state = guard.state();
             match state.answer(Instant::now()) {
@@ -98,9 +126,10 @@ impl Guard {
                     std::process::exit(Exit::Incomplete as i32);
                 }
             }
-        };
-        ctrlc::set_handler(handler)
-            .map_err(|error| Failure::new(Exit::Ours, format!("cannot listen for Ctrl-C: {error}")))
+        });
+        let heard = handler.clone();
+        on_each(move || heard())?;
+        Ok(handler)
     }
 }
 

@@ -10,6 +10,7 @@ use luxel_core::stage::{self, Stage};
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Failure, blaming};
 use crate::files::DiskFiles;
+use crate::isolate::{Beat, Phase};
 use crate::libraries::{Plugins, Session, Surroundings};
 
 /// A scene file as far as it could be read, with everything that was found.
@@ -31,7 +32,27 @@ pub(crate) struct Loaded {
 /// # Errors
 /// A configuration or lock that cannot be understood.
 pub(crate) fn registry(args: &PluginArgs) -> Result<Plugins, Failure> {
-    Session::new().refresh(args, &Surroundings::of_process())
+    registry_telling(args, &Beat::silent())
+}
+
+/// The same, telling what is done.
+///
+/// # Errors
+/// As `registry`.
+pub(crate) fn registry_telling(args: &PluginArgs, beat: &Beat) -> Result<Plugins, Failure> {
+    beat.phase(Phase::Opening);
+    let plugins = Session::new().refresh(args, &Surroundings::of_process())?;
+    beat.opened(plugins.open(), &plugins.watched);
+    Ok(plugins)
+}
+
+/// What there is on the search path, none of it opened: everything that could be is refused.
+///
+/// # Errors
+/// As `registry`.
+pub(crate) fn look_at_libraries(args: &PluginArgs) -> Result<Plugins, Failure> {
+    let args = PluginArgs { builtins: None, ..args.clone() };
+    Session::looking().refresh(&args, &Surroundings::of_process())
 }
 
 /// Reads a scene and makes it ready to trace, at `size` if one is given, keeping what has not
@@ -45,9 +66,12 @@ pub(crate) fn load(
     size: Option<UVec2>,
     plugins: &Plugins,
     before: Option<&Stage>,
+    beat: &Beat,
 ) -> Result<Loaded, Failure> {
     blaming(&path.display().to_string(), || {
         let files = DiskFiles::new(path, &args.allow_path);
+        beat.reading(files.shared());
+        beat.phase(Phase::Loading);
         let registry = &plugins.registry;
         let settings = luxel_lang::Settings {
             set: args.set.clone(),
@@ -59,6 +83,7 @@ pub(crate) fn load(
         if let (Some(scene), Some(size)) = (&mut scene, size) {
             scene.set_resolution(size);
         }
+        beat.phase(Phase::Building);
         let built = scene.as_ref().map(|scene| stage::build(scene, registry, &files, before));
         let stage = match built {
             Some(Ok(built)) => {

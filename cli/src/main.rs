@@ -7,6 +7,7 @@ mod describe;
 mod exit;
 mod files;
 mod interrupt;
+mod isolate;
 mod libraries;
 mod list;
 mod load;

@@ -7,6 +7,7 @@ use luxel_core::render::{Control, Outcome};
 
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
 use crate::exit::{Exit, Failure};
+use crate::isolate::{self, Beat, IsolateArgs, Phase};
 use crate::load::{self, Loaded};
 use crate::measure::{self, Measured};
 use crate::output::Output;
@@ -25,7 +26,8 @@ use crate::{interrupt, picture};
 Examples:
   luxel render scenes/cornell.scene
   luxel render scenes/cornell.scene -o small --size 256x256 --spp 64
-  luxel render scenes/cornell.scene --crop 100,100,64,64 --json")]
+  luxel render scenes/cornell.scene --crop 100,100,64,64 --json
+  luxel render scenes/cornell.scene --isolate")]
 pub(crate) struct Args {
     /// The scene
     file: PathBuf,
@@ -35,6 +37,8 @@ pub(crate) struct Args {
     load: LoadArgs,
     #[command(flatten)]
     plugins: PluginArgs,
+    #[command(flatten)]
+    isolate: IsolateArgs,
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
@@ -46,11 +50,25 @@ pub(crate) struct Args {
     strict: bool,
 }
 
+impl Args {
+    fn form(&self) -> Form {
+        if self.json { Form::Json } else { Form::Text }
+    }
+}
+
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let plugins = load::registry(&args.plugins)?;
-    let form = if args.json { Form::Json } else { Form::Text };
+    let Some(beat) = args.isolate.beat() else {
+        let open = || load::look_at_libraries(&args.plugins).map_or(vec![], |p| p.refused());
+        return isolate::supervise(&args.file, &args.isolate, args.form(), open);
+    };
+    let _end = beat.until_the_end();
+    render(args, &beat)
+}
+
+fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
+    let (plugins, form) = (load::registry_telling(&args.plugins, beat)?, args.form());
     plugins.notes.tell(form, Stream::Error)?;
-    let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, None)?;
+    let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, None, beat)?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
     let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
         return Ok(Exit::Input);
@@ -63,11 +81,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let control = Arc::new(Control::default());
     let stop = control.clone();
     let guard = interrupt::Guard::default();
-    guard.on_ctrl_c(move || {
+    let interrupt = guard.on_ctrl_c(move || {
         stop.cancel();
         report::aside("interrupted: what was measured will be written; Ctrl-C again gives it up");
     })?;
+    beat.rendering(&control, interrupt);
     output.check(&files)?;
+    beat.phase(Phase::Rendering);
     let line = !args.quiet;
     let measured = measure::measure((&args.file, &stage), &options, &control, line)?;
     let Measured { film, outcome, seconds } = measured;
@@ -77,6 +97,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Input);
     }
     let saving = guard.saving();
+    beat.phase(Phase::Saving);
     let samples = control.samples_done();
     if samples == 0 {
         let message = "interrupted before anything was measured: no picture was written";

@@ -1,7 +1,10 @@
 //! The program as a person runs it: exit codes, files, interrupts.
 
+#[cfg(test)]
+mod faulty;
 mod grown;
 mod hostile;
+mod isolate;
 mod libraries;
 mod plugin;
 #[cfg(test)]

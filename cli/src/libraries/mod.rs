@@ -45,6 +45,24 @@ impl Plugins {
             |found: &Found| Some(Unloaded { stem: found.stem.clone(), advice: found.advice()? });
         self.libraries.iter().filter_map(one).collect()
     }
+
+    /// The libraries that are open, for people.
+    pub(crate) fn open(&self) -> Vec<String> {
+        let one = |found: &Found| match &found.state {
+            State::Loaded(Opened { name, version, .. }) => {
+                Some(format!("{name} {version} (`{}`)", found.path.display()))
+            }
+            _ => None,
+        };
+        self.libraries.iter().filter_map(one).collect()
+    }
+
+    /// The libraries that were refused, for people.
+    pub(crate) fn refused(&self) -> Vec<String> {
+        let refused = |found: &&Found| matches!(found.state, State::Refused(_));
+        let path = |found: &Found| format!("`{}`", found.path.display());
+        self.libraries.iter().filter(refused).map(path).collect()
+    }
 }
 
 /// A library that was found, or that the lock lists.

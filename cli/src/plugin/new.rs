@@ -117,7 +117,9 @@ fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
 mod tests {
     use super::*;
     use crate::args::{LoadArgs, PluginArgs};
+    use crate::isolate::Beat;
     use crate::libraries::{Session, Surroundings};
+    use crate::load;
     use crate::testing::Folder;
 
     fn args(kind: &str, name: &str, dir: PathBuf) -> Args {
@@ -145,7 +147,8 @@ mod tests {
             }
             // Nothing but its own class is missing.
             let scene = dir.join("my_own.scene");
-            let loaded = crate::load::load(&scene, &LoadArgs::default(), None, &plugins, None);
+            let loaded =
+                load::load(&scene, &LoadArgs::default(), None, &plugins, None, &Beat::silent());
             let told = loaded.unwrap().diagnostics;
             let one = matches!(&told[..], [only] if only.message.contains("`my_own`"));
             assert!(one, "{word}: {told:?}");

@@ -79,6 +79,13 @@ pub(crate) fn progress(line: &str) {
     tell(&format!("\r{line}\x1b[K"));
 }
 
+/// Wipes a line of progress that another process has left.
+pub(crate) fn end_of_progress() {
+    if io::stderr().is_terminal() {
+        progress("");
+    }
+}
+
 /// Prints diagnostics, then how many there are.
 ///
 /// # Errors

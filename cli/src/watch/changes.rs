@@ -25,6 +25,17 @@ pub(super) enum Wake {
     Stop,
 }
 
+/// What came of a wait.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Noticed {
+    /// Contents differ from what was seen.
+    Save,
+    /// The end is asked for.
+    Stop,
+    /// The time is up.
+    Nothing,
+}
+
 /// A save is often several events: this long without one means that it is done.
 const QUIET: Duration = Duration::from_millis(30);
 /// An editor that deletes or empties a file before it writes it takes at most this long.
@@ -39,6 +50,8 @@ pub(super) struct Changes {
     seen: Watched,
     stamps: BTreeMap<PathBuf, Stamp>,
     wakes: Receiver<Wake>,
+    /// When stamps were compared last.
+    compared: Instant,
 }
 
 /// What the folder says about a file: cheap to ask, but may stay the same though the bytes change.
@@ -59,7 +72,8 @@ impl Changes {
         })
         .map_err(refused)?;
         let (folders, seen, stamps) = Default::default();
-        Ok((Self { watcher, folders, seen, stamps, wakes }, sender))
+        let compared = Instant::now();
+        Ok((Self { watcher, folders, seen, stamps, wakes, compared }, sender))
     }
 
     /// Watches the folders of these files, those that links lead to included, and folders among
@@ -116,18 +130,25 @@ impl Changes {
     /// (false).
     pub(super) fn wait(&mut self) -> bool {
         loop {
-            let differs = match self.wakes.recv_timeout(ANYWAY) {
-                Ok(Wake::Look) => match self.settle() {
-                    Wake::Look => self.differs(),
-                    Wake::Stop => return false,
-                },
-                Err(RecvTimeoutError::Timeout) => self.stamps_changed() && self.differs(),
-                Ok(Wake::Stop) | Err(RecvTimeoutError::Disconnected) => return false,
-            };
-            if differs && self.is_whole() {
-                return true;
+            match self.within(ANYWAY) {
+                Noticed::Save => return true,
+                Noticed::Stop => return false,
+                Noticed::Nothing => {}
             }
         }
+    }
+
+    /// Waits for one event, or for so long without one.
+    pub(super) fn within(&mut self, time: Duration) -> Noticed {
+        let differs = match self.wakes.recv_timeout(time) {
+            Ok(Wake::Look) => match self.settle() {
+                Wake::Look => self.differs(),
+                Wake::Stop => return Noticed::Stop,
+            },
+            Err(RecvTimeoutError::Timeout) => self.stamps_changed() && self.differs(),
+            Ok(Wake::Stop) | Err(RecvTimeoutError::Disconnected) => return Noticed::Stop,
+        };
+        if differs && self.is_whole() { Noticed::Save } else { Noticed::Nothing }
     }
 
     /// Lets a burst of events pass.
@@ -147,7 +168,12 @@ impl Changes {
         self.seen.iter().any(|(path, seen)| look(path) != *seen)
     }
 
+    /// Whether a stamp has changed since the last look, a while ago.
     fn stamps_changed(&mut self) -> bool {
+        if self.compared.elapsed() < ANYWAY {
+            return false;
+        }
+        self.compared = Instant::now();
         let now: BTreeMap<_, _> =
             self.seen.keys().map(|path| (path.clone(), stamp(path))).collect();
         let changed = now != self.stamps;

@@ -1,0 +1,62 @@
+//! `--isolate`: the work runs in a process of its own, so that a plugin that crashes, leaves or never
+//! ends costs a message.
+//!
+//! The child is this program with the same arguments; a variable of its environment names the folder
+//! in which it tells how far it has come. Its standard input is a pipe: a byte asks it to stop, the
+//! end of the pipe says that the parent is gone. Output, progress and pictures are its own.
+
+mod beat;
+mod child;
+mod ending;
+mod supervise;
+
+use std::time::Duration;
+
+pub(crate) use beat::{Beat, Phase};
+pub(crate) use child::Child;
+pub(crate) use ending::End;
+pub(crate) use supervise::{supervise, tell};
+
+/// Names the folder of the child's reports.
+const VARIABLE: &str = "LUXEL_ISOLATED";
+
+/// Whether the work gets a process of its own.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct IsolateArgs {
+    /// Work in a process of its own, so that a plugin that crashes or never ends costs a message
+    #[arg(long)]
+    isolate: bool,
+    /// With --isolate: how long nothing may move before that process is ended
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        requires = "isolate",
+        hide_short_help = true,
+        value_parser = seconds
+    )]
+    patience: Option<Duration>,
+}
+
+impl IsolateArgs {
+    /// What the work tells how far it has come; `None` if another process is to do it.
+    pub(crate) fn beat(&self) -> Option<Beat> {
+        match std::env::var_os(VARIABLE) {
+            _ if !self.isolate => Some(Beat::silent()),
+            Some(folder) => Some(Beat::to_parent(folder.into())),
+            None => None,
+        }
+    }
+
+    /// How long nothing may move.
+    pub(crate) fn patience(&self, usual: Duration) -> Duration {
+        self.patience.unwrap_or(usual)
+    }
+}
+
+/// More than a year is no limit.
+const MOST_SECONDS: f64 = 4e7;
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let found = text.parse().ok().filter(|s: &f64| *s > 0.0 && *s <= MOST_SECONDS);
+    found.map(Duration::from_secs_f64).ok_or_else(|| "expected seconds, as in 60".into())
+}

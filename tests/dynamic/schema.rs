@@ -192,6 +192,20 @@ fn fields_outside_the_struct_are_refused() {
 }
 
 #[test]
+fn names_that_the_host_looks_for_are_refused() {
+    let told = "class 1: material `honest`: parameter `interior` is called like one that the host adds \
+        or reads";
+    check(told, |f| f.params[FAR].name = Text::new("interior"));
+    // A light's `shape` is the shape that shines.
+    let told = "class 1: light `honest`: parameter `shape` is called like one that the host adds or \
+        reads";
+    check(told, |f| {
+        f.params[FAR].name = Text::new("shape");
+        f.class.kind = luxel_sdk::kind::Kind::Light as u32;
+    });
+}
+
+#[test]
 fn handles_that_may_be_absent_are_refused() {
     check_param(FAR, "is a handle that a scene may leave out: handles are required", |p| {
         (p.ty, p.preset, p.unit) = (33, 0, Text::new(""));

@@ -285,7 +285,7 @@ unsafe fn class(table: &'static ClassTable, library: &Arc<Shared>) -> Result<Cla
         return Err(of(format!("its parameters take {size} bytes, at most 256 are allowed")));
     }
     // SAFETY: as above.
-    let params = unsafe { schema::params(table) }.map_err(of)?;
+    let params = unsafe { schema::params(kind, table) }.map_err(of)?;
     let shared = match table.build {
         Some(build) => Some(SharedFns {
             offset: schema::shared_offset(table, &params).map_err(of)?,

@@ -8,6 +8,7 @@ use luxel_sdk::params::{
 };
 
 use super::remote::HEAD;
+use crate::registry::common_params;
 
 /// Most bytes of a text, and most parameters of a class: more is no schema.
 const MOST_TEXT: usize = 1 << 20;
@@ -68,7 +69,7 @@ pub(super) unsafe fn name(of: Text<'static>) -> Result<&'static str, String> {
 ///
 /// # Safety
 /// As `text`.
-pub(super) unsafe fn params(class: &ClassTable) -> Result<Vec<Param>, String> {
+pub(super) unsafe fn params(kind: Kind, class: &ClassTable) -> Result<Vec<Param>, String> {
     // SAFETY: the caller says so.
     let tables = unsafe { items(class.params, MOST_PARAMS) }
         .map_err(|why| format!("its list of parameters {why}"))?;
@@ -80,6 +81,11 @@ pub(super) unsafe fn params(class: &ClassTable) -> Result<Vec<Param>, String> {
         // SAFETY: as above.
         let param = unsafe { param(name, table, class.size as usize) }
             .map_err(|why| format!("parameter `{name}` {why}"))?;
+        if is_hosts(kind, &param) {
+            return Err(format!(
+                "parameter `{name}` is called like one that the host adds or reads"
+            ));
+        }
         if let Some(other) = out.iter().find(|other| stand_together(other, &param)) {
             return Err(format!("parameter `{name}` stands on `{}`", other.name));
         }
@@ -89,6 +95,14 @@ pub(super) unsafe fn params(class: &ClassTable) -> Result<Vec<Param>, String> {
         }
     }
     Ok(out)
+}
+
+/// Whether the host would take a parameter for one of its own: of all shapes, say, it looks at what
+/// their `material` is.
+fn is_hosts(kind: Kind, param: &Param) -> bool {
+    let shape = kind == Kind::Light && param.name == "shape";
+    let added = common_params(kind).iter().any(|own| own.name == param.name);
+    added || (shape && param.ty != Type::Object(Kind::Shape))
 }
 
 /// Whether the host would write one over the other. The amounts of a light share their field, and a

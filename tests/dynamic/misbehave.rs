@@ -87,6 +87,7 @@ fn a_material_that_fails_ends_the_render() {
         ("prepare", FELL),
         ("other", FELL),
         ("eval", FELL),
+        ("bomb", "no message"),
         ("nan", "gave an eval that is negative or not finite"),
         ("negative", "gave an eval that is negative or not finite"),
         ("infinite", "gave an eval that is negative or not finite"),
@@ -122,6 +123,8 @@ fn a_texture_that_fails_ends_the_render() {
     let cases = [("eval", FELL), ("nan", value), ("infinite", value), ("other", FELL)];
     check_all(&template, "texture", &cases);
     check_all(&template, "texture", &[("prepare", FELL)]);
+    // Its table panics once more when it is freed.
+    check_all(&template, "texture", &[("bomb", "no message")]);
     check(&template, "dangling", "nothing");
 }
 

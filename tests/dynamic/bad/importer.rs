@@ -55,7 +55,7 @@ impl Importer for Pour {
             Wrong::Infinite => placed[0].1 = DAffine3::from_scale(DVec3::NAN),
             // A mix without what it mixes, and one of a thing that is no material.
             Wrong::SecondNan => nodes[0] = node(Kind::Material, "mix", &[]),
-            Wrong::Check | Wrong::Eval | Wrong::Nothing => {}
+            Wrong::Check | Wrong::Eval | Wrong::Nothing | Wrong::Bomb => {}
             Wrong::Greedy => {
                 for i in 0..100_000_u32 {
                     nodes.push(ball(one.clone(), 0));

@@ -11,7 +11,7 @@ use luxel_sdk::kind::{
 };
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::Wrong;
+use super::{Bomb, Wrong};
 
 /// A matt material.
 #[derive(Params, Clone, Copy)]
@@ -69,24 +69,24 @@ pub(super) struct Pattern<'a> {
     #[param(default = Wrong::Nothing, choice)]
     wrong: Wrong,
     #[param(shared)]
-    table: Shared<'a, f32>,
+    table: Shared<'a, (f32, Option<Bomb>)>,
 }
 
-impl Build<f32> for Pattern<'_> {
-    fn build(&self, context: &dyn BuildContext) -> Result<f32, Vec<Fault>> {
+impl Build<(f32, Option<Bomb>)> for Pattern<'_> {
+    fn build(&self, context: &dyn BuildContext) -> Result<(f32, Option<Bomb>), Vec<Fault>> {
         self.wrong.at(Wrong::Prepare);
         if self.wrong == Wrong::Dangling {
             let said = context.read("../../nothing").unwrap_err();
             return Err(vec![Fault::file("no such field", said)]);
         }
-        Ok(0.5)
+        Ok((0.5, (self.wrong == Wrong::Bomb).then(|| Bomb)))
     }
 }
 
 impl Texture for Pattern<'_> {
     fn eval(&self, _: &TexturePoint) -> Spectrum {
         self.wrong.at(Wrong::Eval);
-        Spectrum::splat(self.wrong.number(*self.table))
+        Spectrum::splat(self.wrong.number(self.table.0))
     }
     fn output(&self) -> Output {
         self.wrong.at(Wrong::Other);

@@ -55,7 +55,12 @@ pub(super) unsafe fn answer<T, R>(
 pub fn guarded(work: impl FnOnce() -> Status) -> Status {
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(status) => status,
-        Err(payload) => panicked(&*payload),
+        Err(payload) => {
+            let status = panicked(&*payload);
+            // Its own code must not run here: it may panic again.
+            std::mem::forget(payload);
+            status
+        }
     }
 }
 

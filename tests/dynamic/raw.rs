@@ -168,14 +168,15 @@ unsafe extern "C" fn astray<const LANE: u32>(
     out: &mut MaybeUninit<u32>,
 ) -> Status {
     let ray = Ray { t_max: 1.0, ..Ray::new(glam::DVec3::ZERO, glam::DVec3::X) };
+    let n = u32::try_from(lanes.n_lanes).unwrap();
     match LANE {
         // One lane beyond the last.
-        0 => requests.rays.push(Onward { ray, lane: lanes.n_lanes as u32 }),
+        0 => requests.rays.push(Onward { ray, lane: n }),
         // Lanes of others.
-        1 => (0..lanes.n_lanes as u32).for_each(|lane| requests.rays.push(Onward { ray, lane })),
+        1 => (0..n).for_each(|lane| requests.rays.push(Onward { ray, lane })),
         2 => requests.shadows.push(Shadow { ray, lane: u32::MAX, l: Spectrum::ONE }),
         3 => {
-            let lane = lanes.n_lanes as u32 - 1;
+            let lane = n - 1;
             requests.shadows.push(Shadow { ray, lane, l: Spectrum::ONE });
         }
         4 => return Status(9),

@@ -87,9 +87,7 @@ pub(super) struct Bomb;
 
 impl Drop for Bomb {
     fn drop(&mut self) {
-        if !std::thread::panicking() {
-            panic!("fell over on purpose");
-        }
+        assert!(std::thread::panicking(), "fell over on purpose");
     }
 }
 

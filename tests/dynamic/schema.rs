@@ -207,10 +207,12 @@ fn names_that_the_host_looks_for_are_refused() {
 
 #[test]
 fn handles_that_may_be_absent_are_refused() {
-    check_param(FAR, "is a handle that a scene may leave out: handles are required", |p| {
-        (p.ty, p.preset, p.unit) = (33, 0, Text::new(""));
-        p.offset = 0;
-    });
+    for (flags, group) in [(0, ""), (1, "either")] {
+        check_param(FAR, "is a handle that a scene may leave out: handles are required", |p| {
+            (p.ty, p.preset, p.unit, p.offset) = (33, 0, Text::new(""), 0);
+            (p.flags, p.group) = (flags, Text::new(group));
+        });
+    }
 }
 
 #[test]

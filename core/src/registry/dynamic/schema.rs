@@ -212,12 +212,17 @@ fn judge(param: &Param) -> Result<(), String> {
         "is a choice without words, or has words and is none".to_owned()
     } else if param.textured && !textured {
         "is of a type that a texture cannot drive".to_owned()
-    } else if param.ty == Type::Object(Kind::Material) && !param.required {
+    } else if param.ty == Type::Object(Kind::Material) && !is_always_given(param) {
         "is a handle that a scene may leave out: handles are required".to_owned()
     } else {
         return Ok(());
     };
     Err(wrong)
+}
+
+/// Whether each object has it: one of a group may be absent.
+fn is_always_given(param: &Param) -> bool {
+    param.required && param.group.is_empty()
 }
 
 fn default_is_of_type(param: &Param) -> bool {

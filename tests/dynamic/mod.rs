@@ -1,6 +1,7 @@
 //! Plugins from dynamic libraries, as the host opens them.
 
 mod bad;
+mod bits;
 mod builtins;
 mod c_example;
 mod compiler;

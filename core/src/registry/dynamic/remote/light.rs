@@ -1,13 +1,13 @@
-use std::mem::MaybeUninit;
+use std::mem::{MaybeUninit, offset_of};
 
 use glam::{DVec3, Vec2};
 use luxel_sdk::abi::LightTable;
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{Escaped, Light, LightForm, LightQuery, LightSample, Output};
 
-use super::Head;
 use super::material::is_light;
 use super::texture::output;
+use super::{Head, NO_BOOL, is_bool};
 
 /// A library's light.
 #[repr(transparent)]
@@ -75,6 +75,11 @@ impl Light for RemoteLight {
         // SAFETY: as above.
         let status = unsafe { (self.table().sample)(self.0.at(), query, &mut out) };
         if !self.0.is_ok(status) {
+            return None;
+        }
+        // SAFETY: where it says.
+        if !unsafe { is_bool(&out, offset_of!(LightSample, delta)) } {
+            self.0.wrong(NO_BOOL);
             return None;
         }
         // SAFETY: as above.

@@ -1,4 +1,4 @@
-use std::mem::MaybeUninit;
+use std::mem::{MaybeUninit, offset_of};
 
 use glam::Vec3;
 use luxel_sdk::abi::{Answer, MediumTable, PhaseRef, PhaseTable, SamplesRef};
@@ -7,8 +7,8 @@ use luxel_sdk::kind::{Eval, FreeFlight, Medium, Phase, Sample, SampleAt, Samples
 use luxel_sdk::num::Ray;
 use luxel_sdk::params::Maybe;
 
-use super::Head;
 use super::material::{is_light, is_sample};
+use super::{Head, NO_BOOL, is_bool};
 
 /// A library's medium.
 #[repr(transparent)]
@@ -62,8 +62,19 @@ impl Medium for RemoteMedium {
         }
         let table = self.table();
         let found = self.lend(samples, |samples| {
+            let mut out = MaybeUninit::uninit();
             // SAFETY: the struct behind the head is of the class that the table belongs to.
-            unsafe { table.sample(self.0.at(), ray, samples) }
+            let status = unsafe { (table.sample)(self.0.at(), ray, samples, &mut out) };
+            if !self.0.is_ok(status) {
+                return Ok(None);
+            }
+            // SAFETY: where it says.
+            if !unsafe { is_bool(&out, offset_of!(FreeFlight, t.given)) } {
+                self.0.wrong(NO_BOOL);
+                return Ok(None);
+            }
+            // SAFETY: the library has written a result.
+            Ok(Some(unsafe { out.assume_init() }))
         });
         let flight = found.unwrap_or(THROUGH);
         let inside = flight.t.as_ref().is_none_or(|t| *t >= 0.0 && *t <= ray.t_max);

@@ -17,6 +17,7 @@ mod texture;
 
 use std::borrow::Cow;
 use std::marker::PhantomData;
+use std::mem::MaybeUninit;
 
 use luxel_sdk::abi::{Answer, Built, ClassTable, ContextRef, FaultSink, Life, Status, View};
 use luxel_sdk::kind::Kind;
@@ -113,6 +114,20 @@ impl Head {
         self.watch().has_failed()
     }
 }
+
+/// Whether the byte of a `bool` in a result is one: what writes it may be C, and may leave it out.
+///
+/// # Safety
+/// `offset` is that of a `bool` in the result.
+#[inline(always)]
+unsafe fn is_bool<T>(result: &MaybeUninit<T>, offset: usize) -> bool {
+    // SAFETY: inside the result, says the caller; any byte is one.
+    let byte = unsafe { result.as_ptr().cast::<u8>().wrapping_add(offset).read_volatile() };
+    byte <= 1
+}
+
+/// A `bool` that is none.
+const NO_BOOL: &str = "gave neither yes nor no where one of them is wanted";
 
 /// Writes a view of each kind: the bytes of an object as a host-side type that begins with `Head`.
 macro_rules! views {

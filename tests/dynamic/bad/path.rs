@@ -60,7 +60,7 @@ impl PathIntegrator for Walk {
             Wrong::Zero => ray.d *= 0.0,
             Wrong::Greedy => {
                 let shadow = Ray { t_max: 1.0, ..ray };
-                (0..1_000_000).for_each(|_| ask.add_if_visible(shadow, Spectrum::ONE));
+                (0..100_000).for_each(|_| ask.add_if_visible(shadow, Spectrum::ONE));
             }
             Wrong::Sample => {
                 *depth = 0;

@@ -26,6 +26,28 @@ fn a_class_that_a_library_without_trust_may_have_is_answered_with_how_to_trust_i
 }
 
 #[test]
+fn a_requirement_is_met_by_what_is_loaded_and_loads_nothing() {
+    let scene = |what: &str| format!("{SCENE}use plugin {what}\n");
+    let folder = Folder::new("required").with("a.scene", &scene("\"gyroid\" version \"^1\""));
+    let folder = folder.with(&format!("plugins/{}", library("gyroid")), "not a library");
+    let done = folder.luxel(&["check", "a.scene", "--plugin-dir", "plugins"]);
+    for part in ["E0414", "`gyroid` version `^1`", "no plugin library is loaded", "plugin trust"] {
+        assert!(done.code == 1 && done.err.contains(part), "{part}: {done:?}");
+    }
+    #[cfg(unix)]
+    {
+        super::faulty::build(&folder, super::faulty::NOTHING);
+        let check = [&["check", "a.scene"][..], &super::faulty::OPEN].concat();
+        folder.write("a.scene", &scene("\"faulty\" version \"^0.1\""));
+        let met = folder.luxel(&check);
+        assert!(met.code == 0, "{met:?}");
+        folder.write("a.scene", &scene("\"faulty\" version \"^0.2\""));
+        let other = folder.luxel(&check);
+        assert!(other.code == 1 && other.err.contains("loaded is `faulty` 0.1.0"), "{other:?}");
+    }
+}
+
+#[test]
 fn a_library_that_cannot_be_opened_is_told_with_its_reason_and_the_rest_works() {
     let scene = format!("{SCENE}shape gyroid {{}}\n");
     let folder = Folder::new("unopened").with("a.scene", &scene).with("plain.scene", SCENE);

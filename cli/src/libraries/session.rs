@@ -205,7 +205,7 @@ struct Trust<'a> {
 fn add(registry: &mut Registry, found: &mut Found) {
     let State::Loaded(opened) = &found.state else { return };
     let mut with = registry.clone();
-    match with.add(&opened.name, &opened.classes) {
+    match with.add_library(&opened.name, &opened.version, &opened.classes) {
         Ok(()) => *registry = with,
         Err(conflict) => found.state = State::Refused(conflict.to_string()),
     }

@@ -18,6 +18,8 @@ pub use film::{Display, FilmSettings};
 #[derive(Clone, Debug, Default)]
 pub struct Registry {
     classes: BTreeMap<Kind, BTreeMap<&'static str, Entry>>,
+    /// Libraries' versions, by name.
+    libraries: BTreeMap<String, String>,
 }
 
 /// A class and where it comes from.
@@ -76,6 +78,26 @@ impl Registry {
             self.classes.entry(class.kind).or_default().insert(class.name, entry);
         }
         Ok(())
+    }
+
+    /// Adds the classes of a library and remembers its version.
+    ///
+    /// # Errors
+    /// As [`Registry::add`].
+    pub fn add_library(
+        &mut self,
+        name: &str,
+        version: &str,
+        classes: &[Class],
+    ) -> Result<(), Conflict> {
+        self.add(name, classes)?;
+        self.libraries.insert(name.to_owned(), version.to_owned());
+        Ok(())
+    }
+
+    /// Name and version of every library, by name.
+    pub fn libraries(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.libraries.iter().map(|(name, version)| (name.as_str(), version.as_str()))
     }
 
     /// The class of that kind and name.

@@ -84,6 +84,7 @@ impl Evaluator<'_> {
                 let module = self.import(path, env);
                 env.define(&name.text, module);
             }
+            StmtNode::Use { name, version } => self.require(name, version.as_ref()),
             StmtNode::Set { path, value } => {
                 let found = self.eval(value, env);
                 self.set(path, found, value.span, env);

@@ -16,6 +16,7 @@ mod include;
 mod object;
 mod ops;
 mod params;
+mod require;
 mod resolve;
 mod types;
 mod value;

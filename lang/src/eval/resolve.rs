@@ -148,7 +148,7 @@ impl Resolver<'_> {
             }
             StmtNode::Set { value, .. } => self.expr(value),
             StmtNode::Assert { cond, .. } => self.expr(cond),
-            StmtNode::Units(_) => {}
+            StmtNode::Units(_) | StmtNode::Use { .. } => {}
             StmtNode::Field(field) => self.expr(&field.value),
             StmtNode::Object(object) => {
                 self.label(stmt, object.label.as_ref());

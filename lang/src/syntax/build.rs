@@ -23,9 +23,9 @@ pub(super) struct Builder<'a> {
 }
 
 /// Names that no definition may take.
-pub(super) const RESERVED: [&str; 17] = [
-    "let", "param", "fn", "for", "if", "else", "include", "import", "place", "set", "assert",
-    "units", "with", "as", "in", "true", "false",
+pub(super) const RESERVED: [&str; 18] = [
+    "let", "param", "fn", "for", "if", "else", "include", "import", "use", "place", "set",
+    "assert", "units", "with", "as", "in", "true", "false",
 ];
 
 fn is_keyword(rule: Rule) -> bool {
@@ -39,6 +39,9 @@ fn is_keyword(rule: Rule) -> bool {
             | Rule::kw_else
             | Rule::kw_include
             | Rule::kw_import
+            | Rule::kw_use
+            | Rule::kw_plugin
+            | Rule::kw_version
             | Rule::kw_place
             | Rule::kw_set
             | Rule::kw_assert
@@ -152,6 +155,10 @@ impl Builder<'_> {
             Rule::import_stmt => {
                 let path = self.string(take(&mut parts));
                 StmtNode::Import { path, name: self.definition(&take(&mut parts)) }
+            }
+            Rule::use_stmt => {
+                let name = self.string(take(&mut parts));
+                StmtNode::Use { name, version: parts.next().map(|part| self.string(part)) }
             }
             Rule::place_stmt => self.place(&mut parts),
             Rule::set_stmt => {

@@ -74,6 +74,10 @@ pub(crate) enum StmtNode {
         path: Quoted,
         name: Name,
     },
+    Use {
+        name: Quoted,
+        version: Option<Quoted>,
+    },
     Place {
         what: Expr,
         label: Option<Quoted>,

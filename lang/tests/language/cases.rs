@@ -14,11 +14,12 @@ use luxel_lang::{Settings, load};
 
 use crate::registry::registry;
 
-const CASES: [&str; 4] = [
+const CASES: [&str; 5] = [
     include_str!("../cases/syntax.txt"),
     include_str!("../cases/names.txt"),
     include_str!("../cases/units.txt"),
     include_str!("../cases/schema.txt"),
+    include_str!("../cases/plugins.txt"),
 ];
 
 /// What `CAMERA` in a case stands for.

@@ -353,5 +353,7 @@ pub(crate) fn registry() -> Registry {
             ],
         )
         .expect("each class stands once");
+    registry.add_library("velvet", "1.2.3", &[]).expect("it has no class");
+    registry.add_library("gyroid", "0.4.0-beta.1", &[]).expect("it has no class");
     registry
 }

@@ -84,6 +84,10 @@ impl Film {
         Self { size, window, tiles: (0..columns * rows).map(tile).collect(), columns }
     }
 
+    pub(crate) fn tiles(&self) -> &[Tile] {
+        &self.tiles
+    }
+
     pub(crate) fn tiles_mut(&mut self) -> &mut [Tile] {
         &mut self.tiles
     }

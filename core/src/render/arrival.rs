@@ -3,13 +3,15 @@
 use glam::{DVec3, Vec3};
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Arrival, ArrivalKind, Direct, Lobe, Needs, Phase, Sample, Samples, Scatter, Surface, Wants,
+    Arrival, ArrivalKind, Direct, Lobe, Material, Needs, Phase, Sample, Samples, Scatter, Sight,
+    Surface, Wants,
 };
-use luxel_sdk::num::{Frame, Ray, unit_and_length};
+use luxel_sdk::num::{Frame, Ray, offset_origin, unit_and_length};
 
 use super::path::{Path, Standing};
+use crate::cast::narrow;
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Origin, SceneHit, Skin, Stage};
+use crate::stage::{Origin, SceneHit, Seen, Skin, Stage};
 
 /// What is needed to shade: borrowed for one arrival.
 pub(super) struct Shader<'a, 's> {
@@ -31,6 +33,7 @@ impl Shader<'_, '_> {
             let (le, pdf) = self.stage.escaped(ray.d, &self.path.palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
+        at.sight.given = false;
     }
 
     /// The ray was scattered by a medium at `p`.
@@ -62,6 +65,14 @@ impl Shader<'_, '_> {
                 eta: 1.0,
             }));
         }
+        if self.wants.has(Wants::SIGHT) {
+            let u = self.samples.next_1d();
+            let seen = self.stage.eye.as_ref().and_then(|eye| eye.sees(self.stage, p, u));
+            at.sight.set(seen.and_then(|seen| {
+                let f = phase.eval(seen.d.as_vec3(), wo.as_vec3()).f * self.flight;
+                sight(self.stage, at, &seen, f)
+            }));
+        }
     }
 
     /// The ray met a surface.
@@ -90,13 +101,15 @@ impl Shader<'_, '_> {
         if let Skin::Material(material) = placement.skin {
             at.material = material;
             self.scatter(at, &surface, &numbers);
+        } else {
+            at.sight.given = false;
         }
     }
 
     /// The light sample and the scattering sample at a surface.
     #[inline(always)]
     fn scatter(&mut self, at: &mut Arrival, surface: &Surface, numbers: &Numbers) {
-        if !self.wants.has(Wants::DIRECT) && !self.wants.has(Wants::SCATTER) {
+        if self.wants.0 & SHADED.0 == 0 {
             return;
         }
         self.scratch.reset();
@@ -105,7 +118,7 @@ impl Shader<'_, '_> {
         let object = &self.stage.materials[at.material as usize];
         let material = object.resolve(&site, scratch).material();
         let needs = object.needs().unwrap_or_else(|| material.needs());
-        let local = Local::new(at, surface, needs);
+        let local = Local::new(at.wo, at, surface, needs);
         if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
             let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };
             let found =
@@ -121,6 +134,17 @@ impl Shader<'_, '_> {
                     f_pdf: eval.pdf,
                 })
             }));
+        }
+        if self.wants.has(Wants::SIGHT) {
+            let u = self.samples.next_1d();
+            let eye = self.stage.eye.as_ref().filter(|_| needs.has(Needs::LIGHT));
+            let seen = eye.and_then(|eye| eye.sees(self.stage, at.p, u));
+            let sight = seen.and_then(|seen| {
+                let local = Local::new(seen.d, at, surface, needs);
+                let f = seen_from(seen.d, &local, material, at)? * self.flight;
+                sight(self.stage, at, &seen, f)
+            });
+            at.sight.set(sight);
         }
         if self.wants.has(Wants::SCATTER) {
             // The pair is copied as such: read again at once in another size, it would be waited for.
@@ -142,6 +166,29 @@ impl Shader<'_, '_> {
         let usable = !weight.is_black();
         usable.then_some(Scatter { weight, wi, pdf: density(sample), eta: sample.eta })
     }
+}
+
+/// What a material is asked for.
+const SHADED: Wants = Wants::DIRECT.with(Wants::SCATTER).with(Wants::SIGHT);
+
+/// What the camera gets of a place from which `f` is sent towards it.
+pub(super) fn sight(stage: &Stage, at: &Arrival, seen: &Seen, f: Spectrum) -> Option<Sight> {
+    let f_we = f * narrow(seen.per_area);
+    if f_we.is_black() || !f_we.is_finite() {
+        return None;
+    }
+    let o = offset_origin(at.p, at.p_err, at.ng, seen.d);
+    let (d, t_max) = unit_and_length(stage.eye?.p - o);
+    Some(Sight { ray: Ray { o, d, t_max }, pixel: seen.pixel, f_we })
+}
+
+/// What a material sends along `d` to the camera, whose frame this is, of the light that comes from `wo`: seen
+/// as paths from the camera see it, whose formula is the same for bent normals and for refraction.
+fn seen_from(d: DVec3, local: &Local, material: &dyn Material, at: &Arrival) -> Option<Spectrum> {
+    let wi = local.of_world(at.wo)?;
+    // Light arrives as power through the surface, which the cosine to the geometry belongs to.
+    let cosines = (d.dot(at.ng) / at.wo.dot(at.ng)).abs();
+    Some(material.eval(local.wo, wi).f * narrow(cosines))
 }
 
 /// Everything that an arrival holds, as it is before it is shaded.
@@ -199,11 +246,11 @@ struct Local {
 
 impl Local {
     #[inline(always)]
-    fn new(at: &Arrival, surface: &Surface, needs: Needs) -> Self {
-        let outside = at.wo.dot(at.ng) > 0.0;
+    fn new(wo: DVec3, at: &Arrival, surface: &Surface, needs: Needs) -> Self {
+        let outside = wo.dot(at.ng) > 0.0;
         // Where the viewer is above one normal and below the other, the shading normal shows a side
         // that the surface does not have: the geometric one counts.
-        let agree = (at.wo.dot(at.ns) > 0.0) == outside;
+        let agree = (wo.dot(at.ns) > 0.0) == outside;
         let normal = if agree { at.ns } else { at.ng };
         let frame = if needs.has(Needs::TANGENT) {
             // Of any length, but in the range of single precision.
@@ -212,7 +259,7 @@ impl Local {
         } else {
             Frame::from_z(normal.as_vec3())
         };
-        Self { wo: frame.to_local(at.wo.as_vec3()), frame, ng: at.ng, outside }
+        Self { wo: frame.to_local(wo.as_vec3()), frame, ng: at.ng, outside }
     }
 
     /// A direction of the world; `None` where the normals disagree on its side, so that no light

@@ -1,14 +1,18 @@
 //! Passes over the picture's tiles, on several threads, with progress and cancellation.
 
 mod arrival;
+mod light;
 mod path;
+mod picture;
 mod shadow;
 mod tile;
+mod watched;
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use glam::UVec2;
+use luxel_sdk::kind::Wants;
 use rayon::prelude::*;
 
 use crate::film::{Film, Rect};
@@ -78,6 +82,9 @@ pub enum Outcome {
 /// Most samples of a pixel in one pass.
 const PASS: u32 = 16;
 
+/// What is prepared for paths from the camera.
+const FROM_CAMERA: Wants = Wants::EMISSION.with(Wants::DIRECT).with(Wants::SCATTER);
+
 /// Renders the stage.
 ///
 /// The same stage, samples and seed give the same bits for any number of threads and any crop.
@@ -97,12 +104,16 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
     let stop = Stop { control, alarm: stage.alarm(), failures: stage.alarm().count() };
     let (spp, seed) = (options.samples(stage), options.seed(stage));
     pool.install(|| {
+        let integrator = stage.integrator.fixed().integrator();
+        if let Some(owner) = integrator.as_picture() {
+            return picture::render(owner, stage, (spp, seed), &mut film, stop);
+        }
         let mut from = 0;
         while from < spp && !stop.is_asked() {
             // Passes grow: a first picture comes soon, later ones cost little to gather.
             let to = spp.min(from + from.clamp(1, PASS));
             film.tiles_mut().par_iter_mut().for_each_init(
-                || tile::Worker::new(stage, seed),
+                || tile::Worker::new(stage, seed, integrator, FROM_CAMERA, integrator.output()),
                 |worker, tile| worker.pass(tile, from..to, stop),
             );
             from = to;

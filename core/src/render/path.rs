@@ -6,7 +6,7 @@ use luxel_sdk::kind::CameraRay;
 use luxel_sdk::num::Ray;
 
 use crate::object::ColorMode;
-use crate::stage::{Leaving, MediumStack, Stage};
+use crate::stage::{Emitted, Leaving, MediumStack, Stage};
 
 /// One path, beside the integrator's own state.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +52,16 @@ impl Path {
         if stage.features.media {
             self.media = stage.camera_media;
         }
+    }
+
+    /// A path begins at a light; its wavelengths are chosen already.
+    pub(super) fn start_at_light(&mut self, job: u32, found: &Emitted) {
+        (self.job, self.weight, self.from) = (job, 1.0, found.ray.o);
+        (self.ended, self.media) = (false, found.media);
+        self.on = found.lamp.map(|lamp| {
+            let ng = lamp.surface.ng;
+            Standing { leaving: lamp.leaving, ng, outside: found.ray.d.dot(ng) > 0.0 }
+        });
     }
 
     /// The surface that a ray from here leaves.

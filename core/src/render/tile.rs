@@ -1,22 +1,23 @@
-//! One worker: keeps many paths of a tile in flight and adds their samples in order.
+//! One worker: keeps many paths in flight, of a tile or from lights, and adds their samples in order.
 
 use std::ops::Range;
 
 use glam::{DVec3, UVec2};
 use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
-    Arrival, Erased, Host, Job, Lane, Onward, Output, Raster, Requests, Round, SampleAt, Sampler,
-    Samples, Wants,
+    Arrival, Erased, Host, Integrator, Job, Lane, Onward, Output, Raster, Requests, Round,
+    SampleAt, Sampler, Samples, Shadow, Wants,
 };
 use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::hash_combine;
 
 use super::arrival::Shader;
+use super::light::{Bundle, Splat};
 use super::path::Path;
 use super::{Stop, shadow};
 use crate::accel::{Work, widest};
 use crate::cast;
-use crate::film::Tile;
+use crate::film::{Rect, Tile};
 use crate::object::{ColorMode, Scratch, Site};
 use crate::stage::{Leaving, SceneHit, Skin, Stage};
 
@@ -25,37 +26,48 @@ const LANES: usize = 128;
 
 /// What one thread needs; reused from tile to tile.
 pub(super) struct Worker<'s> {
-    stage: &'s Stage,
-    seed: u32,
-    sampler: &'s dyn Sampler,
-    wants: Wants,
+    pub(super) stage: &'s Stage,
+    pub(super) seed: u32,
+    pub(super) sampler: &'s dyn Sampler,
+    pub(super) wants: Wants,
     states: Box<dyn Erased + 's>,
-    lanes: Vec<Lane>,
-    paths: Vec<Path>,
+    /// What begins next.
+    pub(super) job: Job,
+    pub(super) lanes: Vec<Lane>,
+    pub(super) paths: Vec<Path>,
     free: Vec<u32>,
     /// What the running round answers, and what it asks for.
     now: Requests,
     next: Requests,
     hits: Vec<(Option<SceneHit>, u32)>,
     arrived: Vec<u32>,
-    results: Vec<DVec3>,
-    scratch: Scratch,
+    pub(super) results: Vec<DVec3>,
+    /// Light for other pixels than the path's own.
+    pub(super) splats: Vec<Splat>,
+    pub(super) scratch: Scratch,
     /// For a medium's parameters while its phase function is asked.
     medium_scratch: Scratch,
     to_rgb: Develop,
 }
 
 impl<'s> Worker<'s> {
-    pub(super) fn new(stage: &'s Stage, seed: u32) -> Self {
-        let integrator = stage.integrator.fixed().integrator();
+    /// Follows paths of an integrator, and prepares no more for them than `most`.
+    pub(super) fn new(
+        stage: &'s Stage,
+        seed: u32,
+        integrator: &'s dyn Integrator,
+        most: Wants,
+        output: Output,
+    ) -> Self {
         let at = SampleAt { stream: 0, index: 0, dimension: 0 };
         let lane = Lane { at: Arrival::default(), l: Spectrum::ZERO, numbers: at };
         Self {
             stage,
             seed,
             sampler: stage.sampler.fixed().sampler(),
-            wants: integrator.wants(),
+            wants: Wants(integrator.wants().0 & most.0),
             states: integrator.lanes(LANES),
+            job: Job::of_camera(Ray::new(DVec3::ZERO, DVec3::Z)),
             lanes: vec![lane; LANES],
             paths: vec![Path::new(stage); LANES],
             free: vec![],
@@ -64,23 +76,17 @@ impl<'s> Worker<'s> {
             hits: vec![],
             arrived: vec![],
             results: vec![],
+            splats: vec![],
             scratch: Scratch::default(),
             medium_scratch: Scratch::default(),
-            to_rgb: Develop::new(stage, integrator.output()),
+            to_rgb: Develop::new(stage, output),
         }
     }
 
     /// Adds the samples of a range to every pixel of a tile. A pass that is cancelled adds none.
     pub(super) fn pass(&mut self, tile: &mut Tile, range: Range<u32>, stop: Stop<'_>) {
-        if stop.is_asked() {
-            return;
-        }
-        let n_pixels = tile.rect.area();
-        let n = range.len();
-        self.results.clear();
-        self.results.resize(n_pixels * n, DVec3::ZERO);
-        let jobs = Jobs { origin: tile.rect.min, width: tile.rect.size.x, n_pixels, range };
-        if !self.run(&jobs, stop) {
+        let (n_pixels, n) = (tile.rect.area(), range.len());
+        if !self.samples(tile.rect, range, stop) {
             return;
         }
         for (pixel, estimate) in tile.pixels.iter_mut().enumerate() {
@@ -91,8 +97,17 @@ impl<'s> Worker<'s> {
         stop.control.add((n_pixels * n) as u64);
     }
 
+    /// Finds the samples of a range in every pixel of a rectangle: `results`, sample by sample.
+    /// False when cancelled.
+    pub(super) fn samples(&mut self, rect: Rect, range: Range<u32>, stop: Stop<'_>) -> bool {
+        self.results.clear();
+        self.results.resize(rect.area() * range.len(), DVec3::ZERO);
+        let (origin, width, n_pixels) = (rect.min, rect.size.x, rect.area());
+        !stop.is_asked() && self.run(&Jobs::Pixels { origin, width, n_pixels, range }, stop)
+    }
+
     /// Rounds until every job is done; false when cancelled.
-    fn run(&mut self, jobs: &Jobs, stop: Stop<'_>) -> bool {
+    pub(super) fn run(&mut self, jobs: &Jobs<'_>, stop: Stop<'_>) -> bool {
         let mut started = 0;
         self.free.clear();
         self.free.extend((0..cast::index(LANES)).rev());
@@ -114,17 +129,22 @@ impl<'s> Worker<'s> {
     }
 
     /// Starts jobs in the lanes that are free.
-    fn refill(&mut self, jobs: &Jobs, started: &mut usize) {
+    fn refill(&mut self, jobs: &Jobs<'_>, started: &mut usize) {
         while *started < jobs.len() {
             let Some(lane) = self.free.pop() else { return };
             let job = *started;
             *started += 1;
-            let Some(ray) = self.begin(jobs, job, lane as usize) else {
+            let begun = match jobs {
+                Jobs::Pixels { .. } => self.begin(jobs.at(job), job, lane as usize),
+                Jobs::Lights(bundle) => self.begin_at_light(bundle, job, lane as usize),
+            };
+            if begun.is_none() {
                 self.free.push(lane);
                 continue;
-            };
+            }
             let asked = self.next.rays.len() + self.next.shadows.len();
-            self.states.start(lane, &Job { ray }, &mut self.lanes[lane as usize].l, &mut self.next);
+            let l = &mut self.lanes[lane as usize].l;
+            self.states.start(lane, &self.job, l, &mut self.next);
             if asked == self.next.rays.len() + self.next.shadows.len() {
                 self.finish(lane as usize);
             }
@@ -132,8 +152,7 @@ impl<'s> Worker<'s> {
     }
 
     /// Puts a job into a lane: the camera's ray; `None` where the camera sees nothing.
-    fn begin(&mut self, jobs: &Jobs, job: usize, lane: usize) -> Option<Ray> {
-        let (pixel, index) = jobs.at(job);
+    fn begin(&mut self, (pixel, index): (UVec2, u32), job: usize, lane: usize) -> Option<()> {
         let stream = hash_combine(hash_combine(self.seed, pixel.x), pixel.y);
         let mut samples = Samples::new(self.sampler, SampleAt { stream, index, dimension: 0 });
         let [in_pixel, lens] = samples.next_2d_pair();
@@ -146,7 +165,8 @@ impl<'s> Worker<'s> {
         let found = camera.ray(raster, p, lens)?;
         self.paths[lane].start(cast::index(job), &found, u, self.stage);
         (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
-        Some(found.ray)
+        self.job.ray = found.ray;
+        Some(())
     }
 
     /// Light that depended on shadow rays, in asking order.
@@ -162,7 +182,12 @@ impl<'s> Worker<'s> {
             let scratch = &mut self.scratch;
             let left = shadow::passes(self.stage, &request.ray, path, &mut samples, scratch);
             lane.numbers = samples.at();
-            lane.l += request.l * left;
+            if request.pixel == Shadow::OWN {
+                lane.l += request.l * left;
+                continue;
+            }
+            let rgb = self.to_rgb.sample(request.l * left, &path.palette.wavelengths);
+            self.splats.push(Splat { pixel: request.pixel, rgb });
         }
     }
 
@@ -288,7 +313,9 @@ impl<'s> Worker<'s> {
     fn finish(&mut self, lane: usize) {
         let path = &self.paths[lane];
         let l = self.lanes[lane].l * path.weight;
-        self.results[path.job as usize] = self.to_rgb.sample(l, &path.palette.wavelengths);
+        if let Some(result) = self.results.get_mut(path.job as usize) {
+            *result = self.to_rgb.sample(l, &path.palette.wavelengths);
+        }
         self.free.push(cast::index(lane));
     }
 }
@@ -318,24 +345,34 @@ impl Work for Shade<'_, '_> {
     }
 }
 
-/// The samples of one pass over a tile: sample by sample, each over all pixels.
-struct Jobs {
-    origin: UVec2,
-    width: u32,
-    n_pixels: usize,
-    range: Range<u32>,
+/// What a worker is to do.
+pub(super) enum Jobs<'a> {
+    /// The samples of one pass over a rectangle: sample by sample, each over all pixels.
+    Pixels {
+        /// Upper left pixel.
+        origin: UVec2,
+        width: u32,
+        n_pixels: usize,
+        range: Range<u32>,
+    },
+    /// Paths from lights.
+    Lights(Bundle<'a>),
 }
 
-impl Jobs {
+impl Jobs<'_> {
     fn len(&self) -> usize {
-        self.n_pixels * self.range.len()
+        match self {
+            Self::Pixels { n_pixels, range, .. } => n_pixels * range.len(),
+            Self::Lights(bundle) => bundle.paths.len(),
+        }
     }
 
     /// The pixel and the index of its sample.
     fn at(&self, job: usize) -> (UVec2, u32) {
-        let (sample, pixel) = (job / self.n_pixels, cast::index(job % self.n_pixels));
-        let offset = UVec2::new(pixel % self.width, pixel / self.width);
-        (self.origin + offset, self.range.start + cast::index(sample))
+        let Self::Pixels { origin, width, n_pixels, range } = self else { return (UVec2::ZERO, 0) };
+        let (sample, pixel) = (job / n_pixels, cast::index(job % n_pixels));
+        let offset = UVec2::new(pixel % width, pixel / width);
+        (*origin + offset, range.start + cast::index(sample))
     }
 }
 
@@ -365,7 +402,7 @@ impl Develop {
 }
 
 /// What an integrator may ask the host while a path arrives.
-struct StageHost<'a>(&'a Stage);
+pub(super) struct StageHost<'a>(pub(super) &'a Stage);
 
 impl Host for StageHost<'_> {
     fn occluded(&self, ray: &Ray) -> bool {

@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use luxel_sdk::kind::{Kind, LightForm};
+use luxel_sdk::kind::{Kind, LightForm, Wants};
 use luxel_sdk::num::{Bounds3, Transform};
 use luxel_sdk::sampling::Alias;
 
 use super::flatten::{Flat, flatten};
 use super::lights::LightSource;
-use super::{Cache, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage};
+use super::{
+    Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage,
+};
 use super::{failures, features, import};
 use crate::accel::{BuildError, MeshBvh, TopBvh};
 use crate::cast::index;
@@ -57,11 +59,12 @@ pub fn build(
     match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
             let stage = finish(made, settings, objects, (scene, film, mode));
-            let failed = stage.failures();
-            if failed.is_empty() {
+            let mut found = stage.failures();
+            found.extend(unseen(&stage));
+            if found.is_empty() {
                 return Ok(Built { stage, warnings: diagnostics });
             }
-            diagnostics.extend(failed);
+            diagnostics.extend(found);
             Err(diagnostics)
         }
         _ => {
@@ -388,6 +391,7 @@ fn finish(
         filter: settings.filter,
         reach: sphere.1,
         camera_media: MediumStack::default(),
+        eye: None,
         cache: Cache { objects, meshes: made.meshes },
         scene,
         film,
@@ -395,6 +399,7 @@ fn finish(
         features,
         sphere,
     };
+    stage.eye = Eye::of(stage.camera.fixed().camera(), stage.film.resolution);
     if let Some(eye) = eye(&stage) {
         stage.reach = FOG_REACH * sphere.1.max(eye.distance(sphere.0));
         if stage.features.media {
@@ -402,6 +407,22 @@ fn finish(
         }
     }
     stage
+}
+
+/// An integrator that looks for the camera from where light is, and a camera that is no point.
+fn unseen(stage: &Stage) -> Option<Diagnostic> {
+    let integrator = stage.integrator.fixed().integrator();
+    let looks = integrator.as_picture().is_some() && integrator.wants().has(Wants::SIGHT);
+    if !looks || stage.eye.is_some() {
+        return None;
+    }
+    let name = stage.integrator.class().name;
+    let message = format!("`{name}` needs a camera whose lens is a point, as `perspective`");
+    let camera = stage.scene.camera.map(|id| stage.scene.node(id).span);
+    Some(match camera {
+        Some(span) => Diagnostic::error("E0422", span, message).label(span, "this camera"),
+        None => Diagnostic::unplaced("E0422", message),
+    })
 }
 
 /// How far the medium that fills the outside reaches, in radii of what holds the scene and the

@@ -1,5 +1,7 @@
 //! Which light is looked for, and what it sends.
 
+mod emission;
+
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec2};
@@ -12,6 +14,8 @@ use super::placement::carried;
 use super::{Geometry, Placement, Stage};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
+
+pub use emission::{EmissionNumbers, Emitted, Emitters, Lamp};
 
 /// A source of light of the stage.
 #[derive(Debug)]

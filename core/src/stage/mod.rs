@@ -5,6 +5,7 @@
 
 mod build;
 mod closed;
+mod eye;
 mod features;
 mod flatten;
 mod geometry;
@@ -28,9 +29,12 @@ use crate::registry::dynamic::{Alarm, FAILED};
 use crate::scene::{Hash, NodeId, Scene};
 
 pub use build::{Built, build};
+pub use eye::{Eye, Seen};
 pub use features::Features;
 pub use geometry::{Geometry, Mesh};
-pub use lights::{FoundLight, LightSource, Lights, Origin};
+pub use lights::{
+    EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights, Origin,
+};
 pub use media::MediumStack;
 pub use placement::{Leaving, Placement, SceneHit, Skin};
 pub use settings::{ColorChoice, Film};
@@ -76,6 +80,8 @@ pub struct Stage {
     pub reach: f64,
     /// The media that the camera stands in.
     pub camera_media: MediumStack,
+    /// The camera as paths from lights find it; `None` where its lens is no point.
+    pub eye: Option<Eye>,
     /// For the next build.
     cache: Cache,
 }

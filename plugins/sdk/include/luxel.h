@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0xafa70429c39d0511ull
+#define LUXEL_LAYOUT_HASH 0x071365a79ec0cd15ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -213,9 +213,26 @@ typedef struct {
     uint32_t dimension;
 } luxel_sample_at;
 
-/* One path to be followed. */
+/* Where the camera sees a place: the ray to its eye, the pixel by its place in the rows, and
+   what one unit of beta adds to the pixel. */
 typedef struct {
     luxel_ray ray;
+    uint32_t pixel;
+    luxel_spectrum f_we;
+} luxel_sight;
+
+/* A sight, where there is one. */
+typedef struct {
+    bool given;
+    luxel_sight value;
+} luxel_maybe_sight;
+
+/* One path to be followed: the camera's ray, or one that leaves a light, what it carries, and
+   where the camera sees the light. */
+typedef struct {
+    luxel_ray ray;
+    luxel_spectrum beta;
+    luxel_maybe_sight sight;
 } luxel_job;
 
 /* One light sample with the material's answer. */
@@ -262,6 +279,7 @@ typedef struct {
     float le_pdf;
     luxel_maybe_direct direct;
     luxel_maybe_scatter scatter;
+    luxel_maybe_sight sight;
 } luxel_arrival;
 
 /* A path in flight. */
@@ -277,10 +295,12 @@ typedef struct {
     uint32_t lane;
 } luxel_onward;
 
-/* A shadow ray with the light that it decides about. */
+/* A shadow ray with the light that it decides about, for the path's own pixel (UINT32_MAX) or
+   for another, by its place in the rows. */
 typedef struct {
     luxel_ray ray;
     uint32_t lane;
+    uint32_t pixel;
     luxel_spectrum l;
 } luxel_shadow;
 
@@ -335,6 +355,7 @@ typedef struct {
     uint64_t offset;
 } luxel_param;
 
+typedef struct { const luxel_ray *items; size_t len; } luxel_rays;
 /* A list of the host's. To add: if len == capacity call grow, then items[len++] = item. */
 typedef struct luxel_onward_queue {
     luxel_onward *items;
@@ -483,6 +504,59 @@ typedef struct {
     luxel_status (*cancelled)(const void *at);
 } luxel_context_table;
 
+/* Paths that a picture is made of: what happens when one begins and when it arrives. */
+typedef struct {
+    /* Bytes of this table. */
+    size_t size;
+    /* What the host prepares at each arrival, as the integrator's `wants`. */
+    luxel_status (*wants)(const void *at, uint32_t *out);
+    /* Bytes of what a path remembers. */
+    luxel_status (*state_bytes)(const void *at, uint64_t *out);
+    /* A path begins: writes its state and asks; says 0. */
+    luxel_status (*start)(const void *at, void *state, const luxel_job *job, luxel_ask *ask, uint32_t *out);
+    /* The paths in some lanes arrived; says 0. */
+    luxel_status (*arrive_n)(const void *at, luxel_lanes *lanes, const luxel_round_ref *round, luxel_requests *requests, uint32_t *out);
+} luxel_paths_table;
+
+/* Paths that a picture is made of; `last_panic` may be null. */
+typedef struct {
+    const luxel_paths_table *table;
+    const void *at;
+    void (*last_panic)(luxel_byte_sink *sink);
+} luxel_paths_ref;
+
+/* What the host does for an integrator that owns the picture. All say 0 that have nothing to
+   tell. */
+typedef struct {
+    /* Bytes of this table. */
+    size_t size;
+    /* The picture's size. */
+    luxel_status (*raster)(const void *at, luxel_raster *out);
+    /* Passes that were asked for: each gives every pixel one sample. */
+    luxel_status (*samples)(const void *at, uint32_t *out);
+    /* The seed. */
+    luxel_status (*seed)(const void *at, uint32_t *out);
+    /* Whether an end was asked for: 1 or 0. */
+    luxel_status (*is_cancelled)(const void *at, uint32_t *out);
+    /* Where rays arrive: positions alone. Room for as many results as there are rays. */
+    luxel_status (*trace_n)(const void *at, const luxel_rays *rays, luxel_arrival *arrivals, uint32_t *out);
+    /* Whether something lies along rays. Room for as many results as there are rays. */
+    luxel_status (*occluded_n)(const void *at, const luxel_rays *rays, bool *occluded, uint32_t *out);
+    /* Follows one path from the camera through every pixel; what it adds is added to this pass. */
+    luxel_status (*run_camera_paths)(const void *at, const luxel_paths_ref *paths, uint32_t *out);
+    /* Follows paths from the lights; what they splat, divided by their number, is added to this
+       pass. */
+    luxel_status (*run_light_paths)(const void *at, uint32_t n, const luxel_paths_ref *paths, uint32_t *out);
+    /* Ends the pass: its light becomes one sample of every pixel. */
+    luxel_status (*finish_pass)(const void *at, uint32_t *out);
+} luxel_picture_job_table;
+
+/* What the host does for an integrator that owns the picture. */
+typedef struct {
+    const luxel_picture_job_table *table;
+    const void *at;
+} luxel_picture_job_ref;
+
 /* What building may ask of the host. */
 typedef struct {
     const luxel_context_table *table;
@@ -578,7 +652,7 @@ typedef struct {
     /* Bytes of this table. */
     size_t size;
     /* What the host prepares at each arrival, as flags: 1 emission, 2 a light sample, 4 a
-       scattering sample. */
+       scattering sample, 8 where the camera sees it. Of what owns the picture: for all its paths. */
     luxel_status (*wants)(const void *at, uint32_t *out);
     /* What the lanes of its light mean: 0 values as they are, 1 linear sRGB. */
     luxel_status (*output)(const void *at, uint32_t *out);
@@ -588,6 +662,11 @@ typedef struct {
     luxel_status (*start)(const void *at, void *state, const luxel_job *job, luxel_ask *ask, uint32_t *out);
     /* The paths in some lanes arrived; says 0. */
     luxel_status (*arrive_n)(const void *at, luxel_lanes *lanes, const luxel_round_ref *round, luxel_requests *requests, uint32_t *out);
+    /* Whether it owns the whole picture: 1 or 0. Then `render` is called, and no path of its
+       own begins. May be null: it does not. */
+    luxel_status (*is_picture)(const void *at, uint32_t *out);
+    /* Makes the picture; says 0. Nothing where it does not own it; may be null then. */
+    luxel_status (*render)(const void *at, const luxel_picture_job_ref *job, uint32_t *out);
 } luxel_integrator_table;
 
 /* Bytes of another format into nodes of a scene. */
@@ -665,6 +744,10 @@ LUXEL_CHECK(sizeof(luxel_bytes) == 16, "size of luxel_bytes");
 LUXEL_CHECK(_Alignof(luxel_bytes) == 8, "alignment of luxel_bytes");
 LUXEL_CHECK(offsetof(luxel_bytes, items) == 0, "luxel_bytes.items");
 LUXEL_CHECK(offsetof(luxel_bytes, len) == 8, "luxel_bytes.len");
+LUXEL_CHECK(sizeof(luxel_rays) == 16, "size of luxel_rays");
+LUXEL_CHECK(_Alignof(luxel_rays) == 8, "alignment of luxel_rays");
+LUXEL_CHECK(offsetof(luxel_rays, items) == 0, "luxel_rays.items");
+LUXEL_CHECK(offsetof(luxel_rays, len) == 8, "luxel_rays.len");
 LUXEL_CHECK(sizeof(luxel_shadow_queue) == 32, "size of luxel_shadow_queue");
 LUXEL_CHECK(_Alignof(luxel_shadow_queue) == 8, "alignment of luxel_shadow_queue");
 LUXEL_CHECK(offsetof(luxel_shadow_queue, items) == 0, "luxel_shadow_queue.items");
@@ -778,9 +861,20 @@ LUXEL_CHECK(_Alignof(luxel_sample_at) == 4, "alignment of luxel_sample_at");
 LUXEL_CHECK(offsetof(luxel_sample_at, stream) == 0, "luxel_sample_at.stream");
 LUXEL_CHECK(offsetof(luxel_sample_at, index) == 4, "luxel_sample_at.index");
 LUXEL_CHECK(offsetof(luxel_sample_at, dimension) == 8, "luxel_sample_at.dimension");
-LUXEL_CHECK(sizeof(luxel_job) == 56, "size of luxel_job");
-LUXEL_CHECK(_Alignof(luxel_job) == 8, "alignment of luxel_job");
+LUXEL_CHECK(sizeof(luxel_sight) == 80, "size of luxel_sight");
+LUXEL_CHECK(_Alignof(luxel_sight) == 16, "alignment of luxel_sight");
+LUXEL_CHECK(offsetof(luxel_sight, ray) == 0, "luxel_sight.ray");
+LUXEL_CHECK(offsetof(luxel_sight, pixel) == 56, "luxel_sight.pixel");
+LUXEL_CHECK(offsetof(luxel_sight, f_we) == 64, "luxel_sight.f_we");
+LUXEL_CHECK(sizeof(luxel_maybe_sight) == 96, "size of luxel_maybe_sight");
+LUXEL_CHECK(_Alignof(luxel_maybe_sight) == 16, "alignment of luxel_maybe_sight");
+LUXEL_CHECK(offsetof(luxel_maybe_sight, given) == 0, "luxel_maybe_sight.given");
+LUXEL_CHECK(offsetof(luxel_maybe_sight, value) == 16, "luxel_maybe_sight.value");
+LUXEL_CHECK(sizeof(luxel_job) == 176, "size of luxel_job");
+LUXEL_CHECK(_Alignof(luxel_job) == 16, "alignment of luxel_job");
 LUXEL_CHECK(offsetof(luxel_job, ray) == 0, "luxel_job.ray");
+LUXEL_CHECK(offsetof(luxel_job, beta) == 64, "luxel_job.beta");
+LUXEL_CHECK(offsetof(luxel_job, sight) == 80, "luxel_job.sight");
 LUXEL_CHECK(sizeof(luxel_direct) == 96, "size of luxel_direct");
 LUXEL_CHECK(_Alignof(luxel_direct) == 16, "alignment of luxel_direct");
 LUXEL_CHECK(offsetof(luxel_direct, ray) == 0, "luxel_direct.ray");
@@ -801,7 +895,7 @@ LUXEL_CHECK(sizeof(luxel_maybe_scatter) == 64, "size of luxel_maybe_scatter");
 LUXEL_CHECK(_Alignof(luxel_maybe_scatter) == 16, "alignment of luxel_maybe_scatter");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, given) == 0, "luxel_maybe_scatter.given");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, value) == 16, "luxel_maybe_scatter.value");
-LUXEL_CHECK(sizeof(luxel_arrival) == 368, "size of luxel_arrival");
+LUXEL_CHECK(sizeof(luxel_arrival) == 464, "size of luxel_arrival");
 LUXEL_CHECK(_Alignof(luxel_arrival) == 16, "alignment of luxel_arrival");
 LUXEL_CHECK(offsetof(luxel_arrival, kind) == 0, "luxel_arrival.kind");
 LUXEL_CHECK(offsetof(luxel_arrival, p) == 8, "luxel_arrival.p");
@@ -817,11 +911,12 @@ LUXEL_CHECK(offsetof(luxel_arrival, le) == 160, "luxel_arrival.le");
 LUXEL_CHECK(offsetof(luxel_arrival, le_pdf) == 176, "luxel_arrival.le_pdf");
 LUXEL_CHECK(offsetof(luxel_arrival, direct) == 192, "luxel_arrival.direct");
 LUXEL_CHECK(offsetof(luxel_arrival, scatter) == 304, "luxel_arrival.scatter");
-LUXEL_CHECK(sizeof(luxel_lane) == 400, "size of luxel_lane");
+LUXEL_CHECK(offsetof(luxel_arrival, sight) == 368, "luxel_arrival.sight");
+LUXEL_CHECK(sizeof(luxel_lane) == 496, "size of luxel_lane");
 LUXEL_CHECK(_Alignof(luxel_lane) == 16, "alignment of luxel_lane");
 LUXEL_CHECK(offsetof(luxel_lane, at) == 0, "luxel_lane.at");
-LUXEL_CHECK(offsetof(luxel_lane, l) == 368, "luxel_lane.l");
-LUXEL_CHECK(offsetof(luxel_lane, numbers) == 384, "luxel_lane.numbers");
+LUXEL_CHECK(offsetof(luxel_lane, l) == 464, "luxel_lane.l");
+LUXEL_CHECK(offsetof(luxel_lane, numbers) == 480, "luxel_lane.numbers");
 LUXEL_CHECK(sizeof(luxel_onward) == 64, "size of luxel_onward");
 LUXEL_CHECK(_Alignof(luxel_onward) == 8, "alignment of luxel_onward");
 LUXEL_CHECK(offsetof(luxel_onward, ray) == 0, "luxel_onward.ray");
@@ -830,6 +925,7 @@ LUXEL_CHECK(sizeof(luxel_shadow) == 80, "size of luxel_shadow");
 LUXEL_CHECK(_Alignof(luxel_shadow) == 16, "alignment of luxel_shadow");
 LUXEL_CHECK(offsetof(luxel_shadow, ray) == 0, "luxel_shadow.ray");
 LUXEL_CHECK(offsetof(luxel_shadow, lane) == 56, "luxel_shadow.lane");
+LUXEL_CHECK(offsetof(luxel_shadow, pixel) == 60, "luxel_shadow.pixel");
 LUXEL_CHECK(offsetof(luxel_shadow, l) == 64, "luxel_shadow.l");
 LUXEL_CHECK(sizeof(luxel_scene_sphere) == 32, "size of luxel_scene_sphere");
 LUXEL_CHECK(_Alignof(luxel_scene_sphere) == 8, "alignment of luxel_scene_sphere");
@@ -910,6 +1006,15 @@ LUXEL_CHECK(offsetof(luxel_lanes, lanes) == 0, "luxel_lanes.lanes");
 LUXEL_CHECK(offsetof(luxel_lanes, n_lanes) == 8, "luxel_lanes.n_lanes");
 LUXEL_CHECK(offsetof(luxel_lanes, states) == 16, "luxel_lanes.states");
 LUXEL_CHECK(offsetof(luxel_lanes, arrived) == 24, "luxel_lanes.arrived");
+LUXEL_CHECK(sizeof(luxel_paths_ref) == 24, "size of luxel_paths_ref");
+LUXEL_CHECK(_Alignof(luxel_paths_ref) == 8, "alignment of luxel_paths_ref");
+LUXEL_CHECK(offsetof(luxel_paths_ref, table) == 0, "luxel_paths_ref.table");
+LUXEL_CHECK(offsetof(luxel_paths_ref, at) == 8, "luxel_paths_ref.at");
+LUXEL_CHECK(offsetof(luxel_paths_ref, last_panic) == 16, "luxel_paths_ref.last_panic");
+LUXEL_CHECK(sizeof(luxel_picture_job_ref) == 16, "size of luxel_picture_job_ref");
+LUXEL_CHECK(_Alignof(luxel_picture_job_ref) == 8, "alignment of luxel_picture_job_ref");
+LUXEL_CHECK(offsetof(luxel_picture_job_ref, table) == 0, "luxel_picture_job_ref.table");
+LUXEL_CHECK(offsetof(luxel_picture_job_ref, at) == 8, "luxel_picture_job_ref.at");
 LUXEL_CHECK(sizeof(luxel_context_ref) == 16, "size of luxel_context_ref");
 LUXEL_CHECK(_Alignof(luxel_context_ref) == 8, "alignment of luxel_context_ref");
 LUXEL_CHECK(offsetof(luxel_context_ref, table) == 0, "luxel_context_ref.table");

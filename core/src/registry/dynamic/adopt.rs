@@ -8,8 +8,8 @@ use luxel_sdk::abi::{
 };
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Eval, Hit, Kind, Light, LightForm, Material, Sample, Shape, ShapeSample, Surface, Texture,
-    TexturePoint,
+    Arrival, Ask, Eval, Hit, Host, Job, Kind, Light, LightForm, Material, PathIntegrator, Sample,
+    Samples, Shape, ShapeSample, Surface, Texture, TexturePoint, Wants,
 };
 use luxel_sdk::num::{Bounds3, Ray};
 
@@ -52,7 +52,10 @@ pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, Stri
         Kind::Camera => table!(CameraTable),
         Kind::Sampler => table!(SamplerTable),
         Kind::Filter => table!(FilterTable),
-        Kind::Integrator => table!(IntegratorTable),
+        Kind::Integrator => table!(
+            IntegratorTable,
+            Some((IntegratorTable::of::<Without>(), &["is_picture", "render"]))
+        ),
         Kind::Importer => table!(ImporterTable),
         Kind::Film => Err("the film belongs to the host".to_owned()),
     }
@@ -106,6 +109,16 @@ impl Material for Without {
     }
     fn sample(&self, _: Vec3, _: [f32; 3]) -> Option<Sample> {
         None
+    }
+}
+
+impl PathIntegrator for Without {
+    type State = ();
+    fn wants(&self) -> Wants {
+        Wants::POSITION
+    }
+    fn start(&self, _: &Job, _: &mut Ask<'_>) {}
+    fn arrive(&self, (): &mut (), _: &Arrival, _: &mut Samples<'_>, _: &dyn Host, _: &mut Ask<'_>) {
     }
 }
 

@@ -25,7 +25,7 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, SharedFns};
 
 pub use inspect::inspect;
-pub(crate) use remote::{FAILED, Head};
+pub(crate) use remote::{Conduct, FAILED, Head};
 pub use watch::{Alarm, Watch};
 
 /// What the symbol of a library's table begins with; its file's stem follows.

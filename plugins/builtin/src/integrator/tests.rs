@@ -69,7 +69,7 @@ fn radiance(integrator: &dyn Integrator, at: &Arrival, index: u32) -> f64 {
     let mut states = integrator.lanes(1);
     let round = Round { host: &Open, sampler: &Numbers };
     let (mut requests, mut shadows) = (Requests::default(), Spectrum::ZERO);
-    let job = Job { ray: Ray::new(DVec3::ZERO, DVec3::NEG_Z) };
+    let job = Job::of_camera(Ray::new(DVec3::ZERO, DVec3::NEG_Z));
     states.start(0, &job, &mut lanes[0].l, &mut requests);
     while !requests.rays.is_empty() {
         requests.clear();

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use super::layout::{Described, Layout, describe, hash, layouts};
 use super::table::{
     CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
-    MaterialTable, MediumTable, MeshSink, PhaseRef, PhaseTable, RoundRef, SamplerRef, SamplerTable,
-    SamplesRef, SceneSphere, ShapeTable, TextureTable, Triangles,
+    MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
+    PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
+    ShapeTable, TextureTable, Triangles,
 };
 use super::{
     ABI_MAJOR, ABI_MINOR, Built, ByteSink, ClassTable, ContextRef, ContextTable, FaultSink, HANDLE,
@@ -17,7 +18,7 @@ use crate::color::{Spectrum, Wavelengths};
 use crate::kind::{
     Arrival, Ask, CameraRay, Direct, Escaped, Eval, FreeFlight, Hit, Job, Kind, Lane, LightQuery,
     LightSample, Onward, Queue, Raster, Requests, Sample, SampleAt, Scatter, Shadow, ShapeSample,
-    Surface, TexturePoint,
+    Sight, Surface, TexturePoint,
 };
 use crate::num::{Bounds3, Ray};
 use crate::params::{ComplexIor, Emission, Look, Maybe, Text};
@@ -31,6 +32,7 @@ layouts! { WRITTEN {
     Spectrum => "luxel_spectrum" {}
     Text<'static> => "luxel_text" { ptr, len }
     Slice<u8> => "luxel_bytes" { items, len }
+    Slice<Ray> => "luxel_rays" { items, len }
     Queue<Shadow> => "luxel_shadow_queue" { items, len, capacity, grow }
     Maybe<f32> => "luxel_maybe_float" { given, value }
     Maybe<f64> => "luxel_maybe_double" { given, value }
@@ -78,8 +80,14 @@ describe! { PLAIN, PLAIN_C {
     CameraRay => "luxel_camera_ray" { ray, weight }
     /// Which random number.
     SampleAt => "luxel_sample_at" { stream, index, dimension }
-    /// One path to be followed.
-    Job => "luxel_job" { ray }
+    /// Where the camera sees a place: the ray to its eye, the pixel by its place in the rows, and
+    /// what one unit of beta adds to the pixel.
+    Sight => "luxel_sight" { ray, pixel, f_we }
+    /// A sight, where there is one.
+    Maybe<Sight> => "luxel_maybe_sight" { given, value }
+    /// One path to be followed: the camera's ray, or one that leaves a light, what it carries, and
+    /// where the camera sees the light.
+    Job => "luxel_job" { ray, beta, sight }
     /// One light sample with the material's answer.
     Direct => "luxel_direct" { ray, f_le, pdf, f_pdf }
     /// One scattering sample, in world space.
@@ -90,14 +98,15 @@ describe! { PLAIN, PLAIN_C {
     Maybe<Scatter> => "luxel_maybe_scatter" { given, value }
     /// A point that a path arrived at. Kinds: 0 escaped, 1 surface, 2 medium.
     Arrival => "luxel_arrival" {
-        kind, p, p_err, ng, ns, uv, t, wo, material, steps, le, le_pdf, direct, scatter,
+        kind, p, p_err, ng, ns, uv, t, wo, material, steps, le, le_pdf, direct, scatter, sight,
     }
     /// A path in flight.
     Lane => "luxel_lane" { at, l, numbers }
     /// A ray with the path that goes on along it.
     Onward => "luxel_onward" { ray, lane }
-    /// A shadow ray with the light that it decides about.
-    Shadow => "luxel_shadow" { ray, lane, l }
+    /// A shadow ray with the light that it decides about, for the path's own pixel (UINT32_MAX) or
+    /// for another, by its place in the rows.
+    Shadow => "luxel_shadow" { ray, lane, pixel, l }
     /// A sphere around the scene.
     SceneSphere => "luxel_scene_sphere" { centre, radius }
     /// Triangles that a shape hands over.
@@ -141,12 +150,22 @@ describe! { ROUND, ROUND_C {
     Lanes => "luxel_lanes" { lanes, n_lanes, states, arrived }
 } }
 
+describe! { PATHS, PATHS_C {
+    /// Paths that a picture is made of; `last_panic` may be null.
+    PathsRef<'static> => "luxel_paths_ref" { table, at, last_panic }
+} }
+
+describe! { JOBS, JOBS_C {
+    /// What the host does for an integrator that owns the picture.
+    PictureJobRef<'static> => "luxel_picture_job_ref" { table, at }
+} }
+
 describe! { LIBRARY, LIBRARY_C {
     /// What building may ask of the host.
     ContextRef<'static> => "luxel_context_ref" { table, at }
 } }
 
-const ALL: &[&[Layout]] = &[WRITTEN, PLAIN, REQUESTS, HANDLES, ROUND, LIBRARY, TABLES];
+const ALL: &[&[Layout]] = &[WRITTEN, PLAIN, REQUESTS, HANDLES, ROUND, PATHS, JOBS, LIBRARY, TABLES];
 
 layouts! { TABLES {
     MeshSink => "luxel_mesh_sink" { take, owner }
@@ -182,6 +201,10 @@ pub fn header() -> String {
     HostTable::describe(&mut out);
     each(ROUND_C, &mut out);
     out.push_str(include_str!("header/sinks.h"));
+    PathsTable::describe(&mut out);
+    each(PATHS_C, &mut out);
+    PictureJobTable::describe(&mut out);
+    each(JOBS_C, &mut out);
     each(LIBRARY_C, &mut out);
     ShapeTable::describe(&mut out);
     TextureTable::describe(&mut out);

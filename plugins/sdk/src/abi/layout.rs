@@ -70,7 +70,7 @@ c_types! {
     crate::params::Maybe<f32> => "luxel_maybe_float",
     crate::params::Maybe<f64> => "luxel_maybe_double",
     super::Slice<u8> => "luxel_bytes", super::Slice<u32> => "luxel_u32s",
-    super::Slice<f64> => "luxel_doubles", super::Slice<glam::Vec2> => "luxel_vec2s",
+    super::Slice<crate::num::Ray> => "luxel_rays", super::Slice<f64> => "luxel_doubles", super::Slice<glam::Vec2> => "luxel_vec2s",
     super::Slice<glam::Vec3> => "luxel_vec3s", super::Slice<[u32; 3]> => "luxel_triangles_of",
     super::Slice<crate::params::Text<'static>> => "luxel_texts",
     super::Slice<super::ParamTable> => "luxel_params",
@@ -113,6 +113,21 @@ impl<T: CType> CType for &mut MaybeUninit<T> {
 impl CType for *mut crate::kind::Lane {
     fn declare(name: &str) -> String {
         crate::kind::Lane::declare(&format!("*{name}"))
+    }
+}
+impl CType for *mut crate::kind::Arrival {
+    fn declare(name: &str) -> String {
+        crate::kind::Arrival::declare(&format!("*{name}"))
+    }
+}
+impl CType for *mut bool {
+    fn declare(name: &str) -> String {
+        bool::declare(&format!("*{name}"))
+    }
+}
+impl CType for Option<super::TellPanic> {
+    fn declare(name: &str) -> String {
+        format!("void (*{name})(luxel_byte_sink *sink)")
     }
 }
 impl CType for *const u8 {

@@ -23,7 +23,7 @@ use std::marker::PhantomData;
 
 use crate::kind::{
     Camera, Filter, Importer, Integrator, Kind, Light, Material, Medium, PathIntegrator, Phase,
-    Sampler, Shape, Texture,
+    Picture, PictureIntegrator, Sampler, Shape, Texture,
 };
 use crate::params::{Fault, Field, Param, Params, SharedFns, Text, Type};
 
@@ -36,12 +36,13 @@ pub use library::{
     PANIC_NONE, PANIC_UNWIND, ParamTable, TYPES, begin, class_tables, count,
     last_panic as tell_last_panic, param_tables,
 };
-pub use plain::{ByteSink, FaultSink, Slice};
+pub use plain::{ByteSink, FaultSink, Slice, TellPanic};
 pub use shared::{build_shared, build_shared_abi, free_shared};
 pub use table::{
     CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
-    MaterialTable, MediumTable, MeshSink, PhaseRef, PhaseTable, RoundRef, SamplerRef, SamplerTable,
-    SamplesRef, SceneSphere, ShapeTable, TextureTable, Triangles,
+    MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
+    PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
+    ShapeTable, TextureTable, Triangles,
 };
 
 /// A lifetime as a value: how long the bytes behind a view are lent.
@@ -168,8 +169,17 @@ impl Class {
     }
 }
 
+/// A parameter struct that is its own behaviour.
+type Itself<T> = T;
+
 macro_rules! class {
     ($doc:literal, $fun:ident, $kind:ident, $trait:ident, $table:ident $(, $prepare:ident)?) => {
+        class!($doc, $fun, $kind, $trait as Itself, $table $(, $prepare)?);
+    };
+    (
+        $doc:literal, $fun:ident, $kind:ident, $trait:ident as $seen:ident, $table:ident
+        $(, $prepare:ident)?
+    ) => {
         impl Class {
             #[doc = $doc]
             pub const fn $fun<T>(name: &'static str) -> Self
@@ -182,7 +192,7 @@ macro_rules! class {
                     for<'x> T::At<'x>: $trait,
                 {
                     // SAFETY: the caller lends a valid struct of this class for 'a.
-                    unsafe { &*p.cast::<T::At<'a>>() }
+                    unsafe { &*p.cast::<$seen<T::At<'a>>>() }
                 }
                 unsafe fn check<T: $trait>(p: *const u8) -> Result<(), Fault> {
                     // SAFETY: the caller passes a valid struct of this class.
@@ -199,7 +209,7 @@ macro_rules! class {
                     })
                 }
                 let base = Self::base::<T>(Kind::$kind, name, View::$kind(view::<T>));
-                let behaviour = std::ptr::from_ref($table::of::<T>()).cast();
+                let behaviour = std::ptr::from_ref($table::of::<$seen<T>>()).cast();
                 let table = ClassTable { check: Some(check_abi::<T>), behaviour, ..base.table };
                 let class = Self { check: check::<T>, table, ..base };
                 $(if T::DERIVED {
@@ -232,4 +242,12 @@ class!("A camera.", camera, Camera, Camera, CameraTable, prepare);
 class!("A sampler.", sampler, Sampler, Sampler, SamplerTable, prepare);
 class!("A filter.", filter, Filter, Filter, FilterTable, prepare);
 class!("An integrator.", integrator, Integrator, PathIntegrator, IntegratorTable, prepare);
+class!(
+    "An integrator that owns the whole picture.",
+    picture_integrator,
+    Integrator,
+    PictureIntegrator as Picture,
+    IntegratorTable,
+    prepare
+);
 class!("An importer.", importer, Importer, Importer, ImporterTable);

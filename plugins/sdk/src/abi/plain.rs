@@ -65,6 +65,9 @@ pub struct ByteSink {
     pub owner: *mut u8,
 }
 
+/// Tells what the last panic on this thread said.
+pub type TellPanic = unsafe extern "C" fn(&mut ByteSink);
+
 /// Where faults in parameters go, as many as are found.
 #[repr(C)]
 pub struct FaultSink {

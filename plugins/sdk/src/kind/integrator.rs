@@ -7,7 +7,7 @@ use glam::{DVec3, Vec2};
 
 use super::flags::flag_set;
 use super::queue::Queue;
-use super::{Output, SampleAt, Sampler, Samples};
+use super::{Output, PictureIntegrator, SampleAt, Sampler, Samples, Sight};
 use crate::color::Spectrum;
 use crate::num::{Ray, offset_origin};
 use crate::params::{Fault, Maybe};
@@ -26,6 +26,8 @@ impl Wants {
     pub const DIRECT: Self = Self(2);
     /// One scattering sample.
     pub const SCATTER: Self = Self(4);
+    /// Where the camera would see the place: for paths that come from lights.
+    pub const SIGHT: Self = Self(8);
 }
 flag_set!(Wants);
 
@@ -33,8 +35,20 @@ flag_set!(Wants);
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Job {
-    /// The camera's ray, world space, unit direction.
+    /// The camera's ray, or one that leaves a light; world space, unit direction.
     pub ray: Ray,
+    /// What it carries. From a light: `le·|cos| / pdf`, W; from the camera: 1.
+    pub beta: Spectrum,
+    /// Where the camera sees the place that the light leaves. With it the light that goes there is
+    /// `f_we`, whatever `beta` is.
+    pub sight: Maybe<Sight>,
+}
+
+impl Job {
+    /// A path from the camera.
+    pub fn of_camera(ray: Ray) -> Self {
+        Self { ray, beta: Spectrum::ONE, sight: Maybe::default() }
+    }
 }
 
 /// Where a path arrived.
@@ -118,6 +132,8 @@ pub struct Arrival {
     pub direct: Maybe<Direct>,
     /// A scattering sample, if the path can go on.
     pub scatter: Maybe<Scatter>,
+    /// Where the camera sees it, if it does.
+    pub sight: Maybe<Sight>,
 }
 
 impl Arrival {
@@ -169,8 +185,15 @@ pub struct Shadow {
     pub ray: Ray,
     /// Whose.
     pub lane: u32,
+    /// Which pixel gets it: `Shadow::OWN`, or any, by its place in the rows.
+    pub pixel: u32,
     /// What arrives if nothing lies between.
     pub l: Spectrum,
+}
+
+impl Shadow {
+    /// The pixel that the path came from.
+    pub const OWN: u32 = u32::MAX;
 }
 
 /// The rays that a round of arrivals asked for, in asking order.
@@ -220,7 +243,16 @@ impl<'a> Ask<'a> {
     /// per arrival.
     pub fn add_if_visible(&mut self, ray: Ray, l: Spectrum) {
         if !l.is_black() {
-            self.requests.shadows.push(Shadow { ray, lane: self.lane, l });
+            self.requests.shadows.push(Shadow { ray, lane: self.lane, pixel: Shadow::OWN, l });
+        }
+    }
+
+    /// Light for the pixel where the camera sees this place, if nothing lies between, dimmed by the
+    /// media. Any number per arrival; paths from lights alone have a place to see.
+    pub fn splat_if_visible(&mut self, sight: &Sight, l: Spectrum) {
+        if !l.is_black() {
+            let Sight { ray, pixel, .. } = *sight;
+            self.requests.shadows.push(Shadow { ray, lane: self.lane, pixel, l });
         }
     }
 }
@@ -262,6 +294,11 @@ pub trait PathIntegrator: Send + Sync {
         host: &dyn Host,
         ask: &mut Ask<'_>,
     );
+
+    /// The same as what owns the whole picture: nothing, for what follows one path at a time.
+    fn as_picture(&self) -> Option<&dyn PictureIntegrator> {
+        None
+    }
 }
 
 /// One path in flight, as host and integrator share it.
@@ -301,6 +338,9 @@ pub trait Erased: Send {
 }
 
 /// An integrator, its path state forgotten. Every `PathIntegrator` is one.
+///
+/// Integrators come in two sizes: where `as_picture` gives one, it is asked to render, and no path
+/// of its own is ever begun.
 pub trait Integrator: Send + Sync {
     /// What the host prepares at each arrival.
     fn wants(&self) -> Wants;
@@ -310,6 +350,11 @@ pub trait Integrator: Send + Sync {
 
     /// Room for `n` paths.
     fn lanes<'a>(&'a self, n: usize) -> Box<dyn Erased + 'a>;
+
+    /// The same as what owns the whole picture, if it does.
+    fn as_picture(&self) -> Option<&dyn PictureIntegrator> {
+        None
+    }
 }
 
 struct States<'a, I: PathIntegrator> {
@@ -363,6 +408,10 @@ impl<I: PathIntegrator> Integrator for I {
 
     fn lanes<'a>(&'a self, n: usize) -> Box<dyn Erased + 'a> {
         Box::new(States { integrator: self, states: vec![I::State::default(); n] })
+    }
+
+    fn as_picture(&self) -> Option<&dyn PictureIntegrator> {
+        PathIntegrator::as_picture(self)
     }
 }
 

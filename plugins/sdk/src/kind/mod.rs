@@ -9,9 +9,11 @@ mod light;
 mod material;
 mod medium;
 mod phase;
+mod picture;
 mod queue;
 mod sampler;
 mod shape;
+mod sight;
 mod texture;
 
 pub use camera::{Camera, CameraRay, Raster};
@@ -26,10 +28,12 @@ pub use light::{Escaped, Light, LightForm, LightQuery, LightSample};
 pub use material::{Eval, Lobe, Material, Needs, Sample, reflect};
 pub use medium::{FreeFlight, Medium};
 pub use phase::Phase;
+pub use picture::{Picture, PictureIntegrator, PictureJob};
 pub use queue::Queue;
 pub use sampler::{SampleAt, Sampler, Samples};
 pub use shape::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+pub use sight::Sight;
 pub use texture::{Output, Texture, TexturePoint};
 
-pub use crate::abi::{MaterialRef, PhaseRef};
+pub use crate::abi::{MaterialRef, PathsRef, PhaseRef};
 pub use crate::params::Kind;

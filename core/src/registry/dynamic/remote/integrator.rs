@@ -1,12 +1,12 @@
-use luxel_sdk::abi::{IntegratorTable, Lanes, RoundRef, Slice};
+use luxel_sdk::abi::{IntegratorTable, Lanes, PictureJobRef, RoundRef, Slice};
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Ask, Erased, Integrator, Job, Lane, Output, Requests, Round, SampleAt, Wants,
+    Ask, Erased, Integrator, Job, Lane, Output, PictureIntegrator, PictureJob, Requests, Round,
+    Wants,
 };
-use luxel_sdk::num::Ray;
 
 use super::Head;
-use super::medium::{NOT_ITS_OWN, goes_on};
+use super::conduct::Conduct;
 use super::texture::output;
 
 /// A library's integrator.
@@ -47,20 +47,36 @@ impl Integrator for RemoteIntegrator {
         }
         let stride = usize::try_from(bytes.min(MOST_STATE)).unwrap_or(0);
         let states = vec![0u128; (stride * n).div_ceil(size_of::<u128>())];
-        let (table, lanes) = (self.table(), vec![Asked::Nothing; n]);
-        Box::new(RemoteStates { head: &self.0, table, states, stride, lanes, numbers: vec![] })
+        let (table, conduct) = (self.table(), Conduct::new(n));
+        Box::new(RemoteStates { head: &self.0, table, states, stride, conduct })
+    }
+
+    fn as_picture(&self) -> Option<&dyn PictureIntegrator> {
+        // SAFETY: as above.
+        let is_picture = self.0.found(unsafe { self.table().is_picture(self.0.at()) });
+        if is_picture == Some(1) { Some(self) } else { None }
     }
 }
 
-/// What a path may still ask for in this round.
-#[derive(Clone, Copy, PartialEq)]
-enum Asked {
-    /// Nothing: it has not arrived.
-    Nothing,
-    /// To go on, once.
-    Arrived,
-    /// It has asked to go on.
-    GoesOn,
+impl PictureIntegrator for RemoteIntegrator {
+    fn wants(&self) -> Wants {
+        Integrator::wants(self)
+    }
+
+    fn output(&self) -> Output {
+        Integrator::output(self)
+    }
+
+    fn render(&self, job: &dyn PictureJob) {
+        if self.0.is_poisoned() {
+            return;
+        }
+        // SAFETY: the struct behind the head is of the class that the table belongs to.
+        let answer = unsafe { self.table().render(self.0.at(), &PictureJobRef::new(&job)) };
+        if self.0.found(answer).is_none() && !self.0.is_poisoned() {
+            self.0.wrong("owns the picture, but does not render it");
+        }
+    }
 }
 
 /// The states of paths, as bytes.
@@ -69,9 +85,7 @@ struct RemoteStates<'a> {
     table: &'static IntegratorTable,
     states: Vec<u128>,
     stride: usize,
-    lanes: Vec<Asked>,
-    /// Where the random numbers of the paths that arrived stand.
-    numbers: Vec<SampleAt>,
+    conduct: Conduct,
 }
 
 // SAFETY: the SDK demands of states that they are `Send`.
@@ -82,41 +96,11 @@ impl RemoteStates<'_> {
         self.states.as_mut_ptr().cast()
     }
 
-    /// Whether what a call has added to the requests may be followed. Else the render ends, and
-    /// nothing of it is.
-    fn judge(&mut self, before: [usize; 2], requests: &mut Requests) {
-        if let Some(told) = self.fault(before, requests) {
+    /// The render ends where paths misbehaved.
+    fn judge(&self, told: Option<&'static str>) {
+        if let Some(told) = told {
             self.head.wrong(told);
-            requests.clear();
         }
-    }
-
-    fn fault(&mut self, [rays, shadows]: [usize; 2], requests: &Requests) -> Option<&'static str> {
-        if requests.rays.is_full() || requests.shadows.is_full() {
-            return Some("asked for more than a million rays at once");
-        }
-        let (Some(rays), Some(shadows)) =
-            (requests.rays.get(rays..), requests.shadows.get(shadows..))
-        else {
-            return Some("took back what other paths asked for");
-        };
-        for onward in rays {
-            let Ray { o, d, t_max } = onward.ray;
-            match self.lanes.get_mut(onward.lane as usize) {
-                Some(lane) if *lane == Asked::Arrived => *lane = Asked::GoesOn,
-                Some(lane) if *lane == Asked::GoesOn => return Some("asked twice for one path"),
-                _ => return Some("asked for a path that did not arrive"),
-            }
-            if !(o.is_finite() && d.is_normalized() && t_max > 0.0) {
-                return Some("asked for a ray that is not finite or not of unit length");
-            }
-        }
-        for shadow in shadows {
-            if self.lanes.get(shadow.lane as usize).is_none_or(|lane| *lane == Asked::Nothing) {
-                return Some("asked for a path that did not arrive");
-            }
-        }
-        None
     }
 }
 
@@ -125,18 +109,15 @@ impl Erased for RemoteStates<'_> {
         if self.head.is_poisoned() {
             return;
         }
-        let before = [requests.rays.len(), requests.shadows.len()];
-        requests.rays.limit();
-        requests.shadows.limit();
-        self.lanes[lane as usize] = Asked::Arrived;
+        self.conduct.before_start(lane, requests);
         let state = self.states().wrapping_add(lane as usize * self.stride);
         // SAFETY: the struct behind the head is of the class that the table belongs to.
         let answer = unsafe {
             self.table.start(self.head.at(), state, job, &mut Ask::new(lane, l, requests))
         };
         self.head.found(answer);
-        self.judge(before, requests);
-        self.lanes[lane as usize] = Asked::Nothing;
+        let told = self.conduct.after_start(lane, requests);
+        self.judge(told);
     }
 
     fn arrive_n(
@@ -149,14 +130,7 @@ impl Erased for RemoteStates<'_> {
         if self.head.is_poisoned() {
             return;
         }
-        let before = [requests.rays.len(), requests.shadows.len()];
-        requests.rays.limit();
-        requests.shadows.limit();
-        self.numbers.clear();
-        for lane in arrived {
-            self.lanes[*lane as usize] = Asked::Arrived;
-            self.numbers.push(lanes[*lane as usize].numbers);
-        }
+        self.conduct.before_arrivals(lanes, arrived, requests);
         let mut lent = Lanes {
             lanes: lanes.as_mut_ptr(),
             n_lanes: lanes.len(),
@@ -167,14 +141,7 @@ impl Erased for RemoteStates<'_> {
         // SAFETY: as above.
         let answer = unsafe { self.table.arrive_n(self.head.at(), &mut lent, &round, requests) };
         self.head.found(answer);
-        self.judge(before, requests);
-        for (lane, before) in arrived.iter().zip(&self.numbers) {
-            self.lanes[*lane as usize] = Asked::Nothing;
-            let now = &mut lanes[*lane as usize].numbers;
-            if !goes_on(*before, *now) {
-                *now = *before;
-                self.head.wrong(NOT_ITS_OWN);
-            }
-        }
+        let told = self.conduct.after_arrivals(lanes, arrived, requests);
+        self.judge(told);
     }
 }

@@ -4,6 +4,7 @@
 //! points to begins with them, so that built-ins and foreign objects look alike to the host.
 
 mod camera;
+mod conduct;
 mod filter;
 mod importer;
 mod integrator;
@@ -26,6 +27,7 @@ use luxel_sdk::params::{BuildContext, Fault, SharedTable, Text};
 use super::Remote;
 use super::watch::Watch;
 
+pub(crate) use conduct::Conduct;
 pub(super) use shape::NOWHERE;
 
 /// Bytes before the library's struct. A multiple of its greatest alignment.

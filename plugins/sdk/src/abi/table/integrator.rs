@@ -2,7 +2,7 @@ use std::marker::PhantomData;
 
 use glam::DVec3;
 
-use super::{SamplerRef, table};
+use super::{PictureJobRef, SamplerRef, table};
 use crate::abi::answer::expect;
 use crate::abi::plain::Slice;
 use crate::kind::{Ask, Host, Job, Lane, PathIntegrator, Requests, Round, Wants, arrive_n};
@@ -91,6 +91,22 @@ pub struct Lanes {
 }
 
 impl Lanes {
+    /// The paths in some lanes arrived.
+    ///
+    /// # Safety
+    /// The host lends lanes and as many states of this integrator, to this call alone.
+    pub(super) unsafe fn arrive_n<I: PathIntegrator>(
+        &mut self,
+        integrator: &I,
+        round: &RoundRef<'_>,
+        requests: &mut Requests,
+    ) {
+        // SAFETY: the caller says so.
+        let (states, lanes, arrived) = unsafe { self.split::<I::State>() };
+        let round = Round { host: &round.host, sampler: &round.sampler };
+        arrive_n(integrator, states, (lanes, arrived), round, requests);
+    }
+
     /// # Safety
     /// The host lends lanes and as many states of type `S`, to this call alone.
     unsafe fn split<'a, S>(&mut self) -> (&'a mut [S], &'a mut [Lane], &'a [u32]) {
@@ -107,7 +123,7 @@ table! {
     /// How light is followed: what happens when a path begins and when it arrives.
     PathIntegrator => IntegratorTable "luxel_integrator_table" {
         /// What the host prepares at each arrival, as flags: 1 emission, 2 a light sample, 4 a
-        /// scattering sample.
+        /// scattering sample, 8 where the camera sees it. Of what owns the picture: for all its paths.
         fn wants(integrator) -> Wants { Some(integrator.wants()) }
         /// What the lanes of its light mean: 0 values as they are, 1 linear sRGB.
         fn output(integrator) -> u32 { Some(integrator.output() as u32) }
@@ -128,9 +144,15 @@ table! {
             integrator, lanes: &mut Lanes, round: &RoundRef<'_>, requests: &mut Requests
         ) -> u32 {
             // SAFETY: the host lends lanes and states of this class.
-            let (states, lanes, arrived) = unsafe { lanes.split::<T::State>() };
-            let round = Round { host: &round.host, sampler: &round.sampler };
-            arrive_n(integrator, states, (lanes, arrived), round, requests);
+            unsafe { lanes.arrive_n(integrator, round, requests) };
+            Some(0)
+        }
+        /// Whether it owns the whole picture: 1 or 0. Then `render` is called, and no path of its
+        /// own begins. May be null: it does not.
+        fn is_picture(integrator) -> u32 { Some(u32::from(integrator.as_picture().is_some())) }
+        /// Makes the picture; says 0. Nothing where it does not own it; may be null then.
+        fn render(integrator, job: &PictureJobRef<'_>) -> u32 {
+            integrator.as_picture()?.render(job);
             Some(0)
         }
     }

@@ -1,0 +1,264 @@
+//! What the host does for an integrator that owns the whole picture.
+
+use std::cell::{Cell, OnceCell, RefCell};
+
+use glam::DVec3;
+use luxel_sdk::kind::{
+    Arrival, ArrivalKind, Host, Output, PathsRef, PictureIntegrator, PictureJob, Raster, Wants,
+};
+use luxel_sdk::num::{Ray, offset_origin};
+use rayon::prelude::*;
+
+use super::light::{Bundle, Splat};
+use super::tile::{StageHost, Worker};
+use super::watched::Watched;
+use super::{FROM_CAMERA, Stop};
+use crate::film::{Film, Rect};
+use crate::stage::{Emitters, Leaving, Skin, Stage};
+
+/// Light paths that one thread follows at a time.
+const BUNDLE: u32 = 1024;
+/// Such bundles whose splats wait to be added in order.
+const GROUP: u32 = 64;
+/// Rays that one thread traces at a time.
+const RAYS: usize = 256;
+
+/// Lets an integrator make the picture.
+pub(super) fn render(
+    owner: &dyn PictureIntegrator,
+    stage: &Stage,
+    (samples, seed): (u32, u32),
+    film: &mut Film,
+    stop: Stop<'_>,
+) {
+    let most = Wants(owner.wants().0 & (FROM_CAMERA.0 | Wants::SIGHT.0));
+    let (window, output) = (film.window, owner.output());
+    let sum = vec![DVec3::ZERO; window.area()];
+    let pass = Pass { done: 0, broken: false, sum };
+    owner.render(&PictureHost {
+        stage,
+        seed,
+        samples,
+        stop,
+        most,
+        output,
+        window,
+        film: RefCell::new(film),
+        emitters: OnceCell::new(),
+        pass: RefCell::new(pass),
+        calls: Cell::new(0),
+    });
+}
+
+struct PictureHost<'a> {
+    stage: &'a Stage,
+    seed: u32,
+    samples: u32,
+    stop: Stop<'a>,
+    /// What is prepared for paths.
+    most: Wants,
+    output: Output,
+    window: Rect,
+    film: RefCell<&'a mut Film>,
+    emitters: OnceCell<Emitters>,
+    pass: RefCell<Pass>,
+    /// Runs of light paths so far: each has numbers of its own.
+    calls: Cell<u32>,
+}
+
+/// One sample of every pixel in the making.
+struct Pass {
+    /// Passes that were finished.
+    done: u32,
+    /// Whether something of it is missing.
+    broken: bool,
+    /// Of every pixel of the window, row by row.
+    sum: Vec<DVec3>,
+}
+
+impl Pass {
+    fn add(&mut self, splats: &[Splat], scale: f64, width: u32, window: Rect) {
+        for Splat { pixel, rgb } in splats {
+            let (x, y) = (pixel % width, pixel / width);
+            let (x, y) = (x.wrapping_sub(window.min.x), y.wrapping_sub(window.min.y));
+            if x < window.size.x && y < window.size.y {
+                self.sum[y as usize * window.size.x as usize + x as usize] += *rgb * scale;
+            }
+        }
+    }
+}
+
+impl PictureHost<'_> {
+    /// Whether the pass can still count.
+    fn goes_on(&self) -> bool {
+        let pass = self.pass.borrow();
+        !pass.broken && pass.done < self.samples && !self.stop.is_asked()
+    }
+
+    fn row(&self) -> usize {
+        self.window.size.x as usize
+    }
+}
+
+impl PictureJob for PictureHost<'_> {
+    fn raster(&self) -> Raster {
+        Raster { size: self.stage.film.resolution }
+    }
+
+    fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    fn seed(&self) -> u32 {
+        self.seed
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.stop.is_asked()
+    }
+
+    fn trace_n(&self, rays: &[Ray], out: &mut [Arrival]) {
+        let stage = self.stage;
+        let pairs = rays.par_chunks(RAYS).zip(out.par_chunks_mut(RAYS));
+        pairs.for_each(|(rays, out)| {
+            for (ray, at) in rays.iter().zip(out) {
+                *at = arrival(stage, *ray);
+            }
+        });
+    }
+
+    fn occluded_n(&self, rays: &[Ray], out: &mut [bool]) {
+        let host = StageHost(self.stage);
+        let pairs = rays.par_chunks(RAYS).zip(out.par_chunks_mut(RAYS));
+        pairs.for_each(|(rays, out)| {
+            for (ray, occluded) in rays.iter().zip(out) {
+                *occluded = host.occluded(ray);
+            }
+        });
+    }
+
+    fn run_camera_paths(&self, paths: PathsRef<'_>) {
+        if !self.goes_on() {
+            return;
+        }
+        let paths = Watched(paths);
+        let (stage, seed, stop, output) = (self.stage, self.seed, self.stop, self.output);
+        let (most, pass) = (Wants(self.most.0 & FROM_CAMERA.0), self.pass.borrow().done);
+        let rects: Vec<Rect> = self.film.borrow().tiles().iter().map(|tile| tile.rect).collect();
+        let found: Vec<Option<Vec<DVec3>>> = rects
+            .par_iter()
+            .map_init(
+                || Worker::new(stage, seed, &paths, most, output),
+                |worker, rect| {
+                    let done = worker.samples(*rect, pass..pass + 1, stop);
+                    done.then(|| worker.results.clone())
+                },
+            )
+            .collect();
+        let mut pass = self.pass.borrow_mut();
+        for (rect, found) in rects.iter().zip(found) {
+            let Some(found) = found else {
+                pass.broken = true;
+                return;
+            };
+            for (at, rgb) in rect.points().zip(found) {
+                let at = at - self.window.min;
+                pass.sum[at.y as usize * self.row() + at.x as usize] += rgb;
+            }
+        }
+    }
+
+    fn run_light_paths(&self, n: u32, paths: PathsRef<'_>) {
+        if !self.goes_on() || n == 0 {
+            return;
+        }
+        let paths = Watched(paths);
+        let (stage, seed, stop, output) = (self.stage, self.seed, self.stop, self.output);
+        let (most, call) = (self.most, self.calls.get());
+        self.calls.set(call.wrapping_add(1));
+        let emitters = self.emitters.get_or_init(|| stage.emitters());
+        let n_bundles = n.div_ceil(BUNDLE);
+        for group in (0..n_bundles).step_by(GROUP as usize) {
+            let bundles = group..n_bundles.min(group.saturating_add(GROUP));
+            let found: Vec<Option<Vec<Splat>>> = bundles
+                .into_par_iter()
+                .map_init(
+                    || Worker::new(stage, seed, &paths, most, output),
+                    |worker, i| {
+                        let paths = i * BUNDLE..n.min((i * BUNDLE).saturating_add(BUNDLE));
+                        worker.bundle(Bundle { emitters, pass: call, paths }, stop)
+                    },
+                )
+                .collect();
+            let mut pass = self.pass.borrow_mut();
+            for splats in found {
+                let Some(splats) = splats else {
+                    pass.broken = true;
+                    return;
+                };
+                let width = stage.film.resolution.x;
+                pass.add(&splats, 1.0 / f64::from(n), width, self.window);
+            }
+        }
+    }
+
+    fn finish_pass(&self) {
+        if !self.goes_on() {
+            return;
+        }
+        let mut pass = self.pass.borrow_mut();
+        for tile in self.film.borrow_mut().tiles_mut() {
+            for (at, estimate) in tile.rect.points().zip(&mut tile.pixels) {
+                let at = at - self.window.min;
+                estimate.push(pass.sum[at.y as usize * self.row() + at.x as usize]);
+            }
+        }
+        pass.sum.fill(DVec3::ZERO);
+        pass.done += 1;
+        self.stop.control.add(self.window.area() as u64);
+    }
+}
+
+/// Where a ray arrives, as `Wants::POSITION` says.
+fn arrival(stage: &Stage, ray: Ray) -> Arrival {
+    let mut at = Arrival { t: f64::INFINITY, wo: -ray.d, material: u32::MAX, ..Arrival::default() };
+    let (mut leg, mut flown, mut from) = (ray, 0.0, None);
+    while let Some(hit) = stage.intersect(&leg, from, &mut at.steps) {
+        let surface = stage.surface(&leg, &hit);
+        let skin = stage.placements[hit.placement as usize].skin;
+        if skin == Skin::Open {
+            from = Some(Leaving::from(&hit));
+            let o = offset_origin(surface.p, surface.p_err, surface.ng, leg.d);
+            flown += (o - leg.o).dot(leg.d);
+            leg = Ray { o, t_max: ray.t_max - flown, ..leg };
+            continue;
+        }
+        (at.kind, at.t) = (ArrivalKind::Surface, flown + hit.hit.t);
+        (at.p, at.p_err, at.uv) = (surface.p, surface.p_err, surface.uv.as_vec2());
+        (at.ng, at.ns) = (surface.ng, surface.ns);
+        if let Skin::Material(material) = skin {
+            at.material = material;
+        }
+        break;
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn splats_outside_the_window_are_lost() {
+        use glam::UVec2;
+        let window = Rect::new(UVec2::new(1, 2), UVec2::new(2, 1));
+        let mut pass = Pass { done: 0, broken: false, sum: vec![DVec3::ZERO; window.area()] };
+        let splats: Vec<_> = (0..20).map(|pixel| Splat { pixel, rgb: DVec3::ONE }).collect();
+        pass.add(&splats, 0.5, 4, window);
+        pass.add(&[Splat { pixel: u32::MAX - 1, rgb: DVec3::ONE }], 0.5, 4, window);
+        // Of rows of four pixels, the second and third of the third.
+        assert_eq!(pass.sum, [DVec3::splat(0.5); 2]);
+        pass.add(&splats[9..10], 1.0, 4, window);
+        assert_eq!(pass.sum, [DVec3::splat(1.5), DVec3::splat(0.5)]);
+    }
+}

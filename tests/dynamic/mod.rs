@@ -9,9 +9,11 @@ mod examples;
 mod files;
 mod forge;
 mod judged;
+mod light_tracer;
 mod misbehave;
 mod raw;
 mod schema;
+mod wrong_pictures;
 
 use std::path::{Path, PathBuf};
 

@@ -51,7 +51,9 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
     for (i, (set, _)) in subject.usual().enumerate().take(12) {
         let makes_light = set.ask(|resolved| {
             let integrator = resolved.integrator();
-            integrator.wants().has(Wants::EMISSION) && integrator.output() == Output::Value
+            let wants = integrator.wants();
+            let makes = wants.has(Wants::EMISSION) || wants.has(Wants::SIGHT);
+            makes && integrator.output() == Output::Value
         });
         let Some(stage) = stage(subject.bench, &open_scene, name, &set.given) else {
             judge.skip("pictures", "the suite's scene cannot be built with it");
@@ -247,13 +249,20 @@ fn agrees(found: &Film, truth: &Film, nominal: bool, set: &Set, judge: &mut Judg
 /// leaving the others out entirely.
 fn is_a_sum_of_bounces(film: &Film, nominal: bool, set: &Set, judge: &mut Judge) {
     let (mean, error) = film.mean();
-    // By its defaults it tells all bounces or the first; parameters may cut it off anywhere.
-    let known = if nominal { 1..2 } else { 0..16 };
-    let sums = known.map(|n| (1.0 - ALBEDO.powi(n + 1)) / (1.0 - ALBEDO));
+    // By its defaults it tells all bounces or the first; parameters may cut it off anywhere, at both
+    // ends: what no bounce is left of is black.
+    if !nominal && mean.y <= 0.0 {
+        return;
+    }
+    let (first, last) = if nominal { (0..1, 1..2) } else { (0..16, 0..16) };
     let all = (1.0 - ALBEDO).recip();
+    let sums = first.flat_map(|i| {
+        let from_here_on = ALBEDO.powi(i) * all;
+        let cut_off = last.clone().map(move |j| from_here_on * (1.0 - ALBEDO.powi(j + 1)));
+        cut_off.chain([from_here_on])
+    });
     let sigma = error.y.max(mean.y / f64::from(SIDE * SIDE * SPP));
     let z = sums
-        .chain([all])
         .map(|sum| deviation(mean.y - sum, ROUNDING * sum, sigma))
         .fold(f64::INFINITY, f64::min);
     judge.statistic("a furnace is a sum of bounces", z, || {

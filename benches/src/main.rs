@@ -1,15 +1,17 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
-//! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|cornell] [--luxel PATH]
+//! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|plugins|reload|cornell] [--luxel PATH]
 //! [--python PATH]`. The program under test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![forbid(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
 
+mod boundary;
 mod parse;
 mod peer;
 mod ply;
 mod process;
+mod reload;
 mod series;
 
 use std::path::PathBuf;
@@ -24,8 +26,7 @@ struct Plan {
     python: Option<PathBuf>,
 }
 
-const USAGE: &str =
-    "usage: luxel-bench [all|parse|cold|memory|ply|cornell] [--luxel PATH] [--python PATH]";
+const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|reload|cornell] [--luxel PATH] [--python PATH]";
 
 fn plan() -> Result<Plan, String> {
     let mut what = "all".to_owned();
@@ -34,7 +35,9 @@ fn plan() -> Result<Plan, String> {
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         match word.as_str() {
-            "all" | "parse" | "cold" | "memory" | "ply" | "cornell" => what = word,
+            "all" | "parse" | "cold" | "memory" | "ply" | "plugins" | "reload" | "cornell" => {
+                what = word;
+            }
             "--luxel" => luxel = words.next().map(PathBuf::from),
             "--python" => python = words.next().map(PathBuf::from),
             _ => return Err(format!("`{word}`? {USAGE}")),
@@ -60,6 +63,12 @@ fn run(plan: &Plan) -> Result<(), String> {
     }
     if wanted("ply") {
         ply::run(&plan.luxel, plan.python.as_deref())?;
+    }
+    if wanted("plugins") {
+        boundary::run(&plan.luxel)?;
+    }
+    if wanted("reload") {
+        reload::run(&plan.luxel)?;
     }
     if wanted("cornell") {
         peer::cornell(&plan.luxel, plan.python.as_deref())?;

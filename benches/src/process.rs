@@ -13,6 +13,8 @@ pub(crate) struct Luxel {
 pub(crate) struct Took {
     /// Wall time from start to end, seconds.
     pub(crate) seconds: f64,
+    /// Processor time in user mode, seconds; `NaN` without `/usr/bin/time`.
+    pub(crate) cpu: f64,
     /// Most memory it held at once, megabytes; `None` without `/usr/bin/time`.
     pub(crate) megabytes: Option<f64>,
 }
@@ -26,12 +28,27 @@ impl Luxel {
     /// # Errors
     /// The program did not start or failed; its words.
     pub(crate) fn render(&self, scene: &Path, size: u32, spp: u32) -> Result<Took, String> {
+        self.render_with(scene, size, spp, &[])
+    }
+
+    /// The same, with more words on the command line.
+    ///
+    /// # Errors
+    /// As `render`.
+    pub(crate) fn render_with(
+        &self,
+        scene: &Path,
+        size: u32,
+        spp: u32,
+        more: &[&str],
+    ) -> Result<Took, String> {
         let out = scratch()?.join("picture");
         let mut words = vec![self.program.clone(), "render".into(), scene.into()];
         words.extend(["--quiet", "-o"].map(PathBuf::from));
         words.push(out);
         let numbers = [format!("--size={size}x{size}"), format!("--spp={spp}")];
         words.extend(numbers.map(PathBuf::from));
+        words.extend(more.iter().map(PathBuf::from));
         timed(&words)
     }
 }
@@ -41,7 +58,7 @@ fn timed(words: &[PathBuf]) -> Result<Took, String> {
     let with_time = Path::new(TIME).exists();
     let mut command = Command::new(if with_time { Path::new(TIME) } else { &words[0] });
     if with_time {
-        command.args(["-f", "%M"]).arg(&words[0]);
+        command.args(["-f", "%M %U"]).arg(&words[0]);
     }
     command.args(&words[1..]).stdout(Stdio::null()).stderr(Stdio::piped());
     let start = Instant::now();
@@ -51,8 +68,10 @@ fn timed(words: &[PathBuf]) -> Result<Took, String> {
     if !output.status.success() {
         return Err(format!("{} failed: {told}", words[0].display()));
     }
-    let kilobytes: Option<f64> = told.lines().last().and_then(|line| line.trim().parse().ok());
-    Ok(Took { seconds, megabytes: kilobytes.filter(|_| with_time).map(|k| k / 1024.0) })
+    let last = told.lines().last().filter(|_| with_time).unwrap_or_default();
+    let mut numbers = last.split_whitespace().map_while(|word| word.parse::<f64>().ok());
+    let (kilobytes, cpu) = (numbers.next(), numbers.next().unwrap_or(f64::NAN));
+    Ok(Took { seconds, cpu, megabytes: kilobytes.map(|k| k / 1024.0) })
 }
 
 /// Whether this Python can import Mitsuba.

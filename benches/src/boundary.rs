@@ -1,0 +1,178 @@
+//! What the plugin boundary costs: the same built-ins linked and as a dynamic library.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use glam::{DVec3, Vec2, Vec3};
+use luxel_core::files::MemoryFiles;
+use luxel_core::object::{Object, Scratch, Site};
+use luxel_core::registry::Registry;
+use luxel_core::registry::dynamic::Library;
+use luxel_core::stage::{self, Stage};
+use luxel_sdk::color::{Palette, Wavelengths};
+use luxel_sdk::kind::Material;
+use luxel_sdk::sampling::{Rng, uniform_hemisphere};
+
+use crate::process::{Luxel, here};
+use crate::series::Series;
+
+/// Prints pictures and events, linked and loaded, side by side.
+///
+/// # Errors
+/// The library is missing or does not open; the program failed.
+pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
+    let library = beside(&luxel.program);
+    if !library.exists() {
+        return Err(
+            "no library of the built-ins: run `cargo rustc --release -p luxel-builtin-library --crate-type cdylib`"
+                .to_owned(),
+        );
+    }
+    pictures(luxel, &library)?;
+    events(&library)
+}
+
+/// The library of the built-ins in the folder of the program.
+fn beside(program: &Path) -> PathBuf {
+    let name = format!("{}builtins{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    program.with_file_name(name)
+}
+
+/// Rounds of pictures, each of both ways.
+const ROUNDS: usize = 7;
+/// Samples per pixel: enough that opening the library does not count.
+const SPP: u32 = 64;
+
+fn pictures(luxel: &Luxel, library: &Path) -> Result<(), String> {
+    println!(
+        "pictures, 256 x 256, {SPP} spp, processor seconds of the whole process, {ROUNDS} rounds \
+              in turn (goal 1.10)"
+    );
+    println!("  {:18} {:>9} {:>9} {:>7} {:>9}", "scene", "linked", "loaded", "ratio", "spread");
+    for name in ["cornell_rgb", "glass_metal"] {
+        let scene = here().join(format!("scenes/{name}.scene"));
+        let flag = format!("--builtins={}", library.display());
+        let (mut linked, mut loaded) = (vec![], vec![]);
+        for _ in 0..ROUNDS {
+            linked.push(luxel.render_with(&scene, 256, SPP, &[])?.cpu);
+            loaded.push(luxel.render_with(&scene, 256, SPP, &[&flag])?.cpu);
+        }
+        let (linked, loaded) = (Series::from(linked), Series::from(loaded));
+        println!(
+            "  {name:18} {:7.3} s {:7.3} s {:7.3} {:7.1} %",
+            linked.min(),
+            loaded.min(),
+            loaded.min() / linked.min(),
+            linked.spread().max(loaded.spread())
+        );
+    }
+    Ok(())
+}
+
+/// Materials of the table, in a scene each: name, colour mode, text.
+const EVENTS: [(&str, &str, &str); 6] = [
+    ("diffuse, constant", "rgb", "material diffuse { reflectance = 0.5 }"),
+    ("diffuse, 1 texture", "rgb", "material diffuse { reflectance = texture checker {} }"),
+    ("GGX metal, constant", "rgb", "material conductor { eta = 0.2, k = 3.9, roughness = 0.3 }"),
+    (
+        "GGX, textures, spectral",
+        "spectral",
+        "material conductor { eta = metal(\"Au\"), roughness = texture checker { a = 0.2, b = 0.4 } }",
+    ),
+    (
+        "rough glass, spectral",
+        "spectral",
+        "material dielectric { ior = glass(\"N-BK7\"), roughness = 0.2 }",
+    ),
+    (
+        "mix of matt and metal",
+        "rgb",
+        "material mix { a = material diffuse { reflectance = texture checker {} }, \
+         b = material conductor { eta = 0.2, k = 3.9, roughness = 0.3 }, weight = texture checker {} }",
+    ),
+];
+
+fn scene(mode: &str, material: &str) -> String {
+    format!(
+        "scene 1\ncamera perspective {{ look = look_at(from = (0, 0, 4) m, to = (0, 0, 0) m, \
+         up = (0, 1, 0)), fov = 40 deg }}\nfilm {mode} {{ resolution = (8, 8) }}\n\
+         light constant {{ radiance = 1 W/m^2/sr }}\n\
+         shape sphere {{ radius = 1 m, material = {material} }}\n"
+    )
+}
+
+fn stage_of(registry: &Registry, text: &str) -> Result<Stage, String> {
+    let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+    let settings = luxel_lang::Settings::default();
+    let loaded = luxel_lang::load(Path::new("a.scene"), &files, registry, &settings);
+    let scene = loaded.scene.ok_or_else(|| format!("{:?}", loaded.diagnostics))?;
+    let built = stage::build(&scene, registry, &files, None);
+    built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
+}
+
+fn linked() -> Registry {
+    let mut registry = Registry::new();
+    for classes in luxel_builtin::CLASSES {
+        registry.add("builtin", classes).expect("built-ins have names of their own");
+    }
+    registry
+}
+
+fn events(library: &Path) -> Result<(), String> {
+    let library = Library::open(library, "builtins", 0).map_err(|error| error.to_string())?;
+    let mut loaded = Registry::new();
+    loaded.add("builtin", &library.classes).map_err(|conflict| conflict.to_string())?;
+    let linked = linked();
+    println!(
+        "a shading event: parameters at the point, eval, sample; ns, least of 41 rounds in turn \
+              (goal 1.05)"
+    );
+    println!("  {:26} {:>9} {:>9} {:>7} {:>9}", "material", "linked", "loaded", "ratio", "spread");
+    for (name, mode, material) in EVENTS {
+        let text = scene(mode, material);
+        let stages = [stage_of(&linked, &text)?, stage_of(&loaded, &text)?];
+        let mut found = [vec![], vec![]];
+        for _ in 0..41 {
+            for (stage, found) in stages.iter().zip(&mut found) {
+                found.push(event(&stage.materials[0], mode == "spectral"));
+            }
+        }
+        let [linked, loaded] = found.map(Series::from);
+        println!(
+            "  {name:26} {:6.1} ns {:6.1} ns {:7.3} {:7.1} %",
+            linked.min(),
+            loaded.min(),
+            loaded.min() / linked.min(),
+            linked.spread().max(loaded.spread())
+        );
+    }
+    Ok(())
+}
+
+/// Events in one round.
+const N: u32 = 20_000;
+
+/// Nanoseconds of one event, over many points, directions and numbers.
+fn event(material: &Object, spectral: bool) -> f64 {
+    let mut rng = Rng::new(7);
+    let palette = if spectral { Palette::new(Wavelengths::sample(0.3)) } else { Palette::rgb() };
+    let directions: Vec<(Vec3, Vec3, Vec2)> = (0..512)
+        .map(|_| {
+            let [a, b] = [rng.pair(), rng.pair()].map(uniform_hemisphere);
+            (a, b, Vec2::from(rng.pair()))
+        })
+        .collect();
+    let (mut scratch, mut sum) = (Scratch::default(), 0.0);
+    let start = Instant::now();
+    for i in 0..N {
+        let (wo, wi, uv) = directions[i as usize % directions.len()];
+        scratch.reset();
+        let site = Site { p: DVec3::ZERO, uv, palette: &palette };
+        let material: &dyn Material = material.resolve(&site, &scratch).material();
+        sum += material.eval(wo, wi).pdf;
+        sum += material.sample(wo, [uv.x, uv.y, 0.3]).map_or(0.0, |sample| sample.pdf);
+    }
+    let ns = start.elapsed().as_secs_f64() * 1e9 / f64::from(N);
+    std::hint::black_box(sum);
+    ns
+}

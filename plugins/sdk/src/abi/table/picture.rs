@@ -1,3 +1,5 @@
+#![expect(clippy::cast_ptr_alignment, reason = "addresses that this file made, given back")]
+
 use std::marker::PhantomData;
 use std::panic::resume_unwind;
 

@@ -5,9 +5,10 @@ use luxel_core::registry::dynamic::Library;
 use luxel_core::render::{Control, Options, Outcome, render};
 use luxel_sdk::Params;
 use luxel_sdk::abi::{Class, LibraryTable};
+use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
     Arrival, Ask, Host, Job, PathIntegrator, PathsRef, PictureIntegrator, PictureJob, Samples,
-    Wants,
+    Sight, Wants,
 };
 use luxel_sdk::num::Ray;
 
@@ -74,44 +75,82 @@ impl PathIntegrator for Paths {
     }
 }
 
-const CLASS: Class = Class::picture_integrator::<Wrong>("wrong_picture");
+/// A path from the camera that leaves light where it has none to leave.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Stray {
+    /// Nothing.
+    #[param(default = 0, min = 0, max = 9)]
+    way: u32,
+}
+
+impl PathIntegrator for Stray {
+    type State = ();
+
+    fn wants(&self) -> Wants {
+        Wants::SIGHT
+    }
+
+    fn start(&self, job: &Job, ask: &mut Ask<'_>) {
+        ask.trace(job.ray);
+    }
+
+    fn arrive(
+        &self,
+        (): &mut (),
+        at: &Arrival,
+        _: &mut Samples<'_>,
+        _: &dyn Host,
+        ask: &mut Ask<'_>,
+    ) {
+        assert!(at.sight.get().is_none(), "a path from the camera is told what it sees");
+        let sight = Sight { ray: at.ray(DVec3::Z), pixel: self.way, f_we: Spectrum::ONE };
+        ask.splat_if_visible(&sight, Spectrum::ONE);
+    }
+}
+
+const PICTURE: Class = Class::picture_integrator::<Wrong>("wrong_picture");
+const STRAY: Class = Class::integrator::<Stray>("stray");
 
 fn library() -> Library {
-    let table = luxel_sdk::library_table!(&[&[CLASS]]);
+    let table = luxel_sdk::library_table!(&[&[PICTURE, STRAY]]);
     // The hook of a library's panics would be that of these tests.
     let table = LibraryTable { begin: None, last_panic: None, ..table };
     Library::linked(Box::leak(Box::new(table))).unwrap()
 }
 
+fn scene(integrator: &str) -> String {
+    format!(
+        "scene 1
+        camera perspective {{ look = look_at(from = (0, 0, 4) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }}
+        film rgb {{ resolution = (6, 6) }}
+        sampler sobol {{ samples = 4 }}
+        light point {{ position = (0, 0, 3) m, spectrum = rgb.linear_srgb(1, 1, 1), scale = 1 }}
+        shape rectangle {{ u = (8, 0, 0) m, v = (0, 8, 0) m }}
+        integrator {integrator}"
+    )
+}
+
 #[test]
 fn an_integrator_that_fails_in_its_picture_ends_the_render() {
     let registry = registered(&[&library()]);
-    let scene = |way: u32| {
-        format!(
-            "scene 1
-            camera perspective {{ look = look_at(from = (0, 0, 4) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }}
-            film rgb {{ resolution = (6, 6) }}
-            sampler sobol {{ samples = 4 }}
-            light point {{ position = (0, 0, 3) m, spectrum = rgb.linear_srgb(1, 1, 1), scale = 1 }}
-            shape rectangle {{ u = (8, 0, 0) m, v = (0, 8, 0) m }}
-            integrator wrong_picture {{ way = {way} }}"
-        )
-    };
-    for (way, told) in [
-        (0, "no picture today"),
-        (1, "no path arrives"),
-        (2, "no path begins"),
-        (3, "asked for a ray that is not finite"),
-        (4, "asked twice for one path"),
+    for (integrator, told) in [
+        ("wrong_picture { way = 0 }", "no picture today"),
+        ("wrong_picture { way = 1 }", "no path arrives"),
+        ("wrong_picture { way = 2 }", "no path begins"),
+        ("wrong_picture { way = 3 }", "asked for a ray that is not finite"),
+        ("wrong_picture { way = 4 }", "asked twice for one path"),
+        ("stray {}", "left light in another pixel than the path's own"),
     ] {
-        let stage = super::stage(&registry, &scene(way)).unwrap();
+        let stage = super::stage(&registry, &scene(integrator)).unwrap();
         let (_, outcome) = render(&stage, &Options::default(), &Control::default());
         let said = stage.failures();
-        assert_eq!(outcome, Outcome::Failed, "{way}");
-        assert!(said.len() == 1 && said[0].message.contains(told), "{way}: {said:?}");
-        assert!(said[0].message.contains("wrong_picture"), "{said:?}");
+        assert_eq!(outcome, Outcome::Failed, "{integrator}");
+        assert!(said.len() == 1 && said[0].message.contains(told), "{integrator}: {said:?}");
+        let name = integrator.split(' ').next().unwrap();
+        assert!(said[0].message.contains(name), "{said:?}");
     }
-    let stage = super::stage(&registry, &scene(9)).unwrap();
+    let stage = super::stage(&registry, &scene("wrong_picture { way = 9 }")).unwrap();
     let (film, outcome) = render(&stage, &Options::default(), &Control::default());
     assert_eq!(outcome, Outcome::Complete, "{:?}", stage.failures());
     assert!(film.pixels().all(|(_, pixel)| pixel.n == 4));

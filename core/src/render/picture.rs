@@ -19,7 +19,7 @@ use crate::stage::{Emitters, Leaving, Skin, Stage};
 /// Light paths that one thread follows at a time.
 const BUNDLE: u32 = 1024;
 /// Such bundles whose splats wait to be added in order.
-const GROUP: u32 = 64;
+const GROUP: u32 = 256;
 /// Rays that one thread traces at a time.
 const RAYS: usize = 256;
 

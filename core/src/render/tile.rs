@@ -100,6 +100,7 @@ impl<'s> Worker<'s> {
     /// Finds the samples of a range in every pixel of a rectangle: `results`, sample by sample.
     /// False when cancelled.
     pub(super) fn samples(&mut self, rect: Rect, range: Range<u32>, stop: Stop<'_>) -> bool {
+        self.splats.clear();
         self.results.clear();
         self.results.resize(rect.area() * range.len(), DVec3::ZERO);
         let (origin, width, n_pixels) = (rect.min, rect.size.x, rect.area());

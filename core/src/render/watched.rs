@@ -21,7 +21,7 @@ impl Integrator for Watched<'_> {
     }
 
     fn lanes<'a>(&'a self, n: usize) -> Box<dyn Erased + 'a> {
-        Box::new(WatchedStates { states: self.0.lanes(n), conduct: Conduct::new(n) })
+        Box::new(WatchedStates { states: self.0.lanes(n), conduct: Conduct::of_picture(n) })
     }
 }
 

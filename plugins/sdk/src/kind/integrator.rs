@@ -248,7 +248,7 @@ impl<'a> Ask<'a> {
     }
 
     /// Light for the pixel where the camera sees this place, if nothing lies between, dimmed by the
-    /// media. Any number per arrival; paths from lights alone have a place to see.
+    /// media. Any number per arrival; for paths from lights, which have no pixel of their own.
     pub fn splat_if_visible(&mut self, sight: &Sight, l: Spectrum) {
         if !l.is_black() {
             let Sight { ray, pixel, .. } = *sight;

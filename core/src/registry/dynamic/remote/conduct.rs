@@ -1,6 +1,6 @@
 //! How paths of a library behave: they ask for themselves alone, and for what can be followed.
 
-use luxel_sdk::kind::{Lane, Requests, SampleAt};
+use luxel_sdk::kind::{Lane, Requests, SampleAt, Shadow};
 use luxel_sdk::num::Ray;
 
 use super::medium::{NOT_ITS_OWN, goes_on};
@@ -23,12 +23,20 @@ pub(crate) struct Conduct {
     numbers: Vec<SampleAt>,
     /// Requests of others.
     before: [usize; 2],
+    /// Whether they may leave light in any pixel.
+    splats: bool,
 }
 
 impl Conduct {
-    /// Of so many paths.
-    pub(crate) fn new(n: usize) -> Self {
-        Self { lanes: vec![Asked::Nothing; n], numbers: vec![], before: [0; 2] }
+    /// Of so many paths that a picture is made of: their light may go to any pixel.
+    pub(crate) fn of_picture(n: usize) -> Self {
+        Self { splats: true, ..Self::of_pixels(n) }
+    }
+
+    /// Of so many paths, each of a pixel.
+    pub(super) fn of_pixels(n: usize) -> Self {
+        let lanes = vec![Asked::Nothing; n];
+        Self { lanes, numbers: vec![], before: [0; 2], splats: false }
     }
 
     /// A path is about to begin.
@@ -120,6 +128,9 @@ impl Conduct {
         for shadow in shadows {
             if self.lanes.get(shadow.lane as usize).is_none_or(|lane| *lane == Asked::Nothing) {
                 return Some("asked for a path that did not arrive");
+            }
+            if !self.splats && shadow.pixel != Shadow::OWN {
+                return Some("left light in another pixel than the path's own");
             }
         }
         None

@@ -47,7 +47,7 @@ impl Integrator for RemoteIntegrator {
         }
         let stride = usize::try_from(bytes.min(MOST_STATE)).unwrap_or(0);
         let states = vec![0u128; (stride * n).div_ceil(size_of::<u128>())];
-        let (table, conduct) = (self.table(), Conduct::new(n));
+        let (table, conduct) = (self.table(), Conduct::of_pixels(n));
         Box::new(RemoteStates { head: &self.0, table, states, stride, conduct })
     }
 

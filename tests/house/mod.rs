@@ -8,11 +8,18 @@ use crate::disk::{files_below, root, text};
 use source::Source;
 
 /// Packages by folder, each with the packages of the workspace that it may depend on.
-const ARROWS: [(&str, &[&str]); 7] = [
+const ARROWS: [(&str, &[&str]); 14] = [
     ("cli", &["luxel-lang", "luxel-builtin", "luxel-conformance", "luxel-core", "luxel-sdk"]),
     ("lang", &["luxel-core", "luxel-sdk"]),
     ("core", &["luxel-sdk"]),
     ("plugins/builtin", &["luxel-sdk"]),
+    ("plugins/builtin/library", &["luxel-builtin", "luxel-sdk"]),
+    ("plugins/examples/bounces", &["luxel-sdk"]),
+    ("plugins/examples/gyroid", &["luxel-sdk"]),
+    ("plugins/examples/light_tracer", &["luxel-sdk"]),
+    ("plugins/examples/noise", &["luxel-sdk"]),
+    ("plugins/examples/pleats", &["luxel-sdk"]),
+    ("plugins/examples/velvet", &["luxel-sdk"]),
     // The built-ins are for its tests alone.
     ("plugins/conformance", &["luxel-core", "luxel-sdk", "luxel-builtin"]),
     ("plugins/sdk", &["luxel-sdk-derive"]),
@@ -20,7 +27,7 @@ const ARROWS: [(&str, &[&str]); 7] = [
 ];
 
 /// External packages, each with the folders of the only packages that may depend on them.
-const DEPENDENCIES: [(&str, &[&str]); 13] = [
+const DEPENDENCIES: [(&str, &[&str]); 17] = [
     ("pest", &["lang"]),
     ("pest_derive", &["lang"]),
     ("tobj", &["plugins/builtin"]),
@@ -30,10 +37,14 @@ const DEPENDENCIES: [(&str, &[&str]); 13] = [
     ("obvhs", &["core"]),
     ("rayon", &["core"]),
     ("libloading", &["core"]),
+    ("object", &["core"]),
     ("notify", &["cli"]),
     ("clap", &["cli"]),
     ("ctrlc", &["cli"]),
     ("annotate-snippets", &["cli"]),
+    ("toml", &["cli"]),
+    ("sha2", &["cli"]),
+    ("tempfile", &["cli"]),
 ];
 
 /// Words of the source, each with the only places where they may stand.
@@ -57,6 +68,8 @@ const ROOMS: [(&str, &[&str]); 17] = [
         "unsafe",
         &[
             "plugins/sdk/src/abi/",
+            "plugins/sdk/src/kind/table/",
+            "plugins/sdk/src/wire/",
             "plugins/sdk/src/params/",
             // It writes the unsafe implementation that `params` asks for.
             "plugins/sdk-derive/src/",

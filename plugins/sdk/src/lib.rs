@@ -8,6 +8,7 @@ pub mod num;
 pub mod color;
 pub mod sampling;
 pub mod scattering;
+pub mod wire;
 pub mod params;
 pub mod kind;
 pub mod abi;

@@ -2,17 +2,16 @@
 
 use std::fmt::Write;
 
-use super::layout::{Described, Layout, describe, hash, layouts};
-use super::table::{
-    CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
-    MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
-    PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
-    ShapeTable, TextureTable, Triangles,
-};
 use super::{
     ABI_MAJOR, ABI_MINOR, Built, ByteSink, ClassTable, ContextRef, ContextTable, FaultSink, HANDLE,
     ImportSink, ImportValueTable, ImporterTable, LAYOUT_HASH, LibraryTable, MAGIC, ParamTable,
     Slice, TYPES,
+};
+use super::{
+    CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
+    MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
+    PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
+    ShapeTable, TextureTable, Triangles,
 };
 use crate::color::{Spectrum, Wavelengths};
 use crate::kind::{
@@ -22,6 +21,7 @@ use crate::kind::{
 };
 use crate::num::{Bounds3, Ray};
 use crate::params::{ComplexIor, Emission, Look, Maybe, Text};
+use crate::wire::layout::{Described, Layout, describe, hash, layouts};
 
 layouts! { WRITTEN {
     glam::Vec2 => "luxel_vec2" { x, y }

@@ -5,14 +5,9 @@
 //! object. The C boundary wraps the same table (docs/decisions/0003).
 #![expect(unsafe_code, reason = "views turn the host's bytes back into the plugin's struct")]
 
-mod answer;
-mod plain;
-mod layout;
-mod table;
-mod context;
-mod import;
 mod library;
 mod header;
+mod c_types;
 mod shared;
 
 #[cfg(test)]
@@ -27,22 +22,24 @@ use crate::kind::{
 };
 use crate::params::{Fault, Field, Param, Params, SharedFns, Text, Type};
 
-pub use answer::{Answer, Status, guarded, last_panic};
-pub use context::{Built, ContextRef, ContextTable};
 pub use header::header;
-pub use import::{ImportSink, ImporterTable, Value as ImportValueTable};
 pub use library::{
-    ABI_MAJOR, ABI_MINOR, ClassTable, HANDLE, LAYOUT_HASH, LibraryTable, MAGIC, PANIC_ABORT,
-    PANIC_NONE, PANIC_UNWIND, ParamTable, TYPES, begin, class_tables, count,
-    last_panic as tell_last_panic, param_tables,
+    ABI_MAJOR, ABI_MINOR, ClassTable, LAYOUT_HASH, LibraryTable, MAGIC, PANIC_ABORT, PANIC_NONE,
+    PANIC_UNWIND, class_tables, count,
 };
-pub use plain::{ByteSink, FaultSink, Slice, TellPanic};
 pub use shared::{build_shared, build_shared_abi, free_shared};
-pub use table::{
-    CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
-    MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
-    PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
-    ShapeTable, TextureTable, Triangles,
+
+pub use crate::kind::table::{
+    CameraTable, FilterTable, HostRef, HostTable, ImportSink, ImportValueTable, ImporterTable,
+    IntegratorTable, Lanes, LightTable, MaterialRef, MaterialTable, MediumTable, MeshSink,
+    PathsRef, PathsTable, PhaseRef, PhaseTable, PictureJobRef, PictureJobTable, RoundRef,
+    SamplerRef, SamplerTable, SamplesRef, SceneSphere, ShapeTable, TextureTable, Triangles,
+};
+pub use crate::params::{
+    Built, ContextRef, ContextTable, FaultSink, HANDLE, ParamTable, TYPES, param_tables,
+};
+pub use crate::wire::{
+    Answer, ByteSink, Slice, Status, TellPanic, begin, guarded, last_panic, tell_last_panic,
 };
 
 /// A lifetime as a value: how long the bytes behind a view are lent.

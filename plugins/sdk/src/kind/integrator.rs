@@ -6,11 +6,11 @@
 use glam::{DVec3, Vec2};
 
 use super::flags::flag_set;
-use super::queue::Queue;
 use super::{Output, PictureIntegrator, SampleAt, Sampler, Samples, Sight};
 use crate::color::Spectrum;
 use crate::num::{Ray, offset_origin};
 use crate::params::{Fault, Maybe};
+use crate::wire::Queue;
 
 /// What the host prepares at every arrival: a set of flags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

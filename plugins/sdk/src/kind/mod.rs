@@ -10,11 +10,11 @@ mod material;
 mod medium;
 mod phase;
 mod picture;
-mod queue;
 mod sampler;
 mod shape;
 mod sight;
 mod texture;
+pub mod table;
 
 pub use camera::{Camera, CameraRay, Raster};
 pub use filter::Filter;
@@ -29,11 +29,12 @@ pub use material::{Eval, Lobe, Material, Needs, Sample, reflect};
 pub use medium::{FreeFlight, Medium};
 pub use phase::Phase;
 pub use picture::{Picture, PictureIntegrator, PictureJob};
-pub use queue::Queue;
 pub use sampler::{SampleAt, Sampler, Samples};
 pub use shape::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
 pub use sight::Sight;
 pub use texture::{Output, Texture, TexturePoint};
 
-pub use crate::abi::{MaterialRef, PathsRef, PhaseRef};
+pub use table::{MaterialRef, PathsRef, PhaseRef};
+
 pub use crate::params::Kind;
+pub use crate::wire::Queue;

@@ -12,8 +12,8 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{Fault, Kind, Type};
-use crate::abi::Slice;
 use crate::color::Spectrum;
+use crate::wire::Slice;
 
 /// A type that the host may write at an offset.
 ///

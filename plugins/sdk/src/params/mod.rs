@@ -10,7 +10,11 @@ mod fields;
 mod schema;
 mod unit;
 mod refuse;
+mod boundary;
 
+pub use boundary::{
+    Built, ContextRef, ContextTable, FaultSink, HANDLE, ParamTable, TYPES, param_tables,
+};
 pub use dimension::Dimension;
 pub use fields::{
     Build, BuildContext, Choice, ComplexIor, Emission, Field, File, Look, Maybe, Plain, Quantity,

@@ -1,7 +1,7 @@
 //! The schema: what the derive writes down about each parameter.
 
-use super::{BuildContext, Kind, Text};
-use crate::abi::{Built, ContextRef, FaultSink, ParamTable, Status};
+use super::{BuildContext, Built, ContextRef, FaultSink, Kind, ParamTable, Text};
+use crate::wire::Status;
 
 /// How a parameter is stored in the struct, and so what the host writes at its offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -3,8 +3,8 @@ use std::marker::PhantomData;
 use glam::Vec3;
 
 use super::table;
-use crate::abi::answer::expect;
 use crate::kind::{Eval, Material, Needs, Sample};
+use crate::wire::expect;
 
 table! {
     /// How a surface scatters light. Directions are unit vectors in the local frame.
@@ -22,8 +22,8 @@ table! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct MaterialRef<'a> {
-    pub(in crate::abi) table: &'a MaterialTable,
-    pub(in crate::abi) at: *const u8,
+    pub(crate) table: &'a MaterialTable,
+    pub(crate) at: *const u8,
     lent: PhantomData<&'a ()>,
 }
 

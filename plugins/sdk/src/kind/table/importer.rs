@@ -4,11 +4,10 @@ use std::borrow::Cow;
 
 use glam::{DAffine3, DVec3};
 
-use super::plain::Slice;
-use super::table::table;
-use super::{ContextRef, FaultSink};
+use super::table;
 use crate::kind::{ImportNode, ImportValue, Imported, Importer, Kind};
-use crate::params::{BuildContext, Look, Text};
+use crate::params::{BuildContext, ContextRef, FaultSink, Look, Text};
+use crate::wire::Slice;
 
 /// Where an importer's nodes go: the host's functions. Node indices count from 0.
 #[repr(C)]

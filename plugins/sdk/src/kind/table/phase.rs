@@ -3,8 +3,8 @@ use std::marker::PhantomData;
 use glam::Vec3;
 
 use super::table;
-use crate::abi::answer::expect;
 use crate::kind::{Eval, Phase, Sample};
+use crate::wire::expect;
 
 table! {
     /// How a medium scatters light. Directions are unit vectors in world space, away from the point.
@@ -20,8 +20,8 @@ table! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct PhaseRef<'a> {
-    pub(in crate::abi) table: &'a PhaseTable,
-    pub(in crate::abi) at: *const u8,
+    pub(crate) table: &'a PhaseTable,
+    pub(crate) at: *const u8,
     lent: PhantomData<&'a ()>,
 }
 

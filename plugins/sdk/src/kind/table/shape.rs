@@ -1,9 +1,9 @@
 use glam::{DVec3, Vec2, Vec3};
 
 use super::table;
-use crate::abi::plain::Slice;
 use crate::kind::{Hit, Shape, ShapeSample, Surface};
 use crate::num::{Bounds3, Ray};
+use crate::wire::Slice;
 
 /// Triangles that a shape hands over: lent for the call, the host copies them.
 #[derive(Clone, Copy, Debug)]

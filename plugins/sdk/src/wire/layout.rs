@@ -4,83 +4,71 @@ use std::fmt::Write;
 use std::mem::MaybeUninit;
 
 /// A type that C can name.
-pub(super) trait CType {
+pub(crate) trait CType {
     /// Declares something of this type: `float x`, `const luxel_ray *ray`.
     fn declare(name: &str) -> String;
 }
 
 /// A type that the header defines.
-pub(super) trait Described {
+pub(crate) trait Described {
     /// Its definition in C.
     fn describe(out: &mut String);
 }
 
 /// A field of a frozen struct: its name and where it stands.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(crate) struct Place {
     /// The name.
-    pub(super) name: &'static str,
+    pub(crate) name: &'static str,
     /// Bytes from the start of the struct.
-    pub(super) offset: usize,
+    pub(crate) offset: usize,
 }
 
 /// A frozen struct.
 #[derive(Clone, Copy)]
-pub(super) struct Layout {
+pub(crate) struct Layout {
     /// The name in C.
-    pub(super) name: &'static str,
+    pub(crate) name: &'static str,
     /// Bytes.
-    pub(super) size: usize,
+    pub(crate) size: usize,
     /// Bytes.
-    pub(super) align: usize,
+    pub(crate) align: usize,
     /// The fields, in order.
-    pub(super) fields: &'static [Place],
+    pub(crate) fields: &'static [Place],
 }
 
 /// An argument of a function: as declared, or an array's address.
-pub(super) fn argument<T: CType>(name: &str) -> String {
+pub(crate) fn argument<T: CType>(name: &str) -> String {
     T::declare(name)
 }
 
 /// A comment in the header, from doc lines.
-pub(super) fn comment(out: &mut String, indent: &str, lines: &[&str]) {
+pub(crate) fn comment(out: &mut String, indent: &str, lines: &[&str]) {
     let text: Vec<_> = lines.iter().map(|line| line.trim()).collect();
     let text = text.join(&format!("\n{indent}   "));
     let _ = writeln!(out, "{indent}/* {text} */");
 }
 
+/// Types by their names in C.
 macro_rules! c_types {
     ($($ty:ty => $c:literal),* $(,)?) => { $(
-        impl CType for $ty {
+        impl $crate::wire::layout::CType for $ty {
             fn declare(name: &str) -> String {
                 format!(concat!($c, " {}"), name)
             }
         }
     )* };
 }
+pub(crate) use c_types;
 c_types! {
     f32 => "float", f64 => "double", u8 => "uint8_t", u32 => "uint32_t", u64 => "uint64_t",
     usize => "size_t", bool => "bool", i8 => "int8_t",
     glam::Vec2 => "luxel_vec2", glam::Vec3 => "luxel_vec3", glam::DVec2 => "luxel_dvec2",
     glam::DVec3 => "luxel_dvec3", glam::UVec2 => "luxel_uvec2",
     crate::color::Spectrum => "luxel_spectrum", super::Status => "luxel_status",
-    crate::kind::Needs => "uint32_t", crate::kind::Lobe => "uint32_t",
-    crate::kind::Wants => "uint32_t", crate::kind::ArrivalKind => "uint32_t",
-    crate::params::Quantity => "uint32_t",
-    crate::params::Maybe<f32> => "luxel_maybe_float",
-    crate::params::Maybe<f64> => "luxel_maybe_double",
     super::Slice<u8> => "luxel_bytes", super::Slice<u32> => "luxel_u32s",
-    super::Slice<crate::num::Ray> => "luxel_rays", super::Slice<f64> => "luxel_doubles", super::Slice<glam::Vec2> => "luxel_vec2s",
+    super::Slice<f64> => "luxel_doubles", super::Slice<glam::Vec2> => "luxel_vec2s",
     super::Slice<glam::Vec3> => "luxel_vec3s", super::Slice<[u32; 3]> => "luxel_triangles_of",
-    super::Slice<crate::params::Text<'static>> => "luxel_texts",
-    super::Slice<super::ParamTable> => "luxel_params",
-    super::Slice<super::ClassTable> => "luxel_classes",
-    crate::kind::Queue<crate::kind::Onward> => "luxel_onward_queue",
-    crate::kind::Queue<crate::kind::Shadow> => "luxel_shadow_queue",
-    crate::params::Text<'_> => "luxel_text", crate::params::Table<'_> => "luxel_doubles",
-    crate::params::File<'_> => "luxel_text", super::MeshSink => "luxel_mesh_sink",
-    super::ImportSink => "luxel_import_sink", super::FaultSink => "luxel_fault_sink",
-    super::ContextTable => "luxel_context_table",
 }
 
 impl<T: CType, const N: usize> CType for [T; N] {
@@ -108,16 +96,6 @@ impl<T: CType> CType for &mut T {
 impl<T: CType> CType for &mut MaybeUninit<T> {
     fn declare(name: &str) -> String {
         T::declare(&format!("*{name}"))
-    }
-}
-impl CType for *mut crate::kind::Lane {
-    fn declare(name: &str) -> String {
-        crate::kind::Lane::declare(&format!("*{name}"))
-    }
-}
-impl CType for *mut crate::kind::Arrival {
-    fn declare(name: &str) -> String {
-        crate::kind::Arrival::declare(&format!("*{name}"))
     }
 }
 impl CType for *mut bool {
@@ -162,12 +140,12 @@ impl CType for () {
 /// Lists frozen structs: their names in C and their layout.
 macro_rules! layouts {
     ($list:ident { $($ty:ty => $c_name:literal { $($field:ident),* $(,)? })* }) => {
-        const $list: &[$crate::abi::layout::Layout] = &[$(
-            $crate::abi::layout::Layout {
+        const $list: &[$crate::wire::layout::Layout] = &[$(
+            $crate::wire::layout::Layout {
                 name: $c_name,
                 size: size_of::<$ty>(),
                 align: align_of::<$ty>(),
-                fields: &[$($crate::abi::layout::Place {
+                fields: &[$($crate::wire::layout::Place {
                     name: stringify!($field),
                     offset: std::mem::offset_of!($ty, $field),
                 }),*],
@@ -175,7 +153,7 @@ macro_rules! layouts {
         ),*];
     };
 }
-pub(super) use layouts;
+pub(crate) use layouts;
 
 /// Describes frozen structs, whose fields say all that C needs: a list of layouts, and one of C.
 macro_rules! describe {
@@ -183,37 +161,37 @@ macro_rules! describe {
         $($(#[doc = $doc:literal])* $ty:ty => $c_name:literal { $($field:ident),* $(,)? })*
     }) => {
         $(
-            impl $crate::abi::layout::CType for $ty {
+            impl $crate::wire::layout::CType for $ty {
                 fn declare(name: &str) -> String {
                     format!(concat!($c_name, " {}"), name)
                 }
             }
-            impl $crate::abi::layout::Described for $ty {
+            impl $crate::wire::layout::Described for $ty {
                 fn describe(out: &mut String) {
-                    $crate::abi::layout::comment(out, "", &[$($doc),*]);
+                    $crate::wire::layout::comment(out, "", &[$($doc),*]);
                     out.push_str("typedef struct {\n");
                     $(out.push_str(&format!(
                         "    {};\n",
-                        $crate::abi::layout::field(|s: &$ty| &s.$field, stringify!($field))
+                        $crate::wire::layout::field(|s: &$ty| &s.$field, stringify!($field))
                     ));)*
                     out.push_str(concat!("} ", $c_name, ";\n\n"));
                 }
             }
         )*
-        $crate::abi::layout::layouts! { $list { $($ty => $c_name { $($field),* })* } }
+        $crate::wire::layout::layouts! { $list { $($ty => $c_name { $($field),* })* } }
         const $c_list: &[fn(&mut String)] =
-            &[$(<$ty as $crate::abi::layout::Described>::describe),*];
+            &[$(<$ty as $crate::wire::layout::Described>::describe),*];
     };
 }
-pub(super) use describe;
+pub(crate) use describe;
 
 /// Declares a field by the type that a way to it has.
-pub(super) fn field<S, F: CType>(_: fn(&S) -> &F, name: &str) -> String {
+pub(crate) fn field<S, F: CType>(_: fn(&S) -> &F, name: &str) -> String {
     F::declare(name)
 }
 
 /// FNV-1a over names, sizes, alignments and offsets: two sides that differ in any do not talk.
-pub(super) const fn hash(lists: &[&[Layout]]) -> u64 {
+pub(crate) const fn hash(lists: &[&[Layout]]) -> u64 {
     let mut h = 0xcbf2_9ce4_8422_2325;
     let mut i = 0;
     while i < lists.len() {

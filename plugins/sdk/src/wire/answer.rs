@@ -5,6 +5,9 @@ use std::cell::RefCell;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
+use super::put::Put;
+use super::{ByteSink, Slice};
+
 /// How a call across the boundary ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
@@ -34,7 +37,7 @@ thread_local! {
 /// # Safety
 /// `at` is the address of a valid `T`, lent for the call.
 #[inline(always)]
-pub(super) unsafe fn answer<T, R>(
+pub(crate) unsafe fn answer<T, R: Put>(
     at: *const u8,
     out: &mut MaybeUninit<R>,
     ask: impl FnOnce(&T) -> Option<R>,
@@ -43,7 +46,7 @@ pub(super) unsafe fn answer<T, R>(
     let params = unsafe { &*at.cast::<T>() };
     guarded(|| match ask(params) {
         Some(result) => {
-            out.write(result);
+            result.put(out);
             Status::OK
         }
         None => Status::NOTHING,
@@ -91,7 +94,7 @@ fn give_up() -> ! {
 
 /// The result of a call that a plugin made through the boundary. A panic below goes on up.
 #[inline(always)]
-pub(super) fn expect<T>(answer: Answer<T>) -> Option<T> {
+pub(crate) fn expect<T>(answer: Answer<T>) -> Option<T> {
     match answer {
         Ok(found) => found,
         Err(_) => give_up(),
@@ -105,8 +108,26 @@ pub fn last_panic() -> String {
 
 /// Keeps what panics of this code say, with their place, and prints nothing: what a library does
 /// when it is opened. Its standard library is its own, and so is its hook.
-pub(super) fn keep_panics() {
+pub(crate) fn keep_panics() {
     std::panic::set_hook(Box::new(|info| {
         LAST.with_borrow_mut(|last| *last = info.to_string().replace('\n', " "));
     }));
+}
+
+/// What every Rust library's `begin` does: its panics are kept for the host, not printed.
+///
+/// # Safety
+/// Sound for any caller; it has the type that the table wants.
+pub unsafe extern "C" fn begin() {
+    keep_panics();
+}
+
+/// What every Rust library's `last_panic` does.
+///
+/// # Safety
+/// Sound for any caller; it has the type that the table wants.
+pub unsafe extern "C" fn tell_last_panic(sink: &mut ByteSink) {
+    let said = last_panic();
+    // SAFETY: function and owner were made together by the host.
+    unsafe { (sink.take)(sink.owner, Slice::new(said.as_bytes())) }
 }

@@ -3,10 +3,10 @@ use std::marker::PhantomData;
 use glam::DVec3;
 
 use super::{PictureJobRef, SamplerRef, table};
-use crate::abi::answer::expect;
-use crate::abi::plain::Slice;
 use crate::kind::{Ask, Host, Job, Lane, PathIntegrator, Requests, Round, Wants, arrive_n};
 use crate::num::Ray;
+use crate::wire::Slice;
+use crate::wire::expect;
 
 /// A sphere around the scene.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +35,8 @@ table! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct HostRef<'a> {
-    pub(in crate::abi) table: &'a HostTable,
-    pub(in crate::abi) at: *const u8,
+    pub(crate) table: &'a HostTable,
+    pub(crate) at: *const u8,
     lent: PhantomData<&'a ()>,
 }
 

@@ -1,8 +1,8 @@
 use std::marker::PhantomData;
 
 use super::table;
-use crate::abi::answer::expect;
 use crate::kind::{SampleAt, Sampler, Samples};
+use crate::wire::expect;
 
 table! {
     /// Where random numbers come from: the same for the same arguments, in [0, 1).
@@ -26,8 +26,8 @@ table! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct SamplerRef<'a> {
-    pub(in crate::abi) table: &'a SamplerTable,
-    pub(in crate::abi) at: *const u8,
+    pub(crate) table: &'a SamplerTable,
+    pub(crate) at: *const u8,
     lent: PhantomData<&'a ()>,
 }
 

@@ -2,9 +2,11 @@
 //!
 //! Every function takes the address of a parameter struct first, writes what it finds to `out`, and
 //! returns a status; where it is not `OK`, `out` holds nothing. Tables grow at their end alone.
+#![expect(unsafe_code, reason = "addresses from the other side of the boundary are read")]
 
 mod camera;
 mod filter;
+mod importer;
 mod integrator;
 mod light;
 mod material;
@@ -15,8 +17,16 @@ mod sampler;
 mod shape;
 mod texture;
 
+use super::{
+    CameraRay, Escaped, Eval, FreeFlight, Hit, LightSample, Needs, Raster, Sample, ShapeSample,
+    Surface, Wants,
+};
+use crate::num::Bounds3;
+use crate::wire::{put_fields, put_whole};
+
 pub use camera::CameraTable;
 pub use filter::FilterTable;
+pub use importer::{ImportSink, ImporterTable, Value as ImportValueTable};
 pub use integrator::{HostRef, HostTable, IntegratorTable, Lanes, RoundRef, SceneSphere};
 pub use light::LightTable;
 pub use material::{MaterialRef, MaterialTable};
@@ -49,7 +59,7 @@ macro_rules! table {
                 $(#[doc = $doc])*
                 pub $name: unsafe extern "C" fn(
                     at: *const u8, $($arg: $ty,)* out: &mut std::mem::MaybeUninit<$out>,
-                ) -> $crate::abi::Status,
+                ) -> $crate::wire::Status,
             )*
         }
 
@@ -68,13 +78,13 @@ macro_rules! table {
                 #[inline(always)]
                 pub unsafe fn $name(
                     &self, at: *const u8 $(, $arg: $ty)*
-                ) -> $crate::abi::Answer<$out> {
+                ) -> $crate::wire::Answer<$out> {
                     let mut out = std::mem::MaybeUninit::uninit();
                     // SAFETY: the caller passes what this table's class was made for.
                     match unsafe { (self.$name)(at, $($arg,)* &mut out) } {
                         // SAFETY: the callee has written a result.
-                        $crate::abi::Status::OK => Ok(Some(unsafe { out.assume_init() })),
-                        $crate::abi::Status::NOTHING => Ok(None),
+                        $crate::wire::Status::OK => Ok(Some(unsafe { out.assume_init() })),
+                        $crate::wire::Status::NOTHING => Ok(None),
                         status => Err(status),
                     }
                 }
@@ -87,10 +97,10 @@ macro_rules! table {
                     $($name: {
                         unsafe extern "C" fn shim<T: $trait>(
                             at: *const u8, $($arg: $ty,)* out: &mut std::mem::MaybeUninit<$out>,
-                        ) -> $crate::abi::Status {
+                        ) -> $crate::wire::Status {
                             let ask = |$me: &T| $body;
                             // SAFETY: the host calls with a valid struct of this class.
-                            unsafe { $crate::abi::answer::answer(at, out, ask) }
+                            unsafe { $crate::wire::answer(at, out, ask) }
                         }
                         shim::<T>
                     },)*
@@ -98,15 +108,15 @@ macro_rules! table {
             }
         }
 
-        impl $crate::abi::layout::CType for $table {
+        impl $crate::wire::layout::CType for $table {
             fn declare(name: &str) -> String {
                 format!(concat!($c_name, " {}"), name)
             }
         }
 
-        impl $crate::abi::layout::Described for $table {
+        impl $crate::wire::layout::Described for $table {
             fn describe(out: &mut String) {
-                use $crate::abi::layout::{CType, argument, comment};
+                use $crate::wire::layout::{CType, argument, comment};
                 comment(out, "", &[$($about),*]);
                 out.push_str("typedef struct {\n");
                 out.push_str("    /* Bytes of this table. */\n    size_t size;\n");
@@ -124,4 +134,24 @@ macro_rules! table {
         }
     };
 }
-pub(in crate::abi) use table;
+use table;
+
+put_whole!(
+    Needs,
+    Wants,
+    Bounds3,
+    FreeFlight,
+    Surface,
+    ShapeSample,
+    CameraRay,
+    Escaped,
+    PhaseRef<'static>,
+    SceneSphere,
+    Raster,
+);
+put_fields! {
+    Eval { f, pdf }
+    Sample { weight, wi, pdf, eta, lobe }
+    Hit { t, at, face }
+    LightSample { le, wi, distance, pdf, delta }
+}

@@ -4,15 +4,15 @@ use std::marker::PhantomData;
 use std::panic::resume_unwind;
 
 use super::{Lanes, RoundRef, table};
-use crate::abi::answer::expect;
-use crate::abi::plain::Slice;
-use crate::abi::{Answer, ByteSink, Status, TellPanic, tell_last_panic};
 use crate::color::Spectrum;
 use crate::kind::{
     Arrival, Ask, Erased, Integrator, Job, Lane, Output, PathIntegrator, PictureJob, Raster,
     Requests, Round, Wants,
 };
 use crate::num::Ray;
+use crate::wire::Slice;
+use crate::wire::expect;
+use crate::wire::{Answer, ByteSink, Status, TellPanic, tell_last_panic};
 
 table! {
     /// Paths that a picture is made of: what happens when one begins and when it arrives.
@@ -46,10 +46,10 @@ table! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct PathsRef<'a> {
-    pub(in crate::abi) table: &'a PathsTable,
-    pub(in crate::abi) at: *const u8,
+    pub(crate) table: &'a PathsTable,
+    pub(crate) at: *const u8,
     /// Tells what a panic in them said; may be null.
-    pub(in crate::abi) last_panic: Option<TellPanic>,
+    pub(crate) last_panic: Option<TellPanic>,
     lent: PhantomData<&'a ()>,
 }
 
@@ -89,7 +89,7 @@ impl<'a> PathsRef<'a> {
             // SAFETY: the library lends the bytes to this call.
             *said = String::from_utf8_lossy(unsafe { bytes.get() }).into_owned();
         }
-        let mut said = crate::abi::last_panic();
+        let mut said = crate::wire::last_panic();
         if let (Some(tell), true) = (self.last_panic, said.is_empty()) {
             let mut sink = ByteSink { take, owner: (&raw mut said).cast() };
             // SAFETY: the library's own function; the sink lives.
@@ -234,8 +234,8 @@ unsafe fn room<'a, T>(items: *mut T, n: usize) -> &'a mut [T] {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct PictureJobRef<'a> {
-    pub(in crate::abi) table: &'a PictureJobTable,
-    pub(in crate::abi) at: *const u8,
+    pub(crate) table: &'a PictureJobTable,
+    pub(crate) at: *const u8,
     lent: PhantomData<&'a ()>,
 }
 

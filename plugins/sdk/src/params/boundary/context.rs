@@ -4,9 +4,8 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use super::plain::{ByteSink, Slice};
-use super::{Status, guarded};
-use crate::params::{BuildContext, Text};
+use super::super::{BuildContext, Text};
+use crate::wire::{ByteSink, Slice, Status, guarded};
 
 /// The host's functions, as C.
 #[derive(Clone, Copy)]
@@ -31,8 +30,8 @@ pub struct ContextTable {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct ContextRef<'a> {
-    pub(super) table: &'a ContextTable,
-    pub(super) at: *const u8,
+    pub(crate) table: &'a ContextTable,
+    pub(crate) at: *const u8,
     lent: PhantomData<&'a ()>,
 }
 

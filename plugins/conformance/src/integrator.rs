@@ -19,8 +19,8 @@ use crate::sweep::{Bench, Given, Set, node};
 use crate::values::LOOK;
 
 /// Side of the pictures, pixels, and of the tiles that are compared.
-const SIDE: u32 = 24;
-const TILE: u32 = 6;
+pub(crate) const SIDE: u32 = 24;
+pub(crate) const TILE: u32 = 6;
 
 /// Samples of a pixel, and for an integrator as it is by default: 1 % of its light shows.
 const SPP: u32 = 32;
@@ -94,7 +94,7 @@ fn picture(stage: &Stage, seed: u32, threads: usize, spp: u32) -> Film {
 }
 
 /// A scene around an integrator; `None` if it cannot be built.
-fn stage(
+pub(crate) fn stage(
     bench: &Bench,
     fill: &dyn Fn(&mut Scene),
     integrator: &str,
@@ -137,7 +137,7 @@ fn ball(scene: &mut Scene, radius: f64, material: Option<Value>) -> NodeId {
 }
 
 /// A matt ball and a lamp, each convex, under a sky: what arrives was scattered once at most.
-fn open_scene(scene: &mut Scene) {
+pub(crate) fn open_scene(scene: &mut Scene) {
     ball_and_lamp(scene, 1.0);
 }
 

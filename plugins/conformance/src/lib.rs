@@ -7,6 +7,8 @@
 mod any;
 mod camera;
 mod cells;
+mod convergence;
+mod endurance;
 mod files;
 mod filter;
 mod importer;
@@ -41,6 +43,7 @@ use report::Judge;
 use subject::Subject;
 use sweep::Bench;
 
+pub use endurance::Memory;
 pub use reference::CLASSES as REFERENCE_CLASSES;
 pub use report::{Report, Row, Verdict};
 pub use statistics::SIGNIFICANCE;
@@ -59,11 +62,14 @@ pub struct Options {
     pub samples: u32,
     /// Random parameter sets of each class, besides those at the ends of its ranges.
     pub sets: usize,
+    /// Where to look whether objects leave memory behind; nothing is said about it without. Other
+    /// work of the process must not disturb it.
+    pub memory: Option<Memory>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { seed: 0x5eed, samples: 16_384, sets: 6 }
+        Self { seed: 0x5eed, samples: 16_384, sets: 6, memory: None }
     }
 }
 
@@ -112,6 +118,7 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
             Ok(sets) => {
                 let subject = Subject { bench, class, sets, options: *options };
                 by_kind(&subject, &mut judge);
+                endurance::judge(&subject, &mut judge);
                 for set in &subject.sets {
                     // What a library answers after a failure says nothing of it.
                     let failure = set.object.failure();
@@ -142,7 +149,10 @@ fn by_kind(subject: &Subject<'_>, judge: &mut Judge) {
         Kind::Camera => camera::judge(subject, judge),
         Kind::Sampler => sampler::judge(subject, judge),
         Kind::Filter => filter::judge(subject, judge),
-        Kind::Integrator => integrator::judge(subject, judge),
+        Kind::Integrator => {
+            integrator::judge(subject, judge);
+            convergence::judge(subject, judge);
+        }
         Kind::Importer => importer::judge(subject, judge),
         Kind::Film => {}
     }

@@ -1,5 +1,6 @@
 //! What a run found: a table, for people and programs.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -8,7 +9,7 @@ use luxel_sdk::abi::Class;
 use crate::statistics::limit;
 
 /// How a check ended.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The figure is within its limit.
@@ -27,7 +28,7 @@ pub struct Row {
     /// The name of the class.
     pub class: String,
     /// What was checked.
-    pub check: &'static str,
+    pub check: Cow<'static, str>,
     /// How it ended.
     pub verdict: Verdict,
     /// The worst figure that was found, in the check's unit; standard deviations for statistics.
@@ -202,6 +203,7 @@ impl Judge {
                 None => Verdict::Fail,
             };
             let (figure, detail) = (found.figure, found.detail);
+            let check = Cow::Borrowed(check);
             Row { kind, class: class.clone(), check, verdict, figure, limit, detail }
         })
     }

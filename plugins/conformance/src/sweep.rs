@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
 use luxel_core::diag::{Diagnostic, SourceId, Span};
-use luxel_core::files::MemoryFiles;
+use luxel_core::files::{Files, MemoryFiles};
 use luxel_core::object::{Builder, ColorMode, Object, Objects, Resolved, Scratch, Site};
 use luxel_core::registry::Registry;
 use luxel_core::scene::{Argument, Color, Node, NodeId, Scene, Value};
@@ -100,10 +100,21 @@ impl Bench {
         given: &Given,
         mode: ColorMode,
     ) -> Result<Arc<Object>, Vec<Diagnostic>> {
+        self.build_of(&self.files, class, given, mode)
+    }
+
+    /// An object of a class that reads these files.
+    pub(crate) fn build_of(
+        &self,
+        files: &dyn Files,
+        class: &Class,
+        given: &Given,
+        mode: ColorMode,
+    ) -> Result<Arc<Object>, Vec<Diagnostic>> {
         let mut scene = self.props.clone();
         let id = node(&mut scene, class.kind, class.name, given);
         let before = Objects::default();
-        let mut builder = Builder::new(&self.registry, &scene, &self.files, mode, &before);
+        let mut builder = Builder::new(&self.registry, &scene, files, mode, &before);
         let object = builder.build(id);
         object.ok_or(builder.diagnostics)
     }

@@ -17,6 +17,8 @@ mod plate;
 mod settings;
 mod shape;
 
+use std::borrow::Cow;
+
 use luxel_core::registry::Registry;
 use luxel_sdk::abi::Class;
 
@@ -39,7 +41,7 @@ pub struct Caught {
     /// What is wrong with it.
     pub fault: &'static str,
     /// The checks that failed; none if it got through.
-    pub by: Vec<&'static str>,
+    pub by: Vec<Cow<'static, str>>,
 }
 
 /// Every mutant.
@@ -76,7 +78,7 @@ pub fn score(mutants: &[Mutant], options: &Options) -> Vec<Caught> {
             let Mutant { class, fault } = *mutant;
             let is_it = |c: &Class| c.kind == class.kind && c.name == class.name;
             let report = crate::run(&registry, is_it, options);
-            let by = report.failed().map(|row| row.check).collect();
+            let by = report.failed().map(|row| row.check.clone()).collect();
             Caught { class: format!("{class:?}"), fault, by }
         })
         .collect()

@@ -1,5 +1,6 @@
 //! Arguments that several commands share.
 
+use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -32,6 +33,18 @@ pub(crate) struct PluginArgs {
     /// Take the built-in classes from this library: for tests and benchmarks
     #[arg(long, hide = true, value_name = "FILE")]
     pub(crate) builtins: Option<PathBuf>,
+}
+
+impl PluginArgs {
+    /// The same, as it is written on a command line.
+    pub(crate) fn words(&self) -> Vec<OsString> {
+        let option = |name: &str, path: &PathBuf| [name.into(), path.into()];
+        let mut words: Vec<OsString> =
+            self.dirs.iter().flat_map(|dir| option("--plugin-dir", dir)).collect();
+        words.extend(self.allow_unlocked_plugins.then(|| "--allow-unlocked-plugins".into()));
+        words.extend(self.builtins.iter().flat_map(|file| option("--builtins", file)));
+        words
+    }
 }
 
 /// What is rendered and where it goes.

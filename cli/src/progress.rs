@@ -51,6 +51,11 @@ impl Steps {
         Self { start: Instant::now(), shown: std::io::stderr().is_terminal() }
     }
 
+    /// No line is shown.
+    pub(crate) fn hidden() -> Self {
+        Self { start: Instant::now(), shown: false }
+    }
+
     /// The step after `done` of `total` begins.
     pub(crate) fn next(&self, done: usize, total: usize, what: &str) {
         if self.shown {

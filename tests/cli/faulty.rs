@@ -16,6 +16,12 @@ typedef struct { luxel_spectrum reflectance; } faulty;
 static atomic_int asked;
 static volatile int *volatile nowhere;
 static volatile int never = 1;
+static void *volatile kept;
+static luxel_status prepare(void *at) {
+    (void)at; (void)kept;
+    MADE;
+    return LUXEL_OK;
+}
 static luxel_status needs(const void *at, uint32_t *out) { (void)at; *out = 1; return LUXEL_OK; }
 static luxel_status act(void) {
     int n = atomic_fetch_add(&asked, 1);
@@ -46,7 +52,8 @@ static const luxel_param PARAMS[] = {
 };
 static const luxel_class CLASSES[] = {
     {.kind = LUXEL_MATERIAL, .size = sizeof(faulty), .name = LUXEL_TEXT("faulty"),
-     .doc = LUXEL_TEXT("Goes wrong."), .params = {PARAMS, 1}, .behaviour = &TABLE},
+     .doc = LUXEL_TEXT("Goes wrong."), .params = {PARAMS, 1}, .prepare = prepare,
+     .behaviour = &TABLE},
 };
 static void said(luxel_byte_sink *sink) {
     (void)sink;
@@ -68,6 +75,9 @@ pub(crate) const ABORT: &str = "abort()";
 pub(crate) const LEAVE: &str = "if (n == 40) exit(0)";
 pub(crate) const NEVER_END: &str = "while (never) {}";
 
+/// And what it does when an object is made.
+pub(crate) const LEAK: &str = "kept = malloc(24)";
+
 /// The same ball, of what the library offers.
 pub(crate) fn scene() -> String {
     SCENE.replace("diffuse { reflectance = 0.5 }", "faulty {}")
@@ -75,12 +85,13 @@ pub(crate) fn scene() -> String {
 
 /// Builds `plugins/libfaulty`, which does that, and puts it in its place at once.
 pub(crate) fn build(folder: &Folder, fault: &str) -> String {
-    build_with(folder, fault, "")
+    build_with(folder, fault, "", "")
 }
 
-/// The same, with something that happens when the library is opened.
-pub(crate) fn build_with(folder: &Folder, fault: &str, opened: &str) -> String {
-    folder.write("plugins/faulty.c", &SOURCE.replace("FAULT", fault).replace("OPENED", opened));
+/// The same, with something that happens when an object is made, and when the library is opened.
+pub(crate) fn build_with(folder: &Folder, fault: &str, made: &str, opened: &str) -> String {
+    let source = SOURCE.replace("FAULT", fault).replace("MADE", made).replace("OPENED", opened);
+    folder.write("plugins/faulty.c", &source);
     let include = Path::new(env!("CARGO_MANIFEST_DIR")).join("../plugins/sdk/include");
     let mut command = Command::new("cc");
     command.args(["-std=c11", "-shared", "-fPIC", "-O1", "-o", "new", "faulty.c", "-I"]);

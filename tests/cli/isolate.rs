@@ -101,7 +101,7 @@ fn a_plugin_that_crashes_or_leaves_costs_a_message() {
 fn a_library_that_crashes_while_it_is_opened_is_named() {
     let folder = Folder::new("crash-open").with("a.scene", &faulty::scene());
     let opened = "__attribute__((constructor)) static void now(void) { abort(); }";
-    faulty::build_with(&folder, faulty::NOTHING, opened);
+    faulty::build_with(&folder, faulty::NOTHING, "", opened);
     let done = render(&folder, &["--isolate"]);
     let told = ["SIGABRT", "while opening plugin libraries", "libfaulty"];
     assert!(done.code == 1 && told.iter().all(|part| done.err.contains(part)), "{done:?}");

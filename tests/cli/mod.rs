@@ -5,6 +5,7 @@ mod faulty;
 mod grown;
 mod hostile;
 mod isolate;
+mod judged;
 mod libraries;
 mod plugin;
 #[cfg(test)]

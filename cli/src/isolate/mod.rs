@@ -14,7 +14,7 @@ use std::time::Duration;
 
 pub(crate) use beat::{Beat, Phase};
 pub(crate) use child::Child;
-pub(crate) use ending::End;
+pub(crate) use ending::{End, Ending};
 pub(crate) use supervise::{supervise, tell};
 
 /// Names the folder of the child's reports.

@@ -4,10 +4,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use luxel_sdk::abi::Class;
-
 use crate::exit::Failure;
 use crate::interrupt::Guard;
+use crate::isolate::Beat;
 use crate::progress::Steps;
 use crate::report;
 
@@ -22,26 +21,34 @@ pub(super) struct Course {
 }
 
 impl Course {
+    /// A process that tells another how far it has come tells nobody else.
+    ///
     /// # Errors
     /// If the system refuses to tell of Ctrl-C.
-    pub(super) fn new() -> Result<Self, Failure> {
+    pub(super) fn new(beat: &Beat) -> Result<Self, Failure> {
         let stop = Arc::new(AtomicBool::new(false));
         let stopping = stop.clone();
-        Guard::default().on_ctrl_c(move || {
+        let alone = beat.is_silent();
+        let interrupt = Guard::default().on_ctrl_c(move || {
             stopping.store(true, Ordering::Relaxed);
-            report::aside("interrupted: this class is judged to its end; Ctrl-C again gives it up");
+            if alone {
+                let told = "interrupted: this class is judged to its end; Ctrl-C again gives it up";
+                report::aside(told);
+            }
         })?;
-        Ok(Self { stop, steps: Steps::new(), begun: 0, total: 0 })
+        beat.on_stop(interrupt);
+        let steps = if alone { Steps::new() } else { Steps::hidden() };
+        Ok(Self { stop, steps, begun: 0, total: 0 })
     }
 
-    /// A class is next, unless the work was interrupted.
-    pub(super) fn next(&mut self, class: &Class, done: usize, total: usize) -> ControlFlow<()> {
+    /// A class, by its kind and name, is next, unless the work was interrupted.
+    pub(super) fn next(&mut self, what: &str, done: usize, total: usize) -> ControlFlow<()> {
         self.total = total;
         if self.stop.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
         self.begun = done + 1;
-        self.steps.next(done, total, &format!("{class:?}"));
+        self.steps.next(done, total, what);
         ControlFlow::Continue(())
     }
 

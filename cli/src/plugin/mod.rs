@@ -4,6 +4,7 @@ mod list;
 mod trust;
 mod new;
 mod test;
+mod apart;
 mod course;
 mod mutants;
 mod template;

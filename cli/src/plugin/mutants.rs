@@ -9,6 +9,7 @@ use serde_json::json;
 use super::course::Course;
 use super::test::{Args, Choice, count};
 use crate::exit::{Exit, Failure};
+use crate::isolate::Beat;
 use crate::report;
 
 pub(super) fn run(args: &Args, words: &[String], options: &Options) -> Result<Exit, Failure> {
@@ -16,10 +17,10 @@ pub(super) fn run(args: &Args, words: &[String], options: &Options) -> Result<Ex
     let known: Vec<_> = chosen.iter().map(|mutant| mutant.class).collect();
     let choice = Choice::new(words, &known)?;
     chosen.retain(|mutant| choice.takes(&mutant.class));
-    let mut course = Course::new()?;
+    let mut course = Course::new(&Beat::silent())?;
     let mut found = vec![];
     for (done, mutant) in chosen.iter().enumerate() {
-        if course.next(&mutant.class, done, chosen.len()).is_break() {
+        if course.next(&format!("{:?}", mutant.class), done, chosen.len()).is_break() {
             break;
         }
         found.extend(score(std::slice::from_ref(mutant), options));
@@ -70,7 +71,7 @@ mod tests {
         let one = |by: &[&'static str]| Caught {
             class: "filter narrow".into(),
             fault: "too narrow",
-            by: by.to_vec(),
+            by: by.iter().map(|check| (*check).into()).collect(),
         };
         let told = table(&[one(&["weights", "mean"]), one(&[])]);
         let ends: Vec<_> = told.lines().map(|line| line[66..].to_owned()).collect();

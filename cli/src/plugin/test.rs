@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::io::Read;
 use std::path::Path;
 
 use luxel_conformance::{Options, Report, Row, run_while};
@@ -11,9 +12,10 @@ use luxel_sdk::kind::Kind;
 use serde_json::json;
 
 use super::course::Course;
-use super::mutants;
+use super::{apart, mutants};
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
+use crate::isolate::{Beat, IsolateArgs, Phase};
 use crate::libraries::{Session, Surroundings, is_library, open_file};
 use crate::progress::duration;
 use crate::report::{Form, Stream};
@@ -22,7 +24,7 @@ use crate::{list, load, report};
 /// Judge plugins: does each keep what its kind promises?
 ///
 /// Of the plugins that a scene may name, or of one library, which need not be trusted: naming it lets
-/// its code run. /// Objects are made from each plugin's schema, at the ends of its ranges and at random inside, and
+/// its code run. Objects are made from each plugin's schema, at the ends of its ranges and at random inside, and
 /// asked for what every plugin of the kind must satisfy. Prints each check with the worst figure that
 /// was found and its limit; below a check that failed, the parameters and the place. Equal seeds give
 /// equal reports. Ctrl-C ends after the class in hand, with what was judged so far.
@@ -36,6 +38,7 @@ Examples:
   luxel plugin test material
   luxel plugin test filter box --json
   luxel plugin test target/release/libvelvet.so
+  luxel plugin test target/release/libvelvet.so --isolate
   luxel plugin test target/release/libvelvet.so material velvet
   luxel plugin test --mutants")]
 pub(crate) struct Args {
@@ -49,15 +52,20 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
     pub(super) seed: u64,
     /// Judge plugins that are wrong on purpose, to see whether the checks notice
-    #[arg(long)]
+    #[arg(long, conflicts_with = "isolate")]
     mutants: bool,
+    /// Print kind and name of what would be judged
+    #[arg(long, hide = true)]
+    list: bool,
     #[command(flatten)]
-    plugins: PluginArgs,
+    pub(super) isolate: IsolateArgs,
+    #[command(flatten)]
+    pub(super) plugins: PluginArgs,
 }
 
 impl Args {
     /// The library, if the first word is the path of one, and the words after it.
-    fn library(&self) -> (Option<&Path>, &[String]) {
+    pub(super) fn library(&self) -> (Option<&Path>, &[String]) {
         let path = self.what.first().map(Path::new);
         let names_file = |path: &&Path| {
             is_library(path) || path.to_string_lossy().contains(std::path::is_separator)
@@ -70,7 +78,7 @@ impl Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let options = Options { seed: args.seed, ..Options::default() };
+    let options = Options { seed: args.seed, memory: Some(memory), ..Options::default() };
     if args.mutants {
         let (library, words) = args.library();
         if let Some(file) = library {
@@ -79,6 +87,22 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         }
         return mutants::run(args, words, &options);
     }
+    let Some(beat) = args.isolate.beat() else { return apart::run(args) };
+    let _end = beat.until_the_end();
+    judge(args, &beat, &options)
+}
+
+/// What the process holds of memory, in bytes, where the system tells it in `/proc`.
+fn memory() -> Option<u64> {
+    let status = std::fs::File::options().read(true).open("/proc/self/status").ok()?;
+    let mut text = String::new();
+    status.take(1 << 16).read_to_string(&mut text).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.trim().strip_suffix(" kB")?.parse::<u64>().ok()? * 1024)
+}
+
+fn judge(args: &Args, beat: &Beat, options: &Options) -> Result<Exit, Failure> {
+    beat.phase(Phase::Opening);
     let (library, words) = args.library();
     let (registry, own) = if let Some(file) = library {
         with_library(file, &args.plugins)?
@@ -89,15 +113,26 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         (plugins.registry, all)
     };
     let choice = Choice::new(words, &own)?;
-    let mut course = Course::new()?;
+    if args.list {
+        return list_classes(&own, &choice);
+    }
+    beat.phase(Phase::Judging);
+    let mut course = Course::new(beat)?;
     let is_own = |class: &Class| own.iter().any(|o| (o.kind, o.name) == (class.kind, class.name));
     let found = run_while(
         &registry,
         |class| is_own(class) && choice.takes(class),
-        &options,
-        |step| course.next(&step.class, step.done, step.total),
+        options,
+        |step| course.next(&format!("{:?}", step.class), step.done, step.total),
     );
     tell(args, &found, course)
+}
+
+fn list_classes(own: &[Class], choice: &Choice) -> Result<Exit, Failure> {
+    let chosen = own.iter().filter(|class| class.kind != Kind::Film && choice.takes(class));
+    let names: Vec<_> = chosen.map(|class| (class.kind.word(), class.name)).collect();
+    report::out(&format!("{}\n", json!(names)))?;
+    Ok(Exit::Fine)
 }
 
 /// The built-in classes and those of a library, and the latter alone.
@@ -113,7 +148,11 @@ fn with_library(file: &Path, args: &PluginArgs) -> Result<(Registry, Vec<Class>)
     Ok((registry, opened.classes))
 }
 
-fn tell(args: &Args, found: &Report, course: Course) -> Result<Exit, Failure> {
+/// Prints what was found.
+///
+/// # Errors
+/// If standard output cannot be written.
+pub(super) fn tell(args: &Args, found: &Report, course: Course) -> Result<Exit, Failure> {
     let Course { begun, total, .. } = course;
     let (time, complete) = (duration(course.seconds()), course.is_complete());
     // The line of progress ends here.
@@ -236,7 +275,7 @@ mod tests {
         let row = |(check, verdict): &(&'static str, Verdict)| Row {
             kind: "filter",
             class: "box".into(),
-            check,
+            check: (*check).into(),
             verdict: verdict.clone(),
             figure: 0.0,
             limit: 0.0,

@@ -1,6 +1,6 @@
 //! From a finished library file to the first pixel that it made, as `luxel watch` does it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
@@ -67,7 +67,7 @@ fn watch(luxel: &Luxel, scene: &Path, folder: &Path, out: &Path) -> Result<Child
 fn reloads(
     watch: &mut Child,
     bytes: &[u8],
-    library: &PathBuf,
+    library: &Path,
     picture: &Path,
 ) -> Result<(Vec<f64>, Option<f64>), String> {
     let mut seen = newer(picture, None, watch)?;

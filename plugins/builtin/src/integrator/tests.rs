@@ -134,7 +134,7 @@ fn dark_and_broken_paths_end() {
 
 #[test]
 fn an_open_place_sees_the_whole_sky() {
-    let integrator = AmbientOcclusion { distance: luxel_sdk::params::Maybe::default() };
+    let integrator = AmbientOcclusion { distance: Maybe::default() };
     for i in 0..20 {
         assert!((radiance(&integrator, &wall(0.0, false), i) - 1.0).abs() <= 0.0);
     }

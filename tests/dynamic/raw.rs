@@ -174,7 +174,12 @@ unsafe extern "C" fn astray<const LANE: u32>(
         0 => requests.rays.push(Onward { ray, lane: n }),
         // Lanes of others.
         1 => (0..n).for_each(|lane| requests.rays.push(Onward { ray, lane })),
-        2 => requests.shadows.push(Shadow { ray, lane: u32::MAX, pixel: Shadow::OWN, l: Spectrum::ONE }),
+        2 => requests.shadows.push(Shadow {
+            ray,
+            lane: u32::MAX,
+            pixel: Shadow::OWN,
+            l: Spectrum::ONE,
+        }),
         3 => {
             let lane = n - 1;
             requests.shadows.push(Shadow { ray, lane, pixel: Shadow::OWN, l: Spectrum::ONE });

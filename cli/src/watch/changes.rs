@@ -36,8 +36,9 @@ pub(super) enum Noticed {
     Nothing,
 }
 
-/// A save is often several events: this long without one means that it is done.
-const QUIET: Duration = Duration::from_millis(30);
+/// A save is often several events: this long without one means that it is done. What an editor writes
+/// in pieces further apart is looked at again.
+const QUIET: Duration = Duration::from_millis(8);
 /// An editor that deletes or empties a file before it writes it takes at most this long.
 const PATIENCE: Duration = Duration::from_millis(120);
 /// Events may be lost or never come (network mounts): look this often anyway.

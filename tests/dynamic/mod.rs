@@ -13,6 +13,7 @@ mod light_tracer;
 mod misbehave;
 mod raw;
 mod schema;
+mod shapeless;
 mod wrong_pictures;
 
 use std::path::{Path, PathBuf};

@@ -20,6 +20,7 @@ use crate::diag::Diagnostic;
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Object, Objects};
 use crate::registry::Registry;
+use crate::registry::dynamic::{FAILED, remote};
 use crate::scene::{Hash, NodeId, Scene, Value};
 
 /// A stage with the warnings that arose.
@@ -120,9 +121,9 @@ impl Maker<'_> {
     fn light(&mut self, flat: &Flat) {
         let Some(object) = self.builder.build(flat.node) else { return };
         if object.fixed().light().form() == LightForm::Surface {
-            let shape = self.scene.node(flat.node).get("shape").map(|argument| &argument.value);
-            if let Some(Value::Node(shape)) = shape {
-                self.shape(flat, *shape, Some(object));
+            match self.child(flat.node, "shape") {
+                Some(shape) => self.shape(flat, shape, Some(object)),
+                None => self.shapeless(flat, &object),
             }
             return;
         }
@@ -130,6 +131,24 @@ impl Maker<'_> {
         if let Some(transform) = transform {
             self.made.lights.push(LightSource::Free { object, transform });
         }
+    }
+
+    /// A light of a surface that nobody gave: it would shine from nowhere.
+    fn shapeless(&mut self, flat: &Flat, light: &Object) {
+        let (class, span) = (light.class(), self.scene.node(flat.node).span);
+        let name = class.name;
+        let told = if class.params.iter().any(|param| param.name == "shape") {
+            Diagnostic::error("E0403", span, format!("`{name}` wants `shape`"))
+                .help("`shape` is a shape: what shines")
+        } else {
+            let of = remote(class).map_or_else(String::new, |it| format!(" of {}", it.origin()));
+            let message = format!(
+                "light `{name}`{of} shines from a shape's surface, but takes no shape: its class \
+                 lacks the parameter `shape`"
+            );
+            Diagnostic::error(FAILED, span, message).label(span, "this object")
+        };
+        self.builder.diagnostics.push(told);
     }
 
     /// `Some(None)` where there is nothing to transform, `None` when the transform is singular.

@@ -10,7 +10,8 @@ use crate::params::Fault;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum LightForm {
-    /// A shape's surface shines: `le`.
+    /// A shape's surface shines: `le`. Which shape, the parameter `shape` says, a `ShapeSlot`: without
+    /// it the scene is refused.
     Surface,
     /// A point: `sample`, which always finds the same point.
     Point,

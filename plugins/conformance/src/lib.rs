@@ -41,7 +41,7 @@ use luxel_sdk::sampling::hash_combine64;
 
 use report::Judge;
 use subject::Subject;
-use sweep::Bench;
+use sweep::{Bench, Sets, Unmade};
 
 pub use endurance::Memory;
 pub use reference::CLASSES as REFERENCE_CLASSES;
@@ -115,7 +115,10 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
         any::refuses_what_is_out_of_range(bench, &class, &mut judge);
         let name = class.name.bytes().fold(options.seed, |h, b| hash_combine64(h, u64::from(b)));
         match bench.sets(&class, name, options.sets) {
-            Ok(sets) => {
+            Ok(Sets { sets, failed }) => {
+                for told in failed {
+                    judge.holds(FAILS, false, || told);
+                }
                 let subject = Subject { bench, class, sets, options: *options };
                 by_kind(&subject, &mut judge);
                 endurance::judge(&subject, &mut judge);
@@ -127,7 +130,12 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
                     });
                 }
             }
-            Err(why) => judge.skip(UNMADE, why),
+            Err(Unmade { why, failed }) => {
+                if failed {
+                    judge.holds(FAILS, false, || why.clone());
+                }
+                judge.skip(UNMADE, why);
+            }
         }
     }));
     let message = caught.err().map(|payload| {

@@ -4,10 +4,11 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec2};
 use luxel_core::scene::Value;
+use luxel_sdk::abi::Class;
 use luxel_sdk::color::{RgbSpace, Spectrum};
-use luxel_sdk::kind::{Light, LightForm, LightQuery, LightSample};
+use luxel_sdk::kind::{Kind, Light, LightForm, LightQuery, LightSample};
 use luxel_sdk::num::Moments;
-use luxel_sdk::params::{Quantity, Unit};
+use luxel_sdk::params::{Quantity, Type, Unit};
 use luxel_sdk::sampling::{Rng, uniform_sphere};
 
 use crate::lobes::{Drawn, Lobes};
@@ -35,7 +36,12 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
             judge.holds("power is finite", power >= 0.0 && power.is_finite(), || set.label.clone());
             let view = View { light, set, n: subject.options.samples };
             match light.form() {
-                LightForm::Surface => view.surface(&mut rng, judge),
+                LightForm::Surface => {
+                    judge.holds("a surface has a `shape`", takes_shape(&subject.class), || {
+                        "its class lacks the parameter".to_owned()
+                    });
+                    view.surface(&mut rng, judge);
+                }
                 LightForm::Point => view.point(&mut rng, judge),
                 LightForm::Infinite => view.infinite(&mut rng, judge),
             }
@@ -52,6 +58,12 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
         }
         bits
     });
+}
+
+/// Whether a scene can say which shape shines.
+fn takes_shape(class: &Class) -> bool {
+    let shape = Type::Object(Kind::Shape);
+    class.params.iter().any(|param| param.name == "shape" && param.ty == shape)
 }
 
 /// A light and how it was made.

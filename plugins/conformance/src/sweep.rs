@@ -40,6 +40,27 @@ pub(crate) struct Set {
     pub(crate) mode: ColorMode,
 }
 
+/// The objects that could be made of a class.
+pub(crate) struct Sets {
+    pub(crate) sets: Vec<Set>,
+    /// Those at which its code failed, and how: what it refuses with a word is no failure.
+    pub(crate) failed: Vec<String>,
+}
+
+/// Why no object of a class could be made.
+pub(crate) struct Unmade {
+    pub(crate) why: String,
+    /// Whether its code failed, rather than refused.
+    pub(crate) failed: bool,
+}
+
+/// The code of a plugin that panicked, or answered what none may.
+const FAILED: &str = "E0421";
+
+fn has_failed(found: &[Diagnostic]) -> bool {
+    found.iter().any(|d| d.code == FAILED)
+}
+
 impl Set {
     /// Asks the object at one place, for as long as the closure runs.
     pub(crate) fn ask<R>(&self, f: impl FnOnce(Resolved<'_>) -> R) -> R {
@@ -120,9 +141,10 @@ impl Bench {
     }
 
     /// The sets of a class, the first of which is nominal; or why none can be made.
-    pub(crate) fn sets(&self, class: &Class, seed: u64, n: usize) -> Result<Vec<Set>, String> {
+    pub(crate) fn sets(&self, class: &Class, seed: u64, n: usize) -> Result<Sets, Unmade> {
         let nominal = self.nominal(class)?;
-        let mut sweep = Sweep { bench: self, class, nominal, sets: vec![] };
+        let made = Sets { sets: vec![], failed: vec![] };
+        let mut sweep = Sweep { bench: self, class, nominal, made };
         sweep.push("as by default", Level::Usual, sweep.nominal.clone());
         for param in own(class) {
             sweep.extremes(param);
@@ -134,25 +156,31 @@ impl Bench {
         for i in 0..n {
             sweep.random(&mut rng, &format!("random {i}"), i % 3 == 2);
         }
-        Ok(sweep.sets)
+        Ok(sweep.made)
     }
 
     /// The least that an object of the class needs.
-    fn nominal(&self, class: &Class) -> Result<Given, String> {
-        let mut why = String::new();
+    fn nominal(&self, class: &Class) -> Result<Given, Unmade> {
+        let (mut why, mut failed) = (String::new(), false);
         for member in 0..4 {
             for optional in [false, true] {
                 for file in files::NAMES {
                     let given = least(class, member, optional, file);
                     match self.build(class, &given, ColorMode::Rgb) {
                         Ok(_) => return Ok(given),
-                        Err(found) if why.is_empty() => why = said(&found),
-                        Err(_) => {}
+                        Err(found) => {
+                            // A failure counts for more than what was refused before it.
+                            let fails = has_failed(&found);
+                            if why.is_empty() || (fails && !failed) {
+                                (why, failed) = (said(&found), fails);
+                            }
+                        }
                     }
                 }
             }
         }
-        Err(format!("no parameters are known with which it can be made: {why}"))
+        let why = format!("no parameters are known with which it can be made: {why}");
+        Err(Unmade { why, failed })
     }
 }
 
@@ -223,11 +251,12 @@ struct Sweep<'a> {
     bench: &'a Bench,
     class: &'a Class,
     nominal: Given,
-    sets: Vec<Set>,
+    made: Sets,
 }
 
 impl Sweep<'_> {
-    /// Adds a set if it can be made. Combinations that the plugin refuses are no sets.
+    /// Adds a set if it can be made. Combinations that the plugin refuses are no sets; those at which
+    /// it fails are told.
     fn push(&mut self, label: impl Into<String>, level: Level, given: Given) -> bool {
         self.push_in(label, level, given, ColorMode::Rgb)
     }
@@ -240,8 +269,15 @@ impl Sweep<'_> {
         mode: ColorMode,
     ) -> bool {
         let label = label.into();
-        let Ok(object) = self.bench.build(self.class, &given, mode) else { return false };
-        self.sets.push(Set { label, given, object, level, mode });
+        match self.bench.build(self.class, &given, mode) {
+            Ok(object) => self.made.sets.push(Set { label, given, object, level, mode }),
+            Err(found) => {
+                if has_failed(&found) {
+                    self.made.failed.push(format!("{label}: {}", said(&found)));
+                }
+                return false;
+            }
+        }
         true
     }
 

@@ -82,9 +82,39 @@ impl Light for Beam {
     }
 }
 
+/// A lamp that nobody can give a shape.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Shapeless {
+    /// Its light.
+    #[param(emission(radiance, power, scale))]
+    emission: Emission,
+}
+
+impl Shapeless {
+    fn lamp(&self) -> Lamp {
+        Lamp { shape: ShapeSlot::default(), emission: self.emission, inside: false }
+    }
+}
+
+impl Light for Shapeless {
+    fn form(&self) -> LightForm {
+        LightForm::Surface
+    }
+
+    fn le(&self, cos_o: f32, uv: Vec2, area: f64) -> Spectrum {
+        self.lamp().le(cos_o, uv, area)
+    }
+
+    fn power(&self, area: f64, scene_radius: f64) -> f32 {
+        self.lamp().power(area, scene_radius)
+    }
+}
+
 /// All of them.
 pub(super) const MUTANTS: &[Mutant] = &[
     Mutant { class: Class::light::<HalfSphere>("half_sphere"), fault: "pdf of a half sphere" },
     Mutant { class: Class::light::<TwoTruths>("two_truths"), fault: "samples brighter than rays" },
     Mutant { class: Class::light::<Beam>("beam"), fault: "power over area without π" },
+    Mutant { class: Class::light::<Shapeless>("shapeless"), fault: "shines from no shape" },
 ];

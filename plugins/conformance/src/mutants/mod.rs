@@ -2,6 +2,7 @@
 //!
 //! Each is one of the suite's own plugins with one fault. They see the SDK alone.
 
+mod abroad;
 mod dawn;
 mod facets;
 mod field;
@@ -13,6 +14,7 @@ mod material;
 mod numbers;
 mod paths;
 mod pattern;
+mod picture;
 mod plate;
 mod settings;
 mod shape;
@@ -46,7 +48,7 @@ pub struct Caught {
 
 /// Every mutant.
 pub fn mutants() -> Vec<Mutant> {
-    [
+    let linked = [
         material::MUTANTS,
         facets::MUTANTS,
         glass::MUTANTS,
@@ -61,8 +63,9 @@ pub fn mutants() -> Vec<Mutant> {
         settings::MUTANTS,
         numbers::MUTANTS,
         paths::MUTANTS,
-    ]
-    .concat()
+        picture::MUTANTS,
+    ];
+    [linked.concat().as_slice(), &abroad::mutants()].concat()
 }
 
 /// Judges each of the mutants alone, in a registry that holds nothing else but the host's classes.
@@ -91,8 +94,8 @@ mod tests {
     /// What is caught is the fault, not the plugin around it.
     #[test]
     fn without_their_faults_the_mutants_pass() {
-        let settings = [plate::SOUND, dawn::SOUND, pattern::SOUND, paths::SOUND];
-        let alone = [facets::SOUND, glass::SOUND];
+        let settings = [plate::SOUND, dawn::SOUND, pattern::SOUND, paths::SOUND, picture::SOUND];
+        let alone = [facets::SOUND, glass::SOUND, abroad::sound()];
         let more = [haze::SOUND, lamps::SOUND, numbers::SOUND].concat();
         let classes = [alone.as_slice(), &settings, &more].concat();
         let sound: Vec<_> = classes.into_iter().map(|class| Mutant { class, fault: "" }).collect();

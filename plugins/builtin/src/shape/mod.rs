@@ -1,13 +1,18 @@
 //! The built-in plugins of kind shape.
 
+mod axial;
 mod r#box;
+mod capsule;
+mod cone;
 mod cylinder;
 mod disk;
 mod mesh;
+mod plane;
 mod rectangle;
 mod sphere;
 #[cfg(test)]
 mod testing;
+mod torus;
 pub(crate) mod up;
 
 use glam::DVec3;
@@ -22,6 +27,10 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::shape::<disk::Disk>("disk"),
     Class::shape::<r#box::Box>("box"),
     Class::shape::<cylinder::Cylinder>("cylinder"),
+    Class::shape::<cone::Cone>("cone"),
+    Class::shape::<capsule::Capsule>("capsule"),
+    Class::shape::<torus::Torus>("torus"),
+    Class::shape::<plane::Plane>("plane"),
     Class::shape::<mesh::Mesh<'_>>("mesh"),
 ];
 

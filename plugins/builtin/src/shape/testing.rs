@@ -1,6 +1,6 @@
 //! What the tests of every analytic shape ask: hits, offsets, densities.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Shape, Surface};
 use luxel_sdk::num::{Moments, Ray, gamma64, offset_origin};
 use luxel_sdk::sampling::{Rng, uniform_sphere};
@@ -27,7 +27,11 @@ pub(super) fn check_convex(shape: &dyn Shape, seed: u64, residual: impl Fn(DVec3
     let (centre, size) = (b.centre(), b.diagonal().length());
     let mut n_hits = 0;
     for i in 0..4000 {
-        let target = centre + direction(&mut rng) * (0.3 * size * f64::from(rng.f32()));
+        // Of thin shapes only what is aimed at is met.
+        let target = match shape.sample(None, rng.pair()) {
+            Some(s) if i / 6 % 2 == 0 => s.surface.p,
+            _ => centre + direction(&mut rng) * (0.3 * size * f64::from(rng.f32())),
+        };
         // From nearby and from 10⁴ sizes away, with directions from short to long.
         let far = if i % 2 == 0 { 1.5 } else { 1e4 };
         let o = centre + direction(&mut rng) * (far * size);
@@ -126,4 +130,108 @@ pub(super) fn check_solid_angle(shape: &dyn Shape, from: DVec3, seed: u64) {
     let noise = rays.standard_error().hypot(samples.standard_error());
     assert!((rays.mean - samples.mean).abs() <= 5.0 * noise, "{} {}", rays.mean, samples.mean);
     assert!(rays.mean > 20.0 * noise, "too few rays hit to tell");
+}
+
+/// Where a body of revolution stands, to measure distances in the half plane through its axis.
+pub(super) struct Profile {
+    pub(super) base: DVec3,
+    /// Unit.
+    pub(super) axis: DVec3,
+}
+
+impl Profile {
+    /// Distance from the axis, and height above the base.
+    pub(super) fn flat(&self, p: DVec3) -> DVec2 {
+        let q = p - self.base;
+        let z = self.axis.dot(q);
+        DVec2::new((q - self.axis * z).length(), z)
+    }
+
+    /// Distance to the nearest of the segments that are the outline.
+    pub(super) fn distance(&self, p: DVec3, outline: &[(DVec2, DVec2)]) -> f64 {
+        let q = self.flat(p);
+        let to = |(a, b): &(DVec2, DVec2)| {
+            let along = *b - *a;
+            let part = ((q - *a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            (q - (*a + along * part)).length()
+        };
+        outline.iter().map(to).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// What marching along a ray finds.
+enum March {
+    Hit(f64),
+    /// The least distance on the way.
+    Miss(f64),
+    /// Along the surface for too long to tell.
+    Unknown,
+}
+
+/// Steps as long as the distance to the surface, until that is next to nothing. `d` is unit.
+fn march(o: DVec3, d: DVec3, size: f64, distance: &impl Fn(DVec3) -> f64) -> March {
+    let (mut t, mut least) = (0.0, f64::INFINITY);
+    for _ in 0..20_000 {
+        let gap = distance(o + d * t);
+        least = least.min(gap);
+        if gap <= 4.0 * f64::EPSILON * size {
+            return March::Hit(t);
+        }
+        t += gap;
+        if t > 8.0 * size {
+            return March::Miss(least);
+        }
+    }
+    March::Unknown
+}
+
+/// Checks hits against marching rays, by the exact `distance` to the surface: rays from inside and
+/// from up to 10⁵ sizes away, along the axes with zeros of either sign, of any length, and cut.
+pub(super) fn check_against(shape: &dyn Shape, seed: u64, distance: impl Fn(DVec3) -> f64) {
+    let mut rng = Rng::new(seed);
+    let b = shape.bounds();
+    let size = b.diagonal().length();
+    let (mut n_hits, mut unknown) = (0, 0);
+    for i in 0..3000 {
+        let scatter = direction(&mut rng) * (size * 10f64.powf(-8.0 * rng.f64()));
+        let Some(s) = shape.sample(None, rng.pair()) else { continue };
+        let target = s.surface.p + scatter;
+        let d = match i % 5 {
+            0 => DVec3::AXES[i / 5 % 3],
+            1 => -DVec3::AXES[i / 5 % 3],
+            _ => direction(&mut rng),
+        };
+        let far = [0.0, 2.0, 10.0, 1e3, 1e5][i / 3 % 5];
+        let near = f64::min(far, 2.0) * size;
+        let o = target - d * near;
+        if distance(o) < 1e-6 * size {
+            continue;
+        }
+        let length = [1e-6, 1.0, 1e6][i % 3];
+        let ray = Ray::new(target - d * (far * size), d * length);
+        let hit = shape.intersect(&ray);
+        // What rounds: the ray's origin and its parameter, and the tracing itself.
+        let slack = 64.0 * f64::EPSILON * (far + 4.0) * size;
+        match march(o, d, size, &distance) {
+            March::Unknown => unknown += 1,
+            March::Miss(least) if least <= slack => unknown += 1,
+            March::Miss(_) => assert!(hit.is_none(), "{ray:?}: {hit:?} where nothing is"),
+            March::Hit(t) => {
+                let hit = hit.unwrap_or_else(|| panic!("{ray:?} misses what it meets"));
+                let at = shape.surface(&ray, &hit);
+                let cos = at.ng.dot(d).abs();
+                let off = (hit.t * length - (t + far * size - near)).abs();
+                if cos >= 0.01 {
+                    assert!(
+                        off * cos <= slack,
+                        "{ray:?}: t is off by {off} beyond {slack} / {cos}"
+                    );
+                    check_cut(shape, &ray, hit.t);
+                    check_point(shape, &at);
+                    n_hits += 1;
+                }
+            }
+        }
+    }
+    assert!(n_hits > 400 && unknown < 100, "{n_hits} hits, {unknown} unknown");
 }

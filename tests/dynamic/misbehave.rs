@@ -321,6 +321,52 @@ fn an_importer_that_fails_is_told_at_its_asset() {
 }
 
 #[test]
+fn a_failure_in_a_later_stage_does_not_end_an_earlier_render() {
+    let registry = registry();
+    let text = |wrong: &str| {
+        let material = format!(", material = material bad {{ wrong = \"{wrong}\" }} }}");
+        format!("scene 1\n{}", [CAMERA, FILM, LIGHT, &FLOOR.replace(" }", &material)].concat())
+    };
+    let sound = stage_after(&registry, &text("nothing"), None).unwrap();
+    let (control, endless) =
+        (Control::default(), Options { spp: Some(u32::MAX), ..Options::default() });
+    let outcome = std::thread::scope(|scope| {
+        let rendering = scope.spawn(|| render(&sound, &endless, &control).1);
+        let goes_on = || {
+            let before = control.samples_done();
+            while control.samples_done() == before && !rendering.is_finished() {
+                std::thread::yield_now();
+            }
+        };
+        goes_on();
+        assert!(stage_after(&registry, &text("check"), Some(&sound)).is_err());
+        let later = stage_after(&registry, &text("eval"), Some(&sound)).unwrap();
+        assert!(failed(&later).is_some());
+        // Each thread has looked at the alarm once more.
+        (0..8).for_each(|_| goes_on());
+        control.cancel();
+        rendering.join().unwrap()
+    });
+    assert_eq!(outcome, Outcome::Cancelled);
+    assert!(sound.failures().is_empty());
+}
+
+#[test]
+fn a_preset_that_fails_is_told() {
+    let mut registry = Registry::new();
+    for classes in luxel_builtin::CLASSES {
+        let others = classes.iter().filter(|class| class.name != "blackman_harris");
+        registry.add("built-in", &others.copied().collect::<Vec<_>>()).unwrap();
+    }
+    registry.add("preset", &bad::preset().classes).unwrap();
+    let text = format!("scene 1\n{}", [CAMERA, FILM, LIGHT, FLOOR].concat());
+    let stage = stage_after(&registry, &text, None).unwrap();
+    let found = failed(&stage).expect("the filter falls over");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].code == "E0421" && found[0].message.contains(FELL), "{found:?}");
+}
+
+#[test]
 fn a_flood_of_nodes_is_taken() {
     let asset = "let thing = asset bad { wrong = \"greedy\" }\nplace thing\n";
     let text = format!("scene 1\n{}", [CAMERA, FILM, LIGHT, asset].concat());

@@ -37,14 +37,18 @@ pub enum ColorMode {
 #[derive(Debug, Default)]
 pub struct Objects {
     by_content: BTreeMap<(Hash, ColorMode), Arc<Object>>,
-    /// Raised by the first of them that fails.
+    /// Objects of no node: what the host takes where a scene says nothing.
+    presets: Vec<Arc<Object>>,
+    /// Raised by each object that fails, of this build and of those before and after it.
     pub alarm: Alarm,
 }
 
 impl Objects {
-    /// Every object that has failed, by its content: who and how.
-    pub fn failures(&self) -> impl Iterator<Item = (&Hash, String)> {
-        self.by_content.iter().filter_map(|((hash, _), object)| Some((hash, object.failure()?)))
+    /// Every object that has failed, by its content, if a node made it: who and how.
+    pub fn failures(&self) -> impl Iterator<Item = (Option<&Hash>, String)> {
+        let of_nodes = self.by_content.iter().map(|((hash, _), object)| (Some(hash), object));
+        let presets = self.presets.iter().map(|object| (None, object));
+        of_nodes.chain(presets).filter_map(|(hash, object)| Some((hash, object.failure()?)))
     }
 }
 
@@ -72,7 +76,7 @@ impl<'a> Builder<'a> {
         before: &'a Objects,
     ) -> Self {
         let embedded = embedded_files(scene);
-        let objects = Objects { by_content: BTreeMap::new(), alarm: before.alarm.clone() };
+        let objects = Objects { alarm: before.alarm.clone(), ..Objects::default() };
         let diagnostics = vec![];
         Self { registry, scene, files, mode, embedded, before, objects, diagnostics }
     }
@@ -107,7 +111,9 @@ impl<'a> Builder<'a> {
     /// If there is no such class, or it has required parameters.
     pub fn preset(&mut self, kind: Kind, name: &str) -> Arc<Object> {
         let class = self.registry.class(kind, name).expect("the host's presets are registered");
-        self.make(class, None).expect("the host's presets need no parameters")
+        let object = self.make(class, None).expect("the host's presets need no parameters");
+        self.objects.presets.push(object.clone());
+        object
     }
 
     fn make(&mut self, class: &Class, node: Option<&Node>) -> Option<Arc<Object>> {

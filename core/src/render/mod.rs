@@ -16,7 +16,6 @@ use luxel_sdk::kind::Wants;
 use rayon::prelude::*;
 
 use crate::film::{Film, Rect};
-use crate::registry::dynamic::Alarm;
 use crate::stage::Stage;
 
 /// What is asked of a render beyond the scene.
@@ -101,7 +100,8 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
         .build()
         .expect("the system gives threads");
     // Before anything of the stage is asked: the sampler may fail at once.
-    let stop = Stop { control, alarm: stage.alarm(), failures: stage.alarm().count() };
+    let failures = AtomicU64::new(stage.alarm().count());
+    let stop = Stop { control, stage, failures: &failures };
     let (spp, seed) = (options.samples(stage), options.seed(stage));
     pool.install(|| {
         let integrator = stage.integrator.fixed().integrator();
@@ -131,14 +131,23 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
 #[derive(Clone, Copy)]
 struct Stop<'a> {
     control: &'a Control,
-    alarm: &'a Alarm,
-    /// How many objects had failed before.
-    failures: u64,
+    stage: &'a Stage,
+    /// How many objects had failed when it was looked whether one is the stage's own.
+    failures: &'a AtomicU64,
 }
 
 impl Stop<'_> {
     fn is_failure(self) -> bool {
-        self.alarm.count() != self.failures
+        let count = self.stage.alarm().count();
+        if count == self.failures.load(Ordering::Relaxed) {
+            return false;
+        }
+        // Objects of another stage may have failed: of one that was built meanwhile.
+        let own = self.stage.has_failed();
+        if !own {
+            self.failures.store(count, Ordering::Relaxed);
+        }
+        own
     }
 
     fn is_asked(self) -> bool {

@@ -87,9 +87,15 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Counts the failures of objects from libraries.
+    /// Counts the failures of objects from libraries: of this stage, and of those that were built
+    /// from the same beginnings.
     pub fn alarm(&self) -> &Alarm {
         &self.cache.objects.alarm
+    }
+
+    /// Whether an object from a library has failed.
+    pub fn has_failed(&self) -> bool {
+        self.cache.objects.failures().next().is_some()
     }
 
     /// What objects from libraries said when they failed, each where the scene made it.
@@ -103,7 +109,7 @@ fn failures(objects: &Objects, scene: &Scene) -> Vec<Diagnostic> {
         let ids = (0..scene.nodes.len()).map(|i| NodeId(index(i)));
         ids.into_iter().find(|id| scene.own_hash(*id) == *hash).map(|id| scene.node(id).span)
     };
-    let told = objects.failures().map(|(hash, message)| match place(hash) {
+    let told = objects.failures().map(|(hash, message)| match hash.and_then(place) {
         Some(span) => Diagnostic::error(FAILED, span, message).label(span, "this object"),
         None => Diagnostic::unplaced(FAILED, message),
     });

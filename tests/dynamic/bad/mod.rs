@@ -117,6 +117,15 @@ pub(super) fn library() -> &'static Library {
     LIBRARY.get_or_init(|| Library::linked(&TABLE).unwrap())
 }
 
+/// What the host takes where a scene says nothing, through the boundary: it always falls over.
+pub(super) fn preset() -> Library {
+    const CLASSES: &[Class] = &[Class::filter::<settings::Fallen>("blackman_harris")];
+    static TABLE: LibraryTable =
+        LibraryTable { begin: None, ..luxel_sdk::library_table!(&[CLASSES]) };
+    quiet();
+    Library::linked(&TABLE).unwrap()
+}
+
 /// Panics on purpose are not printed.
 pub(super) fn quiet() {
     static QUIET: Once = Once::new();

@@ -88,3 +88,25 @@ impl Filter for Pixel {
         [self.wrong.number(u[0]), u[1] - 0.5]
     }
 }
+
+/// A filter that always falls over, under the name of the one that the host takes by itself.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+pub(super) struct Fallen {
+    /// Nothing depends on it.
+    #[param(default = 1.0, min = 0, max = 1)]
+    unused: f32,
+}
+
+impl Filter for Fallen {
+    fn radius(&self) -> f32 {
+        0.5
+    }
+    fn eval(&self, _: [f32; 2]) -> f32 {
+        1.0
+    }
+    fn sample(&self, _: [f32; 2]) -> [f32; 2] {
+        Wrong::Eval.at(Wrong::Eval);
+        [0.0; 2]
+    }
+}

@@ -3,14 +3,14 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// Counts the failures of a session's objects: who renders looks at it and ends.
+/// Counts the failures of a session's objects: who renders looks at it, and ends if one is its own.
 #[derive(Clone, Debug, Default)]
 pub struct Alarm(Arc<AtomicU64>);
 
 impl Alarm {
-    /// How often an object has failed so far.
+    /// How often an object has failed so far. Of each of them its watch tells.
     pub fn count(&self) -> u64 {
-        self.0.load(Ordering::Relaxed)
+        self.0.load(Ordering::Acquire)
     }
 }
 
@@ -33,7 +33,7 @@ impl Watch {
     pub(super) fn fail(&self, told: &str) {
         let _ = self.told.set(format!("{} {told}", self.who));
         self.failed.store(true, Ordering::Relaxed);
-        self.alarm.0.fetch_add(1, Ordering::Relaxed);
+        self.alarm.0.fetch_add(1, Ordering::Release);
     }
 
     /// Whether it has failed.

@@ -138,6 +138,16 @@ fn transforms_that_flatten_space_are_refused() {
 }
 
 #[test]
+fn a_light_without_end_is_refused_where_it_stands() {
+    let body = "light area { shape = shape plane {}, radiance = 1 W/m^2/sr }";
+    check(body, MemoryFiles::default(), "E0423");
+    let said = build(body, MemoryFiles::default()).unwrap_err();
+    let found = said.iter().find(|d| d.code == "E0423").unwrap();
+    assert_eq!(found.message, "a light on a `plane` without end: its area is infinite");
+    assert!(found.help.iter().any(|help| help.contains("rectangle")), "{found:?}");
+}
+
+#[test]
 fn a_scene_without_a_camera_is_told_how_to_get_one() {
     let files = one("bad.scene", &b"scene 1\nshape sphere { radius = 1 m }"[..]);
     let said = stage_of(Path::new("bad.scene"), &files, &[], None).unwrap_err();

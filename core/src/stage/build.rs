@@ -16,7 +16,7 @@ use super::{
 use super::{failures, features, import};
 use crate::accel::{BuildError, MeshBvh, TopBvh};
 use crate::cast::index;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Object, Objects};
 use crate::registry::Registry;
@@ -182,16 +182,16 @@ impl Maker<'_> {
             node: shape,
         };
         if let Some(object) = light {
-            self.shining(object, &placement);
+            self.shining(object, &placement, flat.span);
         }
         self.made.placements.push(placement);
     }
 
     /// The source of light that a shining placement is.
-    fn shining(&mut self, object: Arc<Object>, placement: &Placement) {
+    fn shining(&mut self, object: Arc<Object>, placement: &Placement, span: Span) {
         let place = index(self.made.placements.len());
         let geometry = &self.made.geometries[placement.geometry as usize];
-        let (area, triangles) = match &**geometry {
+        let (area, triangles): (f64, _) = match &**geometry {
             Geometry::Mesh(mesh) => {
                 let mesh = mesh.triangles();
                 let area = |i: u32| {
@@ -209,6 +209,9 @@ impl Maker<'_> {
             }
             Geometry::Analytic(shape) => (world_area(shape, placement), None),
         };
+        if !area.is_finite() {
+            self.builder.diagnostics.push(endless(span, self.scene, placement.node));
+        }
         self.made.lights.push(LightSource::Surface { object, placement: place, area, triangles });
     }
 
@@ -360,7 +363,16 @@ fn world_area(shape: &Object, placement: &Placement) -> f64 {
     shape.area() * scales.sum::<f64>() / f64::from(AREA_POINTS)
 }
 
-fn mesh_error(error: BuildError, span: crate::diag::Span) -> Diagnostic {
+/// A surface without end that is to shine.
+fn endless(span: Span, scene: &Scene, shape: NodeId) -> Diagnostic {
+    let class = &scene.node(shape).class;
+    let message = format!("a light on a `{class}` without end: its area is infinite");
+    Diagnostic::error("E0423", span, message)
+        .label(scene.node(shape).span, "has no end")
+        .help("use a `rectangle` or a `disk`, or `light constant` for light from everywhere")
+}
+
+fn mesh_error(error: BuildError, span: Span) -> Diagnostic {
     Diagnostic::error("E0411", span, error.to_string())
 }
 

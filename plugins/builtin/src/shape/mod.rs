@@ -6,6 +6,7 @@ mod capsule;
 mod cone;
 mod cylinder;
 mod disk;
+mod heightfield;
 mod mesh;
 mod plane;
 mod rectangle;
@@ -31,6 +32,7 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::shape::<capsule::Capsule>("capsule"),
     Class::shape::<torus::Torus>("torus"),
     Class::shape::<plane::Plane>("plane"),
+    Class::shape::<heightfield::Heightfield<'_>>("heightfield"),
     Class::shape::<mesh::Mesh<'_>>("mesh"),
 ];
 

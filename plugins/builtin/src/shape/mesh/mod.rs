@@ -128,8 +128,7 @@ impl Shape for Mesh<'_> {
     }
 
     fn bounds(&self) -> Bounds3 {
-        let mesh = &*self.table;
-        Bounds3::of_points(mesh.points.iter().map(|p| mesh.centre + p.as_dvec3()))
+        bounds_of(&self.table)
     }
 
     /// Nothing: the host takes the triangles over.
@@ -137,26 +136,12 @@ impl Shape for Mesh<'_> {
         None
     }
 
-    /// The point of triangle `hit.face` at barycentric coordinates `hit.at` of its second and
-    /// third corners.
     fn surface(&self, _ray: &Ray, hit: &Hit) -> Surface {
-        let [a, b, c] = self.table.corners(hit.face);
-        let (e1, e2) = (b - a, c - a);
-        let ng = e1.cross(e2).normalize_or(DVec3::Y);
-        let p = a + e1 * hit.at.x + e2 * hit.at.y;
-        let p_err = (a.abs() + e1.abs() + e2.abs()) * gamma64(7);
-        let uv = DVec2::new(hit.at.x, hit.at.y);
-        Surface { p, p_err, ng, ns: ng, uv, dp_du: e1, dp_dv: e2 }
+        surface_of(&self.table, hit)
     }
 
     fn area(&self) -> f64 {
-        let n = u32::try_from(self.table.indices.len()).unwrap_or(u32::MAX);
-        (0..n)
-            .map(|i| {
-                let [a, b, c] = self.table.corners(i);
-                0.5 * (b - a).cross(c - a).length()
-            })
-            .sum()
+        area_of(&self.table)
     }
 
     /// Nothing: the host takes the triangles over.
@@ -171,6 +156,34 @@ impl Shape for Mesh<'_> {
     fn mesh(&self) -> Option<Arc<TriangleMesh>> {
         Some(Arc::clone(&self.table))
     }
+}
+
+/// The box around all corners.
+pub(super) fn bounds_of(mesh: &TriangleMesh) -> Bounds3 {
+    Bounds3::of_points(mesh.points.iter().map(|p| mesh.centre + p.as_dvec3()))
+}
+
+/// The point of triangle `hit.face` at barycentric coordinates `hit.at` of its second and third
+/// corners.
+pub(super) fn surface_of(mesh: &TriangleMesh, hit: &Hit) -> Surface {
+    let [a, b, c] = mesh.corners(hit.face);
+    let (e1, e2) = (b - a, c - a);
+    let ng = e1.cross(e2).normalize_or(DVec3::Y);
+    let p = a + e1 * hit.at.x + e2 * hit.at.y;
+    let p_err = (a.abs() + e1.abs() + e2.abs()) * gamma64(7);
+    let uv = DVec2::new(hit.at.x, hit.at.y);
+    Surface { p, p_err, ng, ns: ng, uv, dp_du: e1, dp_dv: e2 }
+}
+
+/// The sum of the triangles' areas, m².
+pub(super) fn area_of(mesh: &TriangleMesh) -> f64 {
+    let n = u32::try_from(mesh.indices.len()).unwrap_or(u32::MAX);
+    (0..n)
+        .map(|i| {
+            let [a, b, c] = mesh.corners(i);
+            0.5 * (b - a).cross(c - a).length()
+        })
+        .sum()
 }
 
 #[cfg(test)]

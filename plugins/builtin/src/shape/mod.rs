@@ -11,6 +11,7 @@ mod mesh;
 mod plane;
 mod rectangle;
 mod sphere;
+mod spherical;
 #[cfg(test)]
 mod testing;
 mod torus;

@@ -6,6 +6,8 @@ use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
+use super::spherical::SphericalRectangle;
+
 /// A flat rectangle, or parallelogram, given by its middle and two whole edges.
 ///
 /// Its normal is `u` × `v`: with `u` to the right and `v` up it faces the viewer. Texture
@@ -37,6 +39,9 @@ pub(crate) struct Rectangle {
     p_err: DVec3,
     #[param(derived)]
     area: f64,
+    /// Unit edges where they meet at a right angle, else zero.
+    #[param(derived)]
+    sides: [DVec3; 2],
 }
 
 impl Shape for Rectangle {
@@ -47,6 +52,9 @@ impl Shape for Rectangle {
         let across = (u / u_length).cross(v / v_length);
         let sin = across.length();
         self.area = sin * u_length * v_length;
+        let (x, y) = (u / u_length, v / v_length);
+        let right = x.dot(y).abs() <= gamma64(8);
+        self.sides = if right { [x, y] } else { [DVec3::ZERO; 2] };
         self.normal = across / sin;
         self.dual_u = (v / v_length).cross(self.normal) / (sin * u_length);
         self.dual_v = self.normal.cross(u / u_length) / (sin * v_length);
@@ -93,17 +101,44 @@ impl Shape for Rectangle {
         self.area
     }
 
-    fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
-        let at = DVec2::new(f64::from(u[0]), f64::from(u[1])) - 0.5;
-        Some(ShapeSample { surface: self.surface_at(at), pdf: self.area.recip() })
+    /// Uniform in the solid angle that a rectangle fills; over the area of a parallelogram, and where
+    /// the solid angle is very small or half of everything.
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let u = u.map(f64::from);
+        let (at, pdf) = match self.seen_from(from) {
+            Some((seen, foot)) => {
+                let q = seen.sample(u) - foot;
+                let at = q / DVec2::new(self.u.length(), self.v.length());
+                (at.clamp(DVec2::splat(-0.5), DVec2::splat(0.5)), None)
+            }
+            None => (DVec2::from_array(u) - 0.5, Some(self.area.recip())),
+        };
+        let surface = self.surface_at(at);
+        let pdf = pdf.unwrap_or_else(|| self.pdf(from, &surface));
+        (pdf > 0.0 && pdf.is_finite()).then_some(ShapeSample { surface, pdf })
     }
 
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        self.area.recip()
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        let (Some((seen, _)), Some(from)) = (self.seen_from(from), from) else {
+            return self.area.recip();
+        };
+        let to = from - at.p;
+        let d2 = to.length_squared();
+        self.normal.dot(to).abs() / (d2.sqrt() * d2 * seen.solid_angle)
     }
 }
 
 impl Rectangle {
+    /// What a viewer sees, if it can be told well, and where the centre is from the viewer's foot.
+    fn seen_from(&self, from: Option<DVec3>) -> Option<(SphericalRectangle, DVec2)> {
+        let ([x, y], to_centre) = (self.sides, self.center - from?);
+        let half = 0.5 * DVec2::new(self.u.dot(x), self.v.dot(y));
+        let foot = DVec2::new(to_centre.dot(x), to_centre.dot(y));
+        let distance = to_centre.dot(self.normal).abs();
+        let seen = SphericalRectangle::new(foot - half, foot + half, distance)?;
+        Some((seen, foot))
+    }
+
     fn surface_at(&self, at: DVec2) -> Surface {
         Surface {
             p: self.center + (self.u * at.x + self.v * at.y),
@@ -120,12 +155,15 @@ impl Rectangle {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::testing::{check_convex, check_sampling, check_solid_angle, visible_area};
+    use crate::shape::testing::{
+        check_convex, check_sampling, check_solid_angle, solid_angle, visible_area,
+    };
 
     fn rectangle(center: DVec3, u: DVec3, v: DVec3) -> Rectangle {
         let zero = DVec3::ZERO;
         let (normal, dual_u, dual_v, p_err, area) = (zero, zero, zero, zero, 0.0);
-        let mut r = Rectangle { center, u, v, normal, dual_u, dual_v, p_err, area };
+        let sides = [zero; 2];
+        let mut r = Rectangle { center, u, v, normal, dual_u, dual_v, p_err, area, sides };
         r.prepare();
         r
     }
@@ -167,6 +205,27 @@ mod tests {
         assert!((r.area() - 3.0).abs() <= 8.0 * f64::EPSILON);
         assert!((visible_area(&r, None, 3, 13).mean - 3.0).abs() <= 8.0 * f64::EPSILON);
         check_solid_angle(&r, DVec3::new(0.2, -0.1, 0.0), 14);
+    }
+
+    #[test]
+    fn a_right_angled_one_is_sampled_by_its_solid_angle() {
+        let turn = glam::DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, 0.7);
+        let (u, v, n) = (turn * DVec3::X * 2.0, turn * DVec3::Y * 0.5, turn * DVec3::Z);
+        let centre = DVec3::new(5.0, -3.0, 1.0);
+        let r = rectangle(centre, u, v);
+        let near = centre + u * 0.3 + v * 2.0 + n * 0.4;
+        for from in [near, centre + n * 0.1, centre - n * 3.0, centre + u * 9.0 + n * 1e-3] {
+            check_sampling(&r, Some(from), 15);
+        }
+        check_solid_angle(&r, near, 16);
+        // Each sample has the same density per solid angle, so that one tells the whole.
+        let found = solid_angle(&r, centre + n, 10, 17);
+        let truth = 4.0 * (0.25 / (1.0 + 1.0 + 0.0625f64).sqrt()).atan();
+        assert!((found.mean / truth - 1.0).abs() <= 1e-13, "{} {truth}", found.mean);
+        assert!(found.standard_error() <= 1e-13);
+        // From far away by its area, which then is as good.
+        let far = centre + n * 1e7;
+        assert!((r.sample(Some(far), [0.3, 0.6]).unwrap().pdf - 1.0).abs() <= 1e-15);
     }
 
     #[test]

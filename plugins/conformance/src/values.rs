@@ -25,6 +25,9 @@ pub(crate) const LOOK: Look =
 /// Beyond this an end of a range counts as open.
 const OPEN: f64 = 1e9;
 
+/// Rows and columns of the table that is given where one is wanted.
+const SIDE: usize = 3;
+
 /// The dimension of a parameter's first unit.
 pub(crate) fn dimension(param: &Param) -> Dimension {
     let unit = param.unit.split('|').next().unwrap_or_default();
@@ -113,7 +116,7 @@ pub(crate) fn sensible(
         Type::Choice => Some(Value::Text(param.words().next()?.into())),
         Type::Text => Some(Value::Text("text".into())),
         Type::File => Some(Value::Path(PathBuf::from(file))),
-        Type::Table => Some(Value::Table(Arc::from([0.0; 9]))),
+        Type::Table => Some(Value::Table(Arc::from([0.0; SIDE * SIDE]))),
         Type::Look => Some(Value::Look(LOOK)),
         Type::Object(kind) => prop(kind, index),
         _ => None,
@@ -145,6 +148,10 @@ pub(crate) fn extremes(param: &Param) -> Vec<(Value, Level)> {
     }
     if is_number(param) && preset(param).is_none() {
         out.push((number(param, typical(param)), Level::Usual));
+    }
+    if param.ty == Type::Int && preset(param).is_none() {
+        // What may count the rows of a table.
+        out.push((number(param, SIDE as f64), Level::Usual));
     }
     let words = param.words().take(8);
     out.extend(words.map(|word| (Value::Text(word.into()), Level::Usual)));

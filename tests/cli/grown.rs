@@ -8,7 +8,7 @@ use std::process::Command;
 
 use super::program::{Folder, below_target};
 
-const KINDS: [&str; 11] = [
+const KINDS: [&str; 12] = [
     "shape",
     "material",
     "texture",
@@ -20,7 +20,11 @@ const KINDS: [&str; 11] = [
     "filter",
     "integrator",
     "asset",
+    PICTURE,
 ];
+
+/// An integrator by another trait, and what asks for it.
+const PICTURE: &str = "picture";
 
 /// Builds a crate of the folder; its dependencies are built once for all tests.
 fn build(folder: &Folder, name: &str) -> PathBuf {
@@ -44,7 +48,11 @@ fn a_new_plugin_of_every_kind_builds_is_trusted_and_renders() {
     let folder = Folder::new("grown");
     for kind in KINDS {
         let name = format!("own_{kind}");
-        let made = folder.luxel(&["plugin", "new", kind, &name]);
+        let (kind, more) = match kind {
+            PICTURE => ("integrator", &["--whole-picture"][..]),
+            kind => (kind, &[][..]),
+        };
+        let made = folder.luxel(&[&["plugin", "new", kind, &name], more].concat());
         assert_eq!(made.code, 0, "{made:?}");
         let library = build(&folder, &name).display().to_string();
         let scene = format!("{name}/{name}.scene");

@@ -20,6 +20,7 @@ use crate::{list, report};
 #[command(after_help = "\
 Examples:
   luxel plugin new material velvet
+  luxel plugin new integrator photons --whole-picture
   luxel plugin new shape gyroid --dir ~/plugins/gyroid")]
 pub(super) struct Args {
     /// Its kind, as `luxel list` shows it
@@ -29,6 +30,9 @@ pub(super) struct Args {
     /// The folder of the crate [default: NAME]
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
+    /// An integrator that makes the whole picture, not one path of it: for photons and the like
+    #[arg(long)]
+    whole_picture: bool,
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -50,9 +54,16 @@ fn begin(args: &Args, sdk: Option<&Path>) -> Result<PathBuf, Failure> {
     // A class of this kind is an importer to the SDK and an asset to scenes.
     let word = if args.kind == "importer" { "asset" } else { &args.kind };
     let kind = list::kind(word).map_err(|failure| Failure { exit: Exit::Usage, ..failure })?;
-    let Some(template) = template::of(kind) else {
+    let Some(mut template) = template::of(kind) else {
         return Err(usage(format!("a {kind} is Luxel's own: no plugin can be one")));
     };
+    if args.whole_picture {
+        if kind != Kind::Integrator {
+            let message = format!("no {kind} makes pictures: --whole-picture is for integrators");
+            return Err(usage(message));
+        }
+        template = template::of_picture();
+    }
     if let Some(why) = template::fault(name) {
         return Err(usage(format!("`{name}` cannot be the name of a plugin: {why}")));
     }
@@ -123,7 +134,7 @@ mod tests {
     use crate::testing::Folder;
 
     fn args(kind: &str, name: &str, dir: PathBuf) -> Args {
-        Args { kind: kind.into(), name: name.into(), dir: Some(dir) }
+        Args { kind: kind.into(), name: name.into(), dir: Some(dir), whole_picture: false }
     }
 
     #[test]
@@ -131,13 +142,13 @@ mod tests {
         let folder = Folder::new("new");
         let (args_of_none, nowhere) = (PluginArgs::default(), Surroundings::default());
         let plugins = Session::new().refresh(&args_of_none, &nowhere).unwrap();
-        for (kind, word) in Kind::ALL {
-            if kind == Kind::Film {
-                continue;
-            }
-            let dir = folder.path(word);
-            assert_eq!(begin(&args(word, "my_own", dir.clone()), None).unwrap(), dir);
-            let again = begin(&args(word, "my_own", dir.clone()), None).unwrap_err();
+        let kinds = Kind::ALL.iter().filter(|(kind, _)| *kind != Kind::Film);
+        let all = kinds.map(|(_, word)| (*word, false)).chain([("integrator", true)]);
+        for (word, whole_picture) in all {
+            let dir = folder.path(&format!("{word}-{whole_picture}"));
+            let wanted = || Args { whole_picture, ..args(word, "my_own", dir.clone()) };
+            assert_eq!(begin(&wanted(), None).unwrap(), dir);
+            let again = begin(&wanted(), None).unwrap_err();
             assert!(again.exit == Exit::Input && again.message.contains("Cargo.toml"));
             for file in ["Cargo.toml", "src/lib.rs", "my_own.scene", "README.md"] {
                 let bytes = crate::files::read_regular(&dir.join(file)).unwrap();
@@ -168,6 +179,10 @@ mod tests {
             let failure = begin(&args(kind, name, folder.path("x")), None).unwrap_err();
             assert!(failure.exit == Exit::Usage && failure.message.contains(told), "{failure:?}");
         }
+        let paths = Args { whole_picture: true, ..args("material", "mine", folder.path("x")) };
+        let failure = begin(&paths, None).unwrap_err();
+        let told = failure.message.contains("--whole-picture is for integrators");
+        assert!(failure.exit == Exit::Usage && told, "{failure:?}");
         assert!(folder.names().is_empty());
     }
 

@@ -45,6 +45,11 @@ pub(super) fn of(kind: Kind) -> Option<Template> {
     })
 }
 
+/// An integrator that owns the whole picture: of the same kind, by another trait.
+pub(super) fn of_picture() -> Template {
+    template!("picture_integrator", None)
+}
+
 /// The struct's name: `rough_glass` is `RoughGlass`, unless that means something in the template.
 pub(super) fn type_name(name: &str, source: &str) -> String {
     let words = name.split('_').filter(|word| !word.is_empty());
@@ -133,13 +138,19 @@ mod tests {
 
     #[test]
     fn every_kind_that_a_library_may_offer_has_a_template_that_says_what_it_is() {
-        for (kind, _) in Kind::ALL {
-            let Some(template) = of(kind) else {
+        let all = Kind::ALL.iter().map(|(kind, _)| (*kind, of(*kind)));
+        let picture = (Kind::Integrator, Some(of_picture()));
+        for (i, (kind, template)) in all.chain([picture]).enumerate() {
+            let Some(template) = template else {
                 assert_eq!(kind, Kind::Film);
                 continue;
             };
             let Template { source, scene, .. } = template;
-            let word = if kind == Kind::Importer { "importer" } else { kind.word() };
+            let word = match kind {
+                Kind::Importer => "importer",
+                Kind::Integrator if i == Kind::ALL.len() => "picture_integrator",
+                _ => kind.word(),
+            };
             let export = format!("luxel_sdk::plugin! {{ {word} \"template_name\" => TemplateName");
             assert!(source.contains(&export), "{word}");
             assert!(source.contains("/// ```scene\n") && source.contains("#[param("), "{word}");

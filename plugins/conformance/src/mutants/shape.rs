@@ -69,10 +69,18 @@ faulty!(SureOfItself, Ball::intersect, |s| Surface { p_err: DVec3::ZERO, ..s }, 
 faulty!(Endless, |ball, ray| ball.intersect(&Ray::new(ray.o, ray.d)), |s| s, |u| u);
 faulty!(Crowded, Ball::intersect, |s| s, |[u, v]| [u * u, v]);
 
+faulty!(
+    Blunt,
+    |ball, ray| ball.intersect(ray).filter(|hit| hit.t * ray.d.length() > 1e-4),
+    |s| s,
+    |u| u
+);
+
 /// All of them.
 pub(super) const MUTANTS: &[Mutant] = &[
     Mutant { class: Class::shape::<InsideOut>("inside_out"), fault: "normals point inside" },
     Mutant { class: Class::shape::<SureOfItself>("sure_of_itself"), fault: "no error bounds" },
     Mutant { class: Class::shape::<Endless>("endless"), fault: "t_max is ignored" },
     Mutant { class: Class::shape::<Crowded>("crowded"), fault: "samples crowd at a pole" },
+    Mutant { class: Class::shape::<Blunt>("blunt"), fault: "hits within 0.1 mm are passed over" },
 ];

@@ -1,5 +1,6 @@
 //! Shapes: hits, surfaces, areas, and points that are sampled as they say.
 
+mod placed;
 mod sampling;
 
 use glam::DVec3;
@@ -18,20 +19,10 @@ const CROSSINGS: usize = 64;
 
 pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
     for (set, mut rng) in subject.usual() {
-        set.ask(|resolved| {
-            let shape = resolved.shape();
-            if let Some(mesh) = shape.mesh() {
-                is_a_mesh(&mesh, shape.bounds(), set, judge);
-                return;
-            }
-            let Some(look) = Look::new(shape, set) else {
-                judge.skip("bounded", "the shape has no finite extent");
-                return;
-            };
-            look.rays(&mut rng, judge);
-            look.scales(&mut rng, judge);
-            look.samples(&mut rng, subject.options.samples, judge);
-        });
+        look_at(subject, set, &mut rng, judge);
+    }
+    for (set, mut rng) in placed::sets(subject) {
+        look_at(subject, &set, &mut rng, judge);
     }
     subject.concurrent(judge, |resolved| {
         let (shape, mut rng) = (resolved.shape(), Rng::new(7));
@@ -46,6 +37,23 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
             bits.extend(hit.map_or([0; 2], |hit| half(hit.t)));
         }
         bits
+    });
+}
+
+fn look_at(subject: &Subject<'_>, set: &Set, rng: &mut Rng, judge: &mut Judge) {
+    set.ask(|resolved| {
+        let shape = resolved.shape();
+        if let Some(mesh) = shape.mesh() {
+            is_a_mesh(&mesh, shape.bounds(), set, judge);
+            return;
+        }
+        let Some(look) = Look::new(shape, set) else {
+            judge.skip("bounded", "the shape has no finite extent");
+            return;
+        };
+        look.rays(rng, judge);
+        look.scales(rng, judge);
+        look.samples(rng, subject.options.samples, judge);
     });
 }
 
@@ -191,10 +199,17 @@ impl<'a> Look<'a> {
         let far = nearer(hit.t * 2.0);
         judge.holds("t_max never changes the nearest", far == Some(hit), at);
         // A ray of another length meets the same point.
-        let scaled = Ray { d: ray.d * 2.5, ..*ray };
-        let t = self.shape.intersect(&scaled).map_or(f64::NAN, |h| h.t * 2.5);
-        let off = (t - hit.t).abs() * ray.d.length();
-        judge.within("t counts lengths of d", off / (slack + t_err / cos.abs().max(1e-9)), 1.0, at);
+        for length in [1e-6, 2.5, 1e6] {
+            let scaled = Ray { d: ray.d * length, ..*ray };
+            let t = self.shape.intersect(&scaled).map_or(f64::NAN, |h| h.t * length);
+            let off = (t - hit.t).abs() * ray.d.length() * cos.abs().max(1e-9);
+            judge.within(
+                "t counts lengths of d",
+                off / (slack * cos.abs().max(1e-9) + t_err),
+                1.0,
+                at,
+            );
+        }
         self.leaves(&surface, ray.d, judge, &at);
     }
 
@@ -340,6 +355,10 @@ impl<'a> Look<'a> {
         }
         // Few lines meet a needle: what they say of it is not normal.
         if effective(&area) < LEAST_LINES {
+            let expected = self.shape.area() / per_area * f64::from(n);
+            judge.holds("lines meet it", expected < 5.0 * LEAST_LINES, || {
+                format!("{}: of {n} lines {} should, not {}", self.set.label, expected, area.mean)
+            });
             return;
         }
         let z = deviation(area.mean - self.shape.area(), 0.0, mean_error(&area));

@@ -1,0 +1,76 @@
+//! A shape a millionth as large, a million times as large, and a thousand kilometres away.
+
+use glam::DVec3;
+use luxel_core::scene::Value;
+use luxel_sdk::params::{Param, Preset, Type};
+use luxel_sdk::sampling::Rng;
+
+use crate::subject::Subject;
+use crate::sweep::{Given, Set, own};
+use crate::values::{Level, dimension};
+
+/// Factors of every length.
+const SCALES: [f64; 2] = [1e-6, 1e6];
+
+/// Added to every place, metres.
+const FAR: DVec3 = DVec3::new(1e6, -1e6, 1e6);
+
+/// The usual shape with all lengths scaled, and moved. Without such parameters, or where they are
+/// refused, there is none.
+pub(super) fn sets(subject: &Subject<'_>) -> Vec<(Set, Rng)> {
+    let Some(usual) = subject.sets.first() else { return vec![] };
+    let scaled = |scale: f64| {
+        let change = move |_: &Param, x: &[f64]| x.iter().map(|x| x * scale).collect();
+        (format!("scaled by {scale:e}"), changed(subject, usual, change))
+    };
+    let moved = changed(subject, usual, |param, x| {
+        if is_place(param) { (DVec3::from_slice(x) + FAR).to_array().to_vec() } else { x.to_vec() }
+    });
+    let all = SCALES.map(scaled).into_iter().chain([(format!("moved by {FAR}"), moved)]);
+    let sets = all.zip(0u64..).filter_map(|((label, given), i)| {
+        let object = subject.bench.build(&subject.class, &given?, usual.mode).ok()?;
+        let set = Set { label, given: vec![], object, level: Level::Usual, mode: usual.mode };
+        Some((set, Rng::new(subject.options.seed.wrapping_add(1000 + i))))
+    });
+    sets.collect()
+}
+
+/// A place and not an extent: the origin unless given.
+fn is_place(param: &Param) -> bool {
+    let origin =
+        matches!(param.default, Preset::Numbers(n) if n[..3].iter().all(|x| x.abs() <= 0.0));
+    param.ty == Type::DVec3 && param.min < 0.0 && origin
+}
+
+/// What is given, with all lengths changed; `None` if nothing changes.
+fn changed(
+    subject: &Subject<'_>,
+    usual: &Set,
+    change: impl Fn(&Param, &[f64]) -> Vec<f64>,
+) -> Option<Given> {
+    let (mut given, mut any) = (usual.given.clone(), false);
+    for param in own(&subject.class).filter(|param| param.unit == "m") {
+        let at = given.iter().position(|(name, _)| *name == param.name);
+        let lanes = if param.ty == Type::DVec3 { 3 } else { 1 };
+        let old = match (at.map(|at| &given[at].1), &param.default) {
+            (Some(Value::Number(x, _)), _) => vec![*x],
+            (Some(Value::Vector(x)), _) => x.clone(),
+            (None, Preset::Numbers(numbers)) if numbers.len() >= lanes => numbers[..lanes].to_vec(),
+            _ => continue,
+        };
+        let new = change(param, &old);
+        if new == old {
+            continue;
+        }
+        any = true;
+        let new = match *new {
+            [x] => Value::Number(x, dimension(param)),
+            _ => Value::Vector(new),
+        };
+        match at {
+            Some(at) => given[at].1 = new,
+            None => given.push((param.name, new)),
+        }
+    }
+    any.then_some(given)
+}

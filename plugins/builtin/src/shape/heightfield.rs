@@ -18,7 +18,7 @@ use crate::texture::decode;
 /// or floats keep slopes smooth. Texture coordinates are those of the picture: its pixels' middles.
 ///
 /// ```scene
-/// shape heightfield "hill"  { width = 4 m, depth = 4 m, heights = #[ 0 1 0   1 3 1   0 1 0 ] dm, material = white }
+/// shape heightfield "hill"  { width = 40 cm, depth = 40 cm, heights = #[ 0 1 0   1 3 1   0 1 0 ] cm, material = white }
 /// shape heightfield "range" { width = 9 km, depth = 9 km, file = "alps.png", height = 4 km, material = white }
 /// ```
 #[derive(Params, Clone, Copy)]

@@ -50,6 +50,8 @@ pub use statistics::SIGNIFICANCE;
 
 /// The check that is skipped when no object of a class can be made.
 const UNMADE: &str = "parameters";
+/// The check that is skipped when some parameters were refused whatever they were.
+const UNTRIED: &str = "every parameter is tried";
 /// Whether code of a library panicked or gave what no plugin may.
 const FAILS: &str = "never ends a render";
 
@@ -115,7 +117,10 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
         any::refuses_what_is_out_of_range(bench, &class, &mut judge);
         let name = class.name.bytes().fold(options.seed, |h, b| hash_combine64(h, u64::from(b)));
         match bench.sets(&class, name, options.sets) {
-            Ok(Sets { sets, failed }) => {
+            Ok(Sets { sets, failed, untried }) => {
+                if !untried.is_empty() {
+                    judge.skip(UNTRIED, untried.join("; "));
+                }
                 for told in failed {
                     judge.holds(FAILS, false, || told);
                 }
@@ -168,7 +173,47 @@ fn by_kind(subject: &Subject<'_>, judge: &mut Judge) {
 
 #[cfg(test)]
 mod tests {
+    use luxel_sdk::Params;
+    use luxel_sdk::kind::Filter;
+    use luxel_sdk::params::Fault;
+
     use super::*;
+
+    /// A filter that takes its default alone.
+    #[derive(Params, Clone, Copy)]
+    #[repr(C)]
+    struct Stubborn {
+        /// Half the width, pixels.
+        #[param(default = 0.5, min = 0.1, max = 16)]
+        radius: f32,
+    }
+
+    impl Filter for Stubborn {
+        fn check(&self) -> Result<(), Fault> {
+            let told = || Fault::range("radius", "half a pixel or nothing");
+            ((self.radius - 0.5).abs() <= 0.0).then_some(()).ok_or_else(told)
+        }
+        fn radius(&self) -> f32 {
+            self.radius
+        }
+        fn eval(&self, offset: [f32; 2]) -> f32 {
+            if offset.iter().all(|x| x.abs() <= 0.5) { 1.0 } else { 0.0 }
+        }
+        fn sample(&self, u: [f32; 2]) -> [f32; 2] {
+            u.map(|u| u - 0.5)
+        }
+    }
+
+    #[test]
+    fn a_parameter_that_is_refused_whatever_it_is_is_told() {
+        let mut registry = Registry::new();
+        registry.add("tests", &[Class::filter::<Stubborn>("stubborn")]).unwrap();
+        let options = Options { samples: 512, sets: 1, ..Options::default() };
+        let report = run(&registry, |class| class.name == "stubborn", &options);
+        let told = report.skipped().find(|(row, _)| row.check == UNTRIED);
+        let (_, why) = told.unwrap_or_else(|| panic!("{report}"));
+        assert!(why.starts_with("radius = ") && why.ends_with("half a pixel or nothing"), "{why}");
+    }
 
     #[test]
     fn a_run_that_is_ended_keeps_what_was_judged() {

@@ -45,6 +45,8 @@ pub(crate) struct Sets {
     pub(crate) sets: Vec<Set>,
     /// Those at which its code failed, and how: what it refuses with a word is no failure.
     pub(crate) failed: Vec<String>,
+    /// Parameters that were refused at every value that was tried, and why at the last.
+    pub(crate) untried: Vec<String>,
 }
 
 /// Why no object of a class could be made.
@@ -143,9 +145,10 @@ impl Bench {
     /// The sets of a class, the first of which is nominal; or why none can be made.
     pub(crate) fn sets(&self, class: &Class, seed: u64, n: usize) -> Result<Sets, Unmade> {
         let nominal = self.nominal(class)?;
-        let made = Sets { sets: vec![], failed: vec![] };
+        let made = Sets { sets: vec![], failed: vec![], untried: vec![] };
         let mut sweep = Sweep { bench: self, class, nominal, made };
-        sweep.push("as by default", Level::Usual, sweep.nominal.clone());
+        // It could be made before.
+        sweep.push("as by default", Level::Usual, sweep.nominal.clone()).ok();
         for param in own(class) {
             sweep.extremes(param);
         }
@@ -255,9 +258,9 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Adds a set if it can be made. Combinations that the plugin refuses are no sets; those at which
-    /// it fails are told.
-    fn push(&mut self, label: impl Into<String>, level: Level, given: Given) -> bool {
+    /// Adds a set if it can be made; else why not. Combinations that the plugin refuses are no sets;
+    /// those at which it fails are told.
+    fn push(&mut self, label: impl Into<String>, level: Level, given: Given) -> Result<(), String> {
         self.push_in(label, level, given, ColorMode::Rgb)
     }
 
@@ -267,18 +270,19 @@ impl Sweep<'_> {
         level: Level,
         given: Given,
         mode: ColorMode,
-    ) -> bool {
+    ) -> Result<(), String> {
         let label = label.into();
         match self.bench.build(self.class, &given, mode) {
             Ok(object) => self.made.sets.push(Set { label, given, object, level, mode }),
             Err(found) => {
+                let told = format!("{label}: {}", said(&found));
                 if has_failed(&found) {
-                    self.made.failed.push(format!("{label}: {}", said(&found)));
+                    self.made.failed.push(told.clone());
                 }
-                return false;
+                return Err(told);
             }
         }
-        true
+        Ok(())
     }
 
     /// The nominal set with one parameter changed; the others of its group go.
@@ -294,11 +298,16 @@ impl Sweep<'_> {
     }
 
     fn extremes(&mut self, param: &'static Param) {
+        let (mut tried, mut refused) = (false, None);
         for (value, level) in values::extremes(param) {
             let label = format!("{} = {}", param.name, values::show(&value));
             let given = self.with(param, value);
-            self.push(label, level, given);
+            match self.push(label, level, given) {
+                Ok(()) => tried = true,
+                Err(why) => refused = Some(why),
+            }
         }
+        self.made.untried.extend(refused.filter(|_| !tried));
     }
 
     /// Every parameter that may be textured, so.
@@ -311,7 +320,9 @@ impl Sweep<'_> {
             any = true;
         }
         if any {
-            self.push("textured", Level::Usual, given);
+            if let Err(why) = self.push("textured", Level::Usual, given) {
+                self.made.untried.push(why);
+            }
         }
     }
 
@@ -321,7 +332,7 @@ impl Sweep<'_> {
             if let Some(value) = values::measured(param) {
                 let mut given = self.with(param, value);
                 given.retain(|(name, _)| *name != "k");
-                self.push_in("measured", Level::Usual, given, ColorMode::Spectral);
+                self.push_in("measured", Level::Usual, given, ColorMode::Spectral).ok();
             }
         }
     }
@@ -337,7 +348,7 @@ impl Sweep<'_> {
                 given.retain(|(name, _)| *name != switch.name);
                 given.push((switch.name, Value::Bool(turned)));
                 let label = format!("{}, {} = {turned}", param.name, switch.name);
-                self.push(label, Level::Usual, given);
+                self.push(label, Level::Usual, given).ok();
             }
         }
     }
@@ -363,7 +374,8 @@ impl Sweep<'_> {
                 .iter()
                 .map(|(name, value)| format!("{name} = {}", values::show(value)))
                 .collect();
-            if self.push(format!("{label}: {}", shown.join(", ")), Level::Usual, given) {
+            let label = format!("{label}: {}", shown.join(", "));
+            if self.push(label, Level::Usual, given).is_ok() {
                 return;
             }
         }

@@ -17,7 +17,7 @@ use luxel_sdk::kind::{
 #[repr(C)]
 pub struct TemplateName {
     /// Paths from the lights, for each sample of each pixel.
-    #[param(default = 1, min = 1, max = 1000)]
+    #[param(default = 1, min = 1, max = 16)]
     paths: u32,
 }
 

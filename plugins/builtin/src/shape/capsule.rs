@@ -16,7 +16,7 @@ use super::axial::{frame, length_of, local, place, turn_of};
 /// proportion to their lengths.
 ///
 /// ```scene
-/// shape capsule { base = (0, 0.1, 0) m, axis = (1, 0, 0), radius = 10 cm, height = 60 cm, material = paint }
+/// shape capsule { axis = (1, 0, 0), radius = 10 cm, height = 60 cm, material = paint }
 /// ```
 #[derive(Params, Clone, Copy, Debug)]
 #[repr(C)]

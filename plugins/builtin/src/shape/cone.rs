@@ -261,7 +261,7 @@ impl Line {
     }
 
     /// A root moved to where the distances themselves agree, not their squares, which say little
-    /// where the cone is thin: Newton's method, as long as it gains. Roots of the mirror image stay.
+    /// where the cone is thin: Newton's method, as long as it gains. Those of the mirror image stay.
     fn polished(&self, root: f64) -> f64 {
         let Self { o, d, radius, slope } = *self;
         let gap = |s: f64| {

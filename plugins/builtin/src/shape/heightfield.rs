@@ -13,13 +13,17 @@ use crate::texture::decode;
 
 /// A landscape: heights over a grid on the ground, open below.
 ///
-/// Rows run from the back (−Z) to the front, numbers in a row from left to right, as the pixels of a
-/// picture that is looked at from above. In a picture, black is 0 and white is `height`; sixteen bits
-/// or floats keep slopes smooth. Texture coordinates are those of the picture: its pixels' middles.
+/// Rows run from the back (−Z) to the front, numbers in a row from left to right, as the pixels of
+/// a picture that is looked at from above. In a picture, black is 0 and white is `height`; sixteen
+/// bits or floats keep slopes smooth. Texture coordinates are those of the picture's pixels.
 ///
 /// ```scene
-/// shape heightfield "hill"  { width = 40 cm, depth = 40 cm, heights = #[ 0 1 0   1 3 1   0 1 0 ] cm, material = white }
-/// shape heightfield "range" { width = 9 km, depth = 9 km, file = "alps.png", height = 4 km, material = white }
+/// shape heightfield "range" { width = 9 km, depth = 9 km, file = "alps.png", height = 4 km }
+/// shape heightfield "hill"  {
+///   width    = 40 cm, depth = 40 cm
+///   heights  = #[ 0 1 0   1 3 1   0 1 0 ] cm
+///   material = white
+/// }
 /// ```
 #[derive(Params, Clone, Copy)]
 #[repr(C)]

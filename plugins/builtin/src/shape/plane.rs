@@ -10,8 +10,8 @@ use super::axial::{length_of, local, place};
 
 /// A plane without end: a floor or a wall that reaches the horizon.
 ///
-/// Texture coordinates are metres from `point`: on floors and ceilings `u` along +X, on walls `u` to
-/// the right and `v` up for who looks at them. It cannot shine: there is no end to its area.
+/// Texture coordinates are metres from `point`: on floors and ceilings `u` along +X, on walls `u`
+/// to the right and `v` up for who looks at them. It cannot shine: there is no end to its area.
 ///
 /// ```scene
 /// shape plane "floor" { point = (0, -1, 0) m, normal = (0, 1, 0), material = white }

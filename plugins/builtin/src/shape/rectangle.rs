@@ -101,8 +101,8 @@ impl Shape for Rectangle {
         self.area
     }
 
-    /// Uniform in the solid angle that a rectangle fills; over the area of a parallelogram, and where
-    /// the solid angle is very small or half of everything.
+    /// Uniform in the solid angle that a rectangle fills; over the area of a parallelogram, and
+    /// where the solid angle is very small or half of everything.
     fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
         let u = u.map(f64::from);
         let (at, pdf) = match self.seen_from(from) {

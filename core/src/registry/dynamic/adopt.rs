@@ -1,6 +1,8 @@
 //! A library's table of functions, copied and completed: what an older table lacks at its end, or
 //! leaves null, takes its default where there is one.
 
+use std::ptr::{null, without_provenance};
+
 use glam::{DVec3, Vec3};
 use luxel_sdk::abi::{
     CameraTable, FilterTable, ImporterTable, IntegratorTable, LightTable, MaterialTable,
@@ -61,7 +63,8 @@ pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, Stri
     }
 }
 
-/// Word by word: a table is its size and then one address for each name.
+/// Word by word: a table is its size and then one address for each name. Words are copied as
+/// addresses, which a function's stays only so.
 ///
 /// # Safety
 /// `raw` is the address of a table that begins with its size; `T` is a size and one function for
@@ -71,28 +74,30 @@ unsafe fn complete<T>(
     names: &[&str],
     defaults: Option<(&T, &[&str])>,
 ) -> Result<*const u8, String> {
-    const WORD: usize = size_of::<usize>();
+    type Word = *const u8;
+    const WORD: usize = size_of::<Word>();
     assert_eq!(size_of::<T>(), WORD * (1 + names.len()), "a size and a function for each name");
     // SAFETY: the caller says that a size stands there.
     let size = unsafe { raw.cast::<usize>().read_unaligned() };
     if !(WORD..=MOST).contains(&size) {
         return Err(format!("its table of functions claims to be {size} bytes long"));
     }
-    let mut words = vec![size_of::<T>()];
+    let mut words = vec![without_provenance(size_of::<T>())];
     for (i, name) in names.iter().enumerate() {
         let offset = WORD * (i + 1);
-        let mut word = 0;
+        let mut word = null();
         if offset + WORD <= size {
             // SAFETY: inside the table, by its own size.
-            word = unsafe { raw.wrapping_add(offset).cast::<usize>().read_unaligned() };
+            word = unsafe { raw.wrapping_add(offset).cast::<Word>().read_unaligned() };
         }
-        if let (0, Some((table, optional))) = (word, defaults)
+        if let Some((table, optional)) = defaults
+            && word.is_null()
             && optional.contains(name)
         {
             // SAFETY: inside the default table, which has one word for each name.
-            word = unsafe { std::ptr::from_ref(table).cast::<usize>().wrapping_add(i + 1).read() };
+            word = unsafe { std::ptr::from_ref(table).cast::<Word>().wrapping_add(i + 1).read() };
         }
-        if word == 0 {
+        if word.is_null() {
             return Err(format!("its table of functions lacks `{name}`"));
         }
         words.push(word);

@@ -6,7 +6,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::params::{Param, Preset, Type, Unit};
 
 use crate::report::Judge;
-use crate::sweep::{Bench, Sets, own};
+use crate::sweep::{Bench, Tried, own};
 use crate::values;
 
 /// Names, manual, units and defaults.
@@ -62,7 +62,7 @@ pub(crate) fn refuses_what_is_out_of_range(bench: &Bench, class: &Class, judge: 
             judge.holds("refuses out of range", !fits, || format!("{} = {x}", param.name));
         }
     }
-    let Ok(Sets { sets, .. }) = bench.sets(class, 0, 0) else { return };
+    let Ok(Tried { sets, .. }) = bench.sets(class, 0, 0) else { return };
     let Some(nominal) = sets.first() else { return };
     for param in own(class) {
         for (value, _) in values::extremes(param) {

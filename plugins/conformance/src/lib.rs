@@ -41,7 +41,7 @@ use luxel_sdk::sampling::hash_combine64;
 
 use report::Judge;
 use subject::Subject;
-use sweep::{Bench, Sets, Unmade};
+use sweep::{Bench, Tried, Unmade};
 
 pub use endurance::Memory;
 pub use reference::CLASSES as REFERENCE_CLASSES;
@@ -117,7 +117,7 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
         any::refuses_what_is_out_of_range(bench, &class, &mut judge);
         let name = class.name.bytes().fold(options.seed, |h, b| hash_combine64(h, u64::from(b)));
         match bench.sets(&class, name, options.sets) {
-            Ok(Sets { sets, failed, untried }) => {
+            Ok(Tried { sets, failed, untried }) => {
                 if !untried.is_empty() {
                     judge.skip(UNTRIED, untried.join("; "));
                 }

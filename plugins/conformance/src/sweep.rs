@@ -40,8 +40,8 @@ pub(crate) struct Set {
     pub(crate) mode: ColorMode,
 }
 
-/// The objects that could be made of a class.
-pub(crate) struct Sets {
+/// What was tried of a class, and the objects that could be made.
+pub(crate) struct Tried {
     pub(crate) sets: Vec<Set>,
     /// Those at which its code failed, and how: what it refuses with a word is no failure.
     pub(crate) failed: Vec<String>,
@@ -143,9 +143,9 @@ impl Bench {
     }
 
     /// The sets of a class, the first of which is nominal; or why none can be made.
-    pub(crate) fn sets(&self, class: &Class, seed: u64, n: usize) -> Result<Sets, Unmade> {
+    pub(crate) fn sets(&self, class: &Class, seed: u64, n: usize) -> Result<Tried, Unmade> {
         let nominal = self.nominal(class)?;
-        let made = Sets { sets: vec![], failed: vec![], untried: vec![] };
+        let made = Tried { sets: vec![], failed: vec![], untried: vec![] };
         let mut sweep = Sweep { bench: self, class, nominal, made };
         // It could be made before.
         sweep.push("as by default", Level::Usual, sweep.nominal.clone()).ok();
@@ -254,7 +254,7 @@ struct Sweep<'a> {
     bench: &'a Bench,
     class: &'a Class,
     nominal: Given,
-    made: Sets,
+    made: Tried,
 }
 
 impl Sweep<'_> {
@@ -319,10 +319,8 @@ impl Sweep<'_> {
             given.extend(prop(Kind::Texture, 0).map(|value| (param.name, value)));
             any = true;
         }
-        if any {
-            if let Err(why) = self.push("textured", Level::Usual, given) {
-                self.made.untried.push(why);
-            }
+        if any && let Err(why) = self.push("textured", Level::Usual, given) {
+            self.made.untried.push(why);
         }
     }
 

@@ -144,8 +144,8 @@ fn refusals_without_a_word_and_unknown_answers_are_told() {
         _: &mut Built,
     ) -> Status {
         let told = bytes(b"again");
-        // SAFETY: the host's own function and owner.
         let many = if cfg!(miri) { 1_000 } else { 1_000_000 };
+        // SAFETY: the host's own function and owner.
         (0..many).for_each(|_| unsafe { (faults.take)(faults.owner, told, told, told) });
         Status::REFUSED
     }

@@ -75,7 +75,8 @@ impl Shape for Torus {
         let rest = -near.dot(d);
         let line = Line { o: near + d * rest, d, tube: self.minor / self.radius };
         let after = -(shift + rest);
-        let s = line.first(after, ray.t_max * length / self.radius + after)?;
+        let before = ray.t_max * length / self.radius + after;
+        let s = line.first(after, before + (before.abs() + after.abs()) * gamma64(8))?;
         let t = (s - after) * self.radius / length;
         let p = line.o + d * s;
         let at = DVec2::new(p.y.atan2(p.x), p.z.atan2(p.xy().length() - 1.0));
@@ -95,8 +96,7 @@ impl Shape for Torus {
     fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
         let [around, mean] = u.map(|u| (f64::from(u) - 0.5) * TAU);
         let k = self.minor / self.radius;
-        let rise = |v: f64| (v + k * v.sin() - mean, 1.0 + k * v.cos());
-        let v = root(-PI, PI, mean, rise);
+        let v = root(-PI, PI, mean, |v, _| Some((v + k * v.sin() - mean, 1.0 + k * v.cos())));
         Some(ShapeSample { surface: self.surface_at(DVec2::new(around, v)), pdf: self.pdf_all() })
     }
 
@@ -154,66 +154,87 @@ const ROOM: (f64, f64) = (1e-6, 1e-14);
 /// Below this distance from the axis the line counts as through it.
 const ON_AXIS: f64 = 1e-10;
 
+/// What is found at a place of a line.
+#[derive(Clone, Copy)]
+struct Look {
+    s: f64,
+    /// Distance to the tube: negative inside.
+    gap: f64,
+    /// Distance from the circle in the tube's middle.
+    distance: f64,
+    /// Half the first and second derivatives of the square of that.
+    slope: f64,
+    bend: f64,
+}
+
 impl Line {
-    /// Distance from the circle in the tube's middle, and from it to the tube: negative inside.
-    fn distance(&self, s: f64) -> (f64, f64) {
-        let q = self.o + self.d * s;
-        let h = (q.xy().length() - 1.0).hypot(q.z);
-        (h, h - self.tube)
-    }
-
-    /// Half the derivative of the squared distance from the circle.
-    fn slope(&self, s: f64) -> f64 {
-        let (o, d) = (self.o, self.d);
-        let (flat, z) = (o.xy() + d.xy() * s, o.z + d.z * s);
+    fn look(&self, s: f64) -> Look {
+        let (o, d) = (self.o.xy(), self.d.xy());
+        let (flat, z) = (o + d * s, self.o.z + self.d.z * s);
         let r = flat.length();
-        let growth = if r > 0.0 { flat.dot(d.xy()) / r } else { 0.0 };
-        z * d.z + (r - 1.0) * growth
+        let growth = if r > 0.0 { flat.dot(d) / r } else { 0.0 };
+        let distance = ((r - 1.0) * (r - 1.0) + z * z).sqrt();
+        let slope = z * self.d.z + (r - 1.0) * growth;
+        // 1 − ρ'', see `concave`: (o × d)² = a δ².
+        let cross = o.perp_dot(d);
+        let bend = 1.0 - cross * cross / (r * r * r);
+        Look { s, gap: distance - self.tube, distance, slope, bend }
     }
 
-    /// The first root after `after` and not far beyond `before`.
+    /// The first root after `after`, unless it is far beyond `before`.
     ///
     /// Along the line the squared distance from the circle is s² + c − 2ρ(s), where ρ, the distance
     /// from the axis, is a hyperbola. So it is concave exactly where ρ'' > 1, which is one interval
     /// about the point nearest to the axis, and convex on either side: at most a minimum, a maximum
-    /// and another minimum, each found where the slope, monotonic there, changes its sign. Between
-    /// these it is monotonic, and a change of sign of the distance brackets one root. Nothing is
+    /// and another minimum. A place inside the tube near a minimum, or outside near the maximum,
+    /// splits the line into parts with one change of sign each, which is one root. Nothing is
     /// expanded into a quartic: the distance is measured at points and rounds like coordinates.
     fn first(&self, after: f64, before: f64) -> Option<f64> {
         let (low, high) = self.range()?;
-        if high < after || low > before {
+        let low = low.max(after);
+        if !(low < high && low <= before) {
             return None;
         }
-        let mut knots = [(low, self.distance(low).1); 5];
-        let mut n = 1;
-        let mut add = |s: f64| {
-            knots[n] = (s, self.distance(s).1);
-            n += 1;
-        };
-        match self.concave() {
-            Some((left, right)) => {
-                let (left, right) = (left.clamp(low, high), right.clamp(low, high));
-                for (a, b) in [(low, left), (left, right), (right, high)] {
-                    self.extremum(a, b).into_iter().for_each(&mut add);
-                }
-            }
-            None => self.extremum(low, high).into_iter().for_each(&mut add),
-        }
-        add(high);
-        let monotonic = knots[..n].windows(2).filter(|pair| pair[1].0 >= after);
-        for pair in monotonic {
-            let [(a, from), (b, to)] = [pair[0], pair[1]];
-            if a > before {
+        let (left, right) = self.concave().unwrap_or((high, high));
+        let (left, right) = (left.clamp(low, high), right.clamp(low, high));
+        let mut from = self.look(low);
+        for (start, end, is_convex) in
+            [(low, left, true), (left, right, false), (right, high, true)]
+        {
+            if from.s > before {
                 return None;
             }
-            if (from > 0.0) != (to > 0.0) {
-                let s = self.between((a, from), (b, to));
-                if s > after {
+            if start < end
+                && (from.gap > 0.0) == is_convex
+                && let Some(to) = self.other_side(start, end)
+            {
+                if let Some(s) = self.between(from, to).filter(|s| *s > after) {
                     return Some(s);
                 }
+                from = to;
             }
         }
-        None
+        self.between(from, self.look(high)).filter(|s| *s > after)
+    }
+
+    /// Between two places where the squared distance is convex and falls, then rises: a place inside
+    /// the tube. Where it is concave and rises, then falls: one outside. `None` if there is none.
+    fn other_side(&self, start: f64, end: f64) -> Option<Look> {
+        let (first, last) = (self.look(start), self.look(end));
+        let is_convex = first.slope <= 0.0;
+        if is_convex == (last.slope <= 0.0) {
+            return None;
+        }
+        let sign = if is_convex { 1.0 } else { -1.0 };
+        let mut found = None;
+        root(start, end, 0.5 * (start + end), |s, room| {
+            let at = self.look(s);
+            found = ((at.gap > 0.0) != is_convex).then_some(at);
+            // The extremum is within `room`, and the distance changes by no more than the way.
+            let none = at.gap.abs() > room;
+            (found.is_none() && !none).then_some((sign * at.slope, sign * at.bend))
+        });
+        found
     }
 
     /// Where the line is within the ball and between the planes that hold the ring.
@@ -246,43 +267,33 @@ impl Line {
         middle.is_finite().then_some((middle - half, middle + half))
     }
 
-    /// The place between `a` and `b`, where the slope is monotonic, at which it changes its sign.
-    fn extremum(&self, a: f64, b: f64) -> Option<f64> {
-        let (from, to) = (self.slope(a), self.slope(b));
-        if !(a < b && (from > 0.0) != (to > 0.0)) {
-            return None;
-        }
-        let sign = if from > 0.0 { -1.0 } else { 1.0 };
-        let (o, d) = (self.o.xy(), self.d.xy());
-        let (cross, a2) = (o.perp_dot(d), d.length_squared());
-        Some(root(a, b, 0.5 * (a + b), |s| {
-            let r = (o + d * s).length();
-            // 1 − ρ'': cross² = a δ².
-            let bend = 1.0 - cross * cross / (r * r * r);
-            (sign * self.slope(s), sign * if bend.is_finite() { bend } else { a2 })
+    /// The only change of sign between two places, if there is one.
+    fn between(&self, from: Look, to: Look) -> Option<f64> {
+        let sign = match (from.gap > 0.0, to.gap > 0.0) {
+            (true, false) => -1.0,
+            (false, true) => 1.0,
+            _ => return None,
+        };
+        // From outside, as far as the tube is away at least.
+        let start = if from.gap > 0.0 { from.s + from.gap } else { to.s - to.gap };
+        Some(root(from.s, to.s, start.clamp(from.s, to.s), |s, _| {
+            let at = self.look(s);
+            Some((sign * at.gap, sign * at.slope / at.distance))
         }))
-    }
-
-    /// The root between two places where the distance has different signs and is monotonic.
-    fn between(&self, (a, from): (f64, f64), (b, _): (f64, f64)) -> f64 {
-        let sign = if from > 0.0 { -1.0 } else { 1.0 };
-        // From outside, where the squared distance is convex, Newton's steps never go too far.
-        let start = if from > 0.0 { a } else { b };
-        root(a, b, start, |s| {
-            let (h, gap) = self.distance(s);
-            (sign * gap * (h + self.tube), 2.0 * sign * self.slope(s))
-        })
     }
 }
 
-/// The root of a function that rises between `low` and `high`, given with its derivative: Newton's
-/// steps where they stay between and gain enough, else halves.
-fn root(low: f64, high: f64, start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+/// The root of a function that is negative before it and positive after it, between `low` and
+/// `high`: Newton's steps where they stay between and gain enough, else halves.
+///
+/// The function is asked with how far the root may be off, gives its derivative too, and may end the
+/// search.
+fn root(low: f64, high: f64, start: f64, mut f: impl FnMut(f64, f64) -> Option<(f64, f64)>) -> f64 {
     let (mut low, mut high, mut s) = (low, high, start);
     let mut last = high - low;
     // Halving alone takes 60 from a whole range to a rounding.
     for _ in 0..128 {
-        let (value, slope) = f(s);
+        let Some((value, slope)) = f(s, (s - low).max(high - s)) else { break };
         if value == 0.0 {
             break;
         }
@@ -292,8 +303,7 @@ fn root(low: f64, high: f64, start: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
             low = s;
         }
         let newton = s - value / slope;
-        let step = newton - s;
-        let good = newton > low && newton < high && step.abs() < 0.75 * last;
+        let good = newton > low && newton < high && (newton - s).abs() < 0.75 * last;
         let next = if good { newton } else { 0.5 * (low + high) };
         last = (next - s).abs();
         s = next;

@@ -48,12 +48,14 @@ fn look_at(subject: &Subject<'_>, set: &Set, rng: &mut Rng, judge: &mut Judge) {
             return;
         }
         let Some(look) = Look::new(shape, set) else {
-            judge.skip("bounded", "the shape has no finite extent");
+            judge.skip("bounded", "the shape has no extent");
             return;
         };
         look.rays(rng, judge);
         look.scales(rng, judge);
-        look.samples(rng, subject.options.samples, judge);
+        if !look.endless {
+            look.samples(rng, subject.options.samples, judge);
+        }
     });
 }
 
@@ -82,16 +84,27 @@ struct Look<'a> {
     radius: f64,
     /// Largest coordinate: what f64 rounds is relative to it.
     reach: f64,
+    /// Whether this is but the part of the shape that is near to the origin.
+    endless: bool,
 }
+
+/// How far out hits of an endless shape are judged, in metres.
+const OUT: f64 = 100.0;
 
 impl<'a> Look<'a> {
     fn new(shape: &'a dyn Shape, set: &'a Set) -> Option<Self> {
         let bounds = shape.bounds();
+        let endless = !bounds.is_empty() && !bounds.diagonal().is_finite();
+        if endless {
+            let centre = DVec3::ZERO.clamp(bounds.min, bounds.max);
+            let reach = centre.abs().max_element() + OUT;
+            return Some(Self { shape, set, centre, radius: 1.0, reach, endless });
+        }
         let radius = 0.5 * bounds.diagonal().length();
         let usable = !bounds.is_empty() && radius > 0.0 && radius.is_finite();
         let centre = bounds.centre();
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element() + radius;
-        let mut look = Self { shape, set, centre, radius: radius * 1.01, reach };
+        let mut look = Self { shape, set, centre, radius: radius * 1.01, reach, endless };
         if usable {
             look.tighten();
         }
@@ -176,6 +189,9 @@ impl<'a> Look<'a> {
     fn one_ray(&self, ray: &Ray, judge: &mut Judge) {
         let Some(hit) = self.shape.intersect(ray) else { return };
         let surface = self.shape.surface(ray, &hit);
+        if self.endless && surface.p.distance(self.centre) > OUT {
+            return;
+        }
         let at = || format!("{}: {hit:?}", self.at(ray));
         let positive = hit.t > 0.0 && hit.t <= ray.t_max && hit.t.is_finite();
         judge.holds("t within limits", positive, at);

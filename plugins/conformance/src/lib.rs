@@ -52,8 +52,10 @@ pub use statistics::SIGNIFICANCE;
 const UNMADE: &str = "parameters";
 /// The check that is skipped when some parameters were refused whatever they were.
 const UNTRIED: &str = "every parameter is tried";
-/// Whether code of a library panicked or gave what no plugin may.
+/// Whether code of a library gave what no plugin may.
 const FAILS: &str = "never ends a render";
+/// Whether code of a plugin panicked.
+const PANICS: &str = "never panics";
 
 /// How much is tried.
 #[derive(Clone, Copy, Debug)]
@@ -122,22 +124,16 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
                     judge.skip(UNTRIED, untried.join("; "));
                 }
                 for told in failed {
-                    judge.holds(FAILS, false, || told);
+                    fails(&told, &mut judge);
                 }
-                let subject = Subject { bench, class, sets, options: *options };
-                by_kind(&subject, &mut judge);
+                let mut subject = Subject { bench, class, sets, options: *options };
+                while_sound(&mut subject, &mut judge);
                 endurance::judge(&subject, &mut judge);
-                for set in &subject.sets {
-                    // What a library answers after a failure says nothing of it.
-                    let failure = set.object.failure();
-                    judge.holds(FAILS, failure.is_none(), || {
-                        format!("{}: {}", set.label, failure.unwrap_or_default())
-                    });
-                }
+                judge.holds(FAILS, true, String::new);
             }
             Err(Unmade { why, failed }) => {
                 if failed {
-                    judge.holds(FAILS, false, || why.clone());
+                    fails(&why, &mut judge);
                 }
                 judge.skip(UNMADE, why);
             }
@@ -147,8 +143,43 @@ fn judge(bench: &Bench, class: Class, options: &Options) -> Judge {
         let text = payload.downcast_ref::<String>().cloned();
         text.or(payload.downcast_ref::<&str>().map(|text| (*text).to_owned())).unwrap_or_default()
     });
-    judge.holds("never panics", message.is_none(), || message.unwrap_or_default());
+    judge.holds(PANICS, message.is_none(), || message.unwrap_or_default());
     judge
+}
+
+/// Code of a library failed: it panicked, or gave what no plugin may.
+fn fails(told: &str, judge: &mut Judge) {
+    let check = if told.contains(" panicked") { PANICS } else { FAILS };
+    judge.holds(check, false, || told.to_owned());
+}
+
+/// Judges the objects that do not fail. One that did answers for the plugin no more, so that what
+/// was found of it, good or bad, says nothing: the others are judged again without it.
+fn while_sound(subject: &mut Subject<'_>, judge: &mut Judge) {
+    let mut checks = vec![];
+    for _ in 0..2 {
+        if subject.sets.is_empty() {
+            break;
+        }
+        let mut found = judge.fresh();
+        by_kind(subject, &mut found);
+        let all = subject.sets.len();
+        subject.sets.retain(|set| {
+            let failure = set.object.failure();
+            if let Some(told) = &failure {
+                fails(&format!("{}: {told}", set.label), judge);
+            }
+            failure.is_none()
+        });
+        checks.extend(found.checks());
+        if subject.sets.len() == all {
+            judge.join(found);
+            break;
+        }
+    }
+    for check in checks {
+        judge.skip_untried(check, "the plugin failed before it could be tried");
+    }
 }
 
 fn by_kind(subject: &Subject<'_>, judge: &mut Judge) {

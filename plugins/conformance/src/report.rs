@@ -128,6 +128,23 @@ impl Judge {
         Self { kind, class, findings: BTreeMap::new() }
     }
 
+    /// A judge of the same class who knows of nothing yet.
+    pub(crate) fn fresh(&self) -> Self {
+        Self { kind: self.kind, class: self.class.clone(), findings: BTreeMap::new() }
+    }
+
+    /// The checks of which something is known.
+    pub(crate) fn checks(&self) -> impl Iterator<Item = &'static str> {
+        self.findings.keys().copied()
+    }
+
+    /// Takes over what another found.
+    pub(crate) fn join(&mut self, other: Self) {
+        for (check, found) in other.findings {
+            self.take(check, found);
+        }
+    }
+
     fn take(&mut self, check: &'static str, found: Finding) {
         let tests = found.tests;
         match self.findings.get_mut(check) {
@@ -191,6 +208,13 @@ impl Judge {
         let skipped = Some(why.into());
         let detail = String::new();
         self.take(check, Finding { figure: 0.0, limit: 0.0, detail, tests: 0, skipped });
+    }
+
+    /// A check that could not be made, unless it was.
+    pub(crate) fn skip_untried(&mut self, check: &'static str, why: &str) {
+        if !self.findings.contains_key(check) {
+            self.skip(check, why);
+        }
     }
 
     fn into_rows(self, z: f64) -> impl Iterator<Item = Row> {

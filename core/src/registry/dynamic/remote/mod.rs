@@ -97,6 +97,8 @@ impl Head {
     fn failed(&self, status: Status) {
         let said = self.class.library.last_panic();
         let told = match (status, said.is_empty()) {
+            // Whoever kept no place of it said no more than its message.
+            (Status::PANICKED, false) if !said.contains("panicked") => format!("panicked: {said}"),
             (Status::PANICKED, false) => said,
             (Status::PANICKED, true) => "panicked".to_owned(),
             (other, _) => format!("answered with the unknown status {}", other.0),

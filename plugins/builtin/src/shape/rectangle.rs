@@ -8,6 +8,17 @@ use luxel_sdk::params::Fault;
 
 use super::spherical::SphericalRectangle;
 
+/// Area over squared distance from which on the solid angle is worth its arccosines: below, all
+/// points of a rectangle that is faced look alike to within (1 + `NEAR` / 2)².
+const NEAR: f64 = 0.25;
+
+/// What a viewer sees of a rectangle, and where its centre is from the viewer's foot.
+struct Seen {
+    rectangle: SphericalRectangle,
+    foot: DVec2,
+    from: DVec3,
+}
+
 /// A flat rectangle, or parallelogram, given by its middle and two whole edges.
 ///
 /// Its normal is `u` × `v`: with `u` to the right and `v` up it faces the viewer. Texture
@@ -105,38 +116,46 @@ impl Shape for Rectangle {
     /// where the solid angle is very small or half of everything.
     fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
         let u = u.map(f64::from);
-        let (at, pdf) = match self.seen_from(from) {
-            Some((seen, foot)) => {
-                let q = seen.sample(u) - foot;
+        let seen = self.seen_from(from);
+        let at = match &seen {
+            Some(seen) => {
+                let q = seen.rectangle.sample(u) - seen.foot;
                 let at = q / DVec2::new(self.u.length(), self.v.length());
-                (at.clamp(DVec2::splat(-0.5), DVec2::splat(0.5)), None)
+                at.clamp(DVec2::splat(-0.5), DVec2::splat(0.5))
             }
-            None => (DVec2::from_array(u) - 0.5, Some(self.area.recip())),
+            None => DVec2::from_array(u) - 0.5,
         };
         let surface = self.surface_at(at);
-        let pdf = pdf.unwrap_or_else(|| self.pdf(from, &surface));
+        let pdf = self.density(seen.as_ref(), surface.p);
         (pdf > 0.0 && pdf.is_finite()).then_some(ShapeSample { surface, pdf })
     }
 
     fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
-        let (Some((seen, _)), Some(from)) = (self.seen_from(from), from) else {
-            return self.area.recip();
-        };
-        let to = from - at.p;
-        let d2 = to.length_squared();
-        self.normal.dot(to).abs() / (d2.sqrt() * d2 * seen.solid_angle)
+        self.density(self.seen_from(from).as_ref(), at.p)
     }
 }
 
 impl Rectangle {
-    /// What a viewer sees, if it can be told well, and where the centre is from the viewer's foot.
-    fn seen_from(&self, from: Option<DVec3>) -> Option<(SphericalRectangle, DVec2)> {
-        let ([x, y], to_centre) = (self.sides, self.center - from?);
+    /// What a viewer sees from near enough, if it can be told well.
+    fn seen_from(&self, from: Option<DVec3>) -> Option<Seen> {
+        let ([x, y], from) = (self.sides, from?);
+        let to_centre = self.center - from;
+        if self.area < NEAR * to_centre.length_squared() {
+            return None;
+        }
         let half = 0.5 * DVec2::new(self.u.dot(x), self.v.dot(y));
         let foot = DVec2::new(to_centre.dot(x), to_centre.dot(y));
         let distance = to_centre.dot(self.normal).abs();
-        let seen = SphericalRectangle::new(foot - half, foot + half, distance)?;
-        Some((seen, foot))
+        let rectangle = SphericalRectangle::new(foot - half, foot + half, distance)?;
+        Some(Seen { rectangle, foot, from })
+    }
+
+    /// Density over the area, m⁻², of a point that is sampled by a viewer who sees this.
+    fn density(&self, seen: Option<&Seen>, p: DVec3) -> f64 {
+        let Some(seen) = seen else { return self.area.recip() };
+        let to = seen.from - p;
+        let d2 = to.length_squared();
+        self.normal.dot(to).abs() / (d2.sqrt() * d2 * seen.rectangle.solid_angle)
     }
 
     fn surface_at(&self, at: DVec2) -> Surface {

@@ -22,3 +22,5 @@ mod manual;
 mod scenes;
 #[cfg(test)]
 mod truths;
+#[cfg(test)]
+mod turns;

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use super::cluster::{cluster, join, slices};
 use super::collapse::{Costs, Root, Sink, collapse};
-use super::node::{Block, Bounds, Child, Node, WIDTH, narrow};
+use super::node::{Block, Bounds, Child, LANES, Node, narrow};
 use super::partition::{PART, Part, Prim};
 
-const COSTS: Costs = Costs { node: 1.0, block: 1.3, max_leaf: 8 };
+const COSTS: Costs = Costs { node: 1.0, block: 0.6, max_leaf: 8 };
 
 /// Parts built before their results are joined: enough to keep threads busy, few enough that what
 /// they hold stays small beside the tree.
@@ -125,7 +125,7 @@ impl Sink for Leaves<'_> {
     fn leaf(&mut self, prims: &[u32]) -> (Child, Bounds) {
         let first = self.blocks.len();
         let mut bounds = Bounds::EMPTY;
-        for block in prims.chunks(WIDTH) {
+        for block in prims.chunks(LANES) {
             let members = block.iter().map(|&p| &self.prims[p as usize]);
             bounds = members.clone().fold(bounds, |b, p| b.union(p.bounds));
             let corners = members.map(|p| (p.index, self.triangles.corners(p.index)));

@@ -1,6 +1,6 @@
-//! From a binary tree to a four-wide one, by least expected cost.
+//! From a binary tree to an eight-wide one, by least expected cost.
 //!
-//! Source: Ylitie, Karras and Laine 2017, §4.1: dynamic programming over how many of a node's four
+//! Source: Ylitie, Karras and Laine 2017, §4.1: dynamic programming over how many of a node's eight
 //! slots each binary subtree takes.
 
 use obvhs::bvh2::node::Bvh2Node;
@@ -11,7 +11,7 @@ use super::node::{Child, WIDTH};
 /// Relative costs of a step; only their ratio matters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Costs {
-    /// Testing four boxes.
+    /// Testing eight boxes.
     pub(super) node: f32,
     /// Testing up to four primitives.
     pub(super) block: f32,
@@ -35,11 +35,11 @@ pub(super) struct Root<B> {
     pub(super) depth: usize,
 }
 
-/// The best that a binary subtree can cost in 1..=4 slots, and how to reach it.
+/// The best that a binary subtree can cost in 1..=8 slots, and how to reach it.
 #[derive(Clone, Copy, Default)]
 struct Plan {
     cost: [f32; WIDTH],
-    /// For 2..=4 slots: those of the left child, 0 for "as with one slot less".
+    /// For 2..=8 slots: those of the left child, 0 for "as with one slot less".
     left: [u8; WIDTH],
     leaf: bool,
     n_prims: u32,
@@ -104,7 +104,7 @@ impl<S: Sink> Collapse<'_, S> {
             plan.cost[slots - 1] = plan.cost[slots - 2];
             if cost < plan.cost[slots - 1] {
                 plan.cost[slots - 1] = cost;
-                plan.left[slots - 1] = [0, 1, 2, 3][k];
+                plan.left[slots - 1] = [0, 1, 2, 3, 4, 5, 6, 7][k];
             }
         }
         plan

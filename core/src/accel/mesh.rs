@@ -1,17 +1,19 @@
 //! The triangles of one mesh, ready to trace.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::build::{Tree, Triangles};
 use super::error::BuildError;
 use super::node::{Block, Bounds, Child, Node};
 use super::partition::PART;
-use super::ray::{Direction, Shear, Slabs, cull};
-use super::stack::Room;
+use super::precision::Precision;
+use super::processor::{Processor, prefetch};
+use super::ray::{Direction, Line, Shear, Slabs, cull};
+use super::stack::{Room, Stack, is_enough_for};
 use super::triangle::Nearest;
 
-/// A mesh's triangles in a four-wide tree, in f32 about the mesh's own centre.
+/// A mesh's triangles in an eight-wide tree, in f32 about the mesh's own centre.
 ///
 /// Watertight: where two triangles share the same two points, no ray passes between them. There is
 /// no smallest distance and no epsilon; a caller that leaves a surface offsets its origin by the
@@ -22,8 +24,6 @@ pub struct MeshBvh {
     nodes: Vec<Node>,
     blocks: Vec<Block>,
     root: Option<Child>,
-    /// Entries that the traversal stack can need.
-    stack: usize,
     /// Power of two from the caller's frame to the tree's.
     unit: f32,
     /// 1 / `unit`, exactly.
@@ -40,13 +40,13 @@ pub struct MeshBvh {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshHit {
     /// Ray parameter in lengths of the scaled direction, 0 < t <= `t_max`.
-    pub t: f32,
+    pub t: f64,
     /// Position in the array of triangles that the tree was built from.
     pub triangle: u32,
     /// Barycentric weight of the triangle's second point, in [0, 1] to rounding.
-    pub b1: f32,
+    pub b1: f64,
     /// Barycentric weight of its third point.
-    pub b2: f32,
+    pub b2: f64,
 }
 
 impl MeshBvh {
@@ -68,14 +68,14 @@ impl MeshBvh {
         let dropped = indices.len() - prims.len();
         let Tree { nodes, blocks, root } = triangles.tree(prims);
         let size = root.map_or(Bounds { min: Vec3::ZERO, max: Vec3::ZERO }, |root| root.bounds);
-        // A node takes itself off the stack and puts at most four on it.
-        let stack = root.map_or(0, |root| 3 * root.depth + 4);
-        debug_assert!(stack <= 256, "builders bound the depth");
+        debug_assert!(
+            root.is_none_or(|root| is_enough_for(root.depth)),
+            "builders bound the depth"
+        );
         Ok(Self {
             nodes,
             blocks,
             root: root.map(|root| root.child),
-            stack,
             unit,
             per_unit: 1.0 / unit,
             reach: size.min.abs().max(size.max.abs()).max_element(),
@@ -99,114 +99,181 @@ impl MeshBvh {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
     }
 
-    /// The nearest hit with 0 < t <= `t_max`, of equally near triangles the one that comes first;
-    /// and how many nodes and triangle blocks were looked at.
-    ///
-    /// `o` is in the frame of the points and `t` is along the scaled direction; `t_max` may be
-    /// infinite. A ray that leaves the triangle `skip` does not meet it: a straight ray cannot, but
-    /// rounding would let it where the triangle is a sliver. An origin that is not finite and a
-    /// `t_max` of NaN hit nothing.
+    /// The nearest hit, of equally near triangles the one that comes first; and how many nodes and
+    /// triangle blocks were looked at.
     #[inline(always)]
-    pub fn intersect(
-        &self,
-        o: Vec3,
-        direction: &Direction,
-        t_max: f32,
-        skip: Option<u32>,
-    ) -> (Option<MeshHit>, u32) {
-        self.trace::<false>(o, direction, t_max, skip)
+    pub fn intersect(&self, processor: Processor, query: &Query<'_>) -> (Option<MeshHit>, u32) {
+        self.trace::<false>(processor, query)
     }
 
-    /// True if anything is hit with 0 < t <= `t_max`; the same answer as that of `intersect`, sooner.
+    /// True if anything is hit; the same answer as that of `intersect`, sooner.
     #[inline(always)]
-    pub fn occluded(&self, o: Vec3, direction: &Direction, t_max: f32, skip: Option<u32>) -> bool {
-        self.trace::<true>(o, direction, t_max, skip).0.is_some()
+    pub fn occluded(&self, processor: Processor, query: &Query<'_>) -> bool {
+        self.trace::<true>(processor, query).0.is_some()
     }
 
     #[inline(always)]
     fn trace<const ANY: bool>(
         &self,
-        o: Vec3,
-        direction: &Direction,
-        t_max: f32,
-        skip: Option<u32>,
+        processor: Processor,
+        query: &Query<'_>,
     ) -> (Option<MeshHit>, u32) {
-        let Some(root) = self.root else { return (None, 0) };
-        let o = o * self.unit;
+        match self.begin::<ANY>(query) {
+            Begun::Over(hit, steps) => (hit, steps),
+            Begun::Walk(mut walk) => {
+                let mut room = Room::default();
+                let mut stack = room.stack();
+                while !walk.step::<ANY>(processor, &mut stack) {}
+                (walk.hit(), walk.steps)
+            }
+        }
+    }
+
+    /// Sets out: a tree of one leaf is done with at once. `ANY` ends at the first hit that is found.
+    #[inline(always)]
+    pub fn begin<const ANY: bool>(&self, query: &Query<'_>) -> Begun<'_> {
+        let Some(root) = self.root else { return Begun::Over(None, 0) };
+        let Query { direction, t_max, precision, .. } = *query;
+        let line = Line { o: query.o * f64::from(self.unit), d: direction.exact };
+        let o = line.o.as_vec3();
         if t_max.is_nan() || !o.is_finite() {
-            return (None, 0);
+            return Begun::Over(None, 0);
         }
         // An infinite limit would let a ray "enter" the boxes that it misses at infinity.
-        let limit = (t_max * self.unit).min(f32::MAX);
-        let mut best = Nearest { t: limit, id: u32::MAX, b1: 0.0, b2: 0.0 };
-        let shear = Shear::new(direction, o, skip.unwrap_or(u32::MAX));
-        let steps = if root.is_leaf() {
-            self.leaf::<ANY>(root, &shear, &mut best).1
-        } else {
-            let slabs = Slabs::new(o, direction.d, self.reach);
-            self.walk::<ANY>(root, &shear, &slabs, &mut best)
+        let mut best = Nearest::none((t_max * f64::from(self.unit)).min(f64::from(f32::MAX)));
+        let shear = Shear::new(direction, o, query.skip.unwrap_or(u32::MAX));
+        let probe = Probe { precision, line, shear };
+        if root.is_leaf() {
+            let steps = self.leaf::<ANY>(root, &probe, &mut best).1;
+            return Begun::Over(self.found(&best, precision), steps);
+        }
+        let slabs = Slabs::new(o, direction.d, self.reach, precision);
+        Begun::Walk(MeshWalk { tree: self, probe, slabs, best, current: root, steps: 0 })
+    }
+
+    #[inline(always)]
+    fn found(&self, best: &Nearest, precision: Precision) -> Option<MeshHit> {
+        let [t, b1, b2] = match precision {
+            Precision::Exact => best.exact,
+            _ => [best.t, best.b1, best.b2].map(f64::from),
         };
-        let hit = (best.id != u32::MAX).then(|| MeshHit {
-            t: (best.t * self.per_unit).min(t_max),
-            triangle: best.id,
-            b1: best.b1,
-            b2: best.b2,
-        });
-        (hit, steps)
+        let t = t * f64::from(self.per_unit);
+        (best.id != u32::MAX).then_some(MeshHit { t, triangle: best.id, b1, b2 })
     }
 
     /// Whether a leaf has a hit, which `best` takes, and how many blocks were looked at.
     #[inline(always)]
-    fn leaf<const ANY: bool>(&self, leaf: Child, ray: &Shear, best: &mut Nearest) -> (bool, u32) {
+    fn leaf<const ANY: bool>(&self, leaf: Child, ray: &Probe, best: &mut Nearest) -> (bool, u32) {
         let mut steps = 0;
+        let Probe { precision, line, shear } = ray;
         for block in &self.blocks[leaf.blocks()] {
             steps += 1;
-            if block.intersect::<ANY>(ray, best) && ANY {
+            let is_hit = match precision {
+                Precision::Standard => block.intersect::<ANY>(shear, best),
+                Precision::Fast => block.intersect_fast::<ANY>(line, shear.skip, best),
+                Precision::Exact => block.intersect_exact::<ANY>(line, shear.skip, best),
+            };
+            if is_hit && ANY {
                 best.id = 0;
                 return (true, steps);
             }
         }
         (false, steps)
     }
+}
 
-    /// Visits nodes near to far by octant; how many nodes and blocks they were.
+/// A ray in the frame of a mesh's points, and what it asks. Hits have 0 < t <= `t_max`.
+///
+/// A ray that leaves the triangle `skip` does not meet it: a straight ray cannot, but rounding would
+/// let it where the triangle is a sliver. An origin that is not finite and a `t_max` of NaN hit
+/// nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Query<'a> {
+    /// Origin.
+    pub o: DVec3,
+    /// Direction, made ready.
+    pub direction: &'a Direction,
+    /// Along the scaled direction; may be infinite. Rounded to single precision unless `exact`.
+    pub t_max: f64,
+    /// The triangle that the ray leaves.
+    pub skip: Option<u32>,
+    /// How triangles are met.
+    pub precision: Precision,
+}
+
+/// A ray as leaves want it.
+#[derive(Debug)]
+struct Probe {
+    precision: Precision,
+    line: Line,
+    shear: Shear,
+}
+
+/// A ray that has been given to a tree.
+#[derive(Debug)]
+pub enum Begun<'t> {
+    /// It is done with: what it met, and how many nodes and triangle blocks were looked at.
+    Over(Option<MeshHit>, u32),
+    /// It is on its way.
+    Walk(MeshWalk<'t>),
+}
+
+/// A ray on its way through a mesh's tree: it may be left after any step and taken up again, so that
+/// others go on while the processor waits for memory.
+#[derive(Debug)]
+pub struct MeshWalk<'t> {
+    tree: &'t MeshBvh,
+    probe: Probe,
+    slabs: Slabs,
+    best: Nearest,
+    current: Child,
+    /// Nodes and triangle blocks looked at so far.
+    pub steps: u32,
+}
+
+impl MeshWalk<'_> {
+    /// Looks at the nodes down to a leaf, or at a leaf; true when there is nothing left. `ANY` as it
+    /// began; the stack is this walk's own, empty at first.
     #[inline(always)]
-    fn walk<const ANY: bool>(
-        &self,
-        root: Child,
-        shear: &Shear,
-        slabs: &Slabs,
-        best: &mut Nearest,
-    ) -> u32 {
-        let mut room = Room::<(Child, f32)>::new();
-        let mut stack = room.stack(self.stack);
-        let mut current = root;
-        let mut steps = 0;
-        loop {
-            if current.is_leaf() {
-                let (found, n) = self.leaf::<ANY>(current, shear, best);
-                steps += n;
-                if found && ANY {
-                    return steps;
-                }
-            } else {
-                let node = &self.nodes[current.index()];
-                steps += 1;
-                let (entered, t) = slabs.enter(node, best.t);
-                // Writes all four, keeps those that are entered; the nearest comes last.
-                let t = t.to_array();
-                for slot in node.order.far_to_near(slabs.octant) {
-                    stack.push_if(entered >> slot & 1 == 1, (node.children[slot], t[slot]));
-                }
+    pub fn step<const ANY: bool>(
+        &mut self,
+        processor: Processor,
+        stack: &mut Stack<'_, f32>,
+    ) -> bool {
+        if self.current.is_leaf() {
+            let (found, n) = self.tree.leaf::<ANY>(self.current, &self.probe, &mut self.best);
+            self.steps += n;
+            if found && ANY {
+                return true;
             }
-            loop {
-                let Some((child, t)) = stack.pop() else { return steps };
-                if t <= cull(best.t) {
-                    current = child;
-                    break;
-                }
+        } else {
+            let node = &self.tree.nodes[self.current.index()];
+            processor.enter(&self.slabs, node, self.best.t, stack);
+            self.steps += 1;
+        }
+        while let Some((child, t)) = stack.pop() {
+            if t <= cull(self.best.t) {
+                self.current = child;
+                return false;
             }
         }
+        true
+    }
+
+    /// Asks for the memory of the next step.
+    #[inline(always)]
+    pub fn prefetch(&self) {
+        if self.current.is_leaf() {
+            prefetch(&self.tree.blocks[self.current.blocks().start]);
+        } else {
+            prefetch(&self.tree.nodes[self.current.index()]);
+        }
+    }
+
+    /// What has been met, once it is over.
+    #[inline(always)]
+    pub fn hit(&self) -> Option<MeshHit> {
+        self.tree.found(&self.best, self.probe.precision)
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::soup::{Arrays, BruteForce, Rng, icosphere, soup};
-use super::{BuildError, MeshBvh, MeshHit};
+use super::{BuildError, MeshBvh, MeshHit, Precision};
 
 const FAR: f32 = f32::INFINITY;
 
@@ -61,7 +61,7 @@ fn parameter_scales_with_direction_even_at_the_ends_of_f32() {
     for exponent in [-120, -60, -30, 30, 60, 120] {
         let k = 2f32.powi(exponent);
         let hit = tree.hit(Vec3::ZERO, d * k, FAR).unwrap();
-        assert_eq!(hit, MeshHit { t: one.t / k, ..one });
+        assert_eq!(hit, MeshHit { t: one.t / f64::from(k), ..one });
     }
 }
 
@@ -84,30 +84,57 @@ fn zero_components_of_either_sign_agree_with_brute_force() {
 }
 
 #[test]
-fn distance_and_barycentrics_agree_with_double_precision() {
-    let mut rng = Rng(4);
+fn distance_and_barycentrics_are_as_good_as_the_precision_says() {
+    let single = f64::from(f32::EPSILON) / 2.0;
+    for (precision, u) in [(Precision::Standard, single), (Precision::Exact, f64::EPSILON / 2.0)] {
+        let mut rng = Rng(4);
+        let arrays = soup(300, 0.3, &mut rng);
+        let tree = build(&arrays);
+        let mut hits = 0;
+        for _ in 0..3000 {
+            let (o, d) = (rng.point(), rng.point());
+            let Some(hit) = tree.shoot_with(precision, o, d, FAR).0 else { continue };
+            let corners = arrays.1[hit.triangle as usize];
+            let [a, b, c] = corners.map(|i| arrays.0[i as usize].as_dvec3());
+            let on_triangle = a * (1.0 - hit.b1 - hit.b2) + b * hit.b1 + c * hit.b2;
+            let on_ray = o.as_dvec3() + d.as_dvec3() * hit.t;
+            let n = (b - a).cross(c - a);
+            // The shear moves each vertex by at most 7u·(|o| + |p|) < 7u·2.3·√3 in the plane across
+            // the ray's main axis; a shift s across moves the hit along the ray by s·tan of
+            // incidence, and the weights of a triangle of height h by s/h, that is the point by s
+            // times its aspect.
+            let cos = (n.dot(d.as_dvec3()) / (n.length() * d.as_dvec3().length())).abs();
+            let height = n.length() / (b - a).length().max((c - a).length()).max((c - b).length());
+            let bound = 7.0 * u * 2.3 * 3.0 / cos * (1.0 + 0.6 / height);
+            let error = (on_triangle - on_ray).length();
+            assert!(error < bound, "{precision:?}: {on_triangle} {on_ray} {bound:e}");
+            hits += 1;
+        }
+        assert!(hits > 500, "{hits}");
+    }
+}
+
+#[test]
+fn every_precision_meets_the_same_triangles_away_from_edges() {
+    let mut rng = Rng(41);
     let arrays = soup(300, 0.3, &mut rng);
     let tree = build(&arrays);
-    let mut hits = 0;
+    let (mut hits, mut inner) = (0, 0);
     for _ in 0..3000 {
         let (o, d) = (rng.point(), rng.point());
-        let Some(hit) = tree.hit(o, d, FAR) else { continue };
-        let [a, b, c] = arrays.1[hit.triangle as usize].map(|i| arrays.0[i as usize].as_dvec3());
-        let (b1, b2) = (f64::from(hit.b1), f64::from(hit.b2));
-        let on_triangle = a * (1.0 - b1 - b2) + b * b1 + c * b2;
-        let on_ray = o.as_dvec3() + d.as_dvec3() * f64::from(hit.t);
-        let n = (b - a).cross(c - a);
-        // The shear moves each vertex by at most 7u·(|o| + |p|) < 7u·2.3·√3 in the plane across the
-        // ray's main axis; a shift s across moves the hit along the ray by s·tan of incidence, and
-        // the weights of a triangle of height h by s/h, that is the point by s times its aspect.
-        let cos = (n.dot(d.as_dvec3()) / (n.length() * d.as_dvec3().length())).abs();
-        let height = n.length() / (b - a).length().max((c - a).length()).max((c - b).length());
-        let u = f64::from(f32::EPSILON) / 2.0;
-        let bound = 7.0 * u * 2.3 * 3.0 / cos * (1.0 + 0.6 / height);
-        assert!((on_triangle - on_ray).length() < bound, "{on_triangle} {on_ray} {bound:e}");
+        let [fast, standard, exact] = [Precision::Fast, Precision::Standard, Precision::Exact]
+            .map(|precision| tree.shoot_with(precision, o, d, FAR).0);
+        let Some(hit) = exact else { continue };
         hits += 1;
+        // What is further inside than any rounding of single precision moves it.
+        if hit.b1.min(hit.b2).min(1.0 - hit.b1 - hit.b2) > 0.05 && hit.t > 0.05 {
+            inner += 1;
+            let triangle = |hit: Option<MeshHit>| hit.map(|hit| hit.triangle);
+            assert_eq!(triangle(standard), Some(hit.triangle));
+            assert_eq!(triangle(fast), Some(hit.triangle));
+        }
     }
-    assert!(hits > 500, "{hits}");
+    assert!(inner > 300 && hits > inner, "{inner} of {hits}");
 }
 
 #[test]
@@ -161,7 +188,7 @@ fn flat_mesh_is_hit_everywhere_and_nowhere_beside() {
         for j in 0..=400 {
             let o = Vec3::new(i as f32 * 0.1, 3.0, j as f32 * 0.1).min(Vec3::splat(n as f32));
             let hit = tree.hit(o, Vec3::new(0.0, -2.0, -0.0), FAR).unwrap();
-            assert!((hit.t - 1.5).abs() <= f32::EPSILON * 4.0, "{o} {hit:?}");
+            assert!((hit.t - 1.5).abs() <= f64::from(f32::EPSILON) * 4.0, "{o} {hit:?}");
         }
     }
     assert_eq!(tree.hit(Vec3::new(-1.0, 0.0, 3.5), Vec3::X, FAR), None, "within the plane");
@@ -203,7 +230,7 @@ fn limit_is_included_and_the_origin_is_not() {
     let points = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(3.0, -1.0, 0.0), Vec3::new(-1.0, 3.0, 0.0)];
     let tree = MeshBvh::build(&points, &[[0, 1, 2]]).unwrap();
     let o = Vec3::new(0.0, 0.0, 2.0);
-    assert_eq!(tree.hit(o, Vec3::NEG_Z, 2.0).unwrap().t.to_bits(), 2f32.to_bits());
+    assert_eq!(tree.hit(o, Vec3::NEG_Z, 2.0).unwrap().t.to_bits(), 2f64.to_bits());
     assert!(tree.hit(o, Vec3::NEG_Z, 2f32.next_down()).is_none());
     assert!(tree.hit(Vec3::ZERO, Vec3::NEG_Z, FAR).is_none());
     assert!(tree.hit(o, Vec3::Z, FAR).is_none());
@@ -265,7 +292,7 @@ fn many_parts_agree_with_the_nearest_of_their_triangles() {
         let (o, d) = (rng.point(), rng.point());
         let hit = tree.hit(o, d, FAR).unwrap();
         let [a, b, c] = arrays.1[hit.triangle as usize].map(|i| arrays.0[i as usize].as_dvec3());
-        let p = o.as_dvec3() + d.as_dvec3() * f64::from(hit.t);
+        let p = o.as_dvec3() + d.as_dvec3() * hit.t;
         let off = (b - a).cross(c - a).normalize().dot(p - a);
         // 7u·(|o| + |p|) across, seen at an incidence with cosine above 0.8: the origin is near.
         assert!(off.abs() < 7.0 * 2f64.powi(-24) * 5.0 / 0.8, "{off:e}");

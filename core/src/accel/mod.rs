@@ -4,15 +4,16 @@
 //! mesh is never let through an edge or a vertex, at any scale. [`TopBvh`] is in f64 over the boxes
 //! of placements. Neither knows materials, transforms or scenes, and neither has an epsilon.
 //!
-//! obvhs clusters the triangles; the trees that are traversed are ours: four children to a node,
-//! four triangles to a leaf block, so that one SSE or NEON register holds one coordinate of each.
+//! obvhs clusters the triangles; the trees that are traversed are ours: eight children to a node, so
+//! that one AVX register holds one plane of each, and four triangles to a leaf block.
 
 mod mesh;
 mod node;
+mod precision;
+mod processor;
 mod ray;
 mod stack;
 mod triangle;
-mod widest;
 
 mod build;
 mod cluster;
@@ -30,7 +31,9 @@ mod mesh_tests;
 mod soup;
 
 pub use error::BuildError;
-pub use mesh::{MeshBvh, MeshHit};
+pub use mesh::{Begun, MeshBvh, MeshHit, MeshWalk, Query};
+pub use precision::Precision;
+pub use processor::{Processor, Work};
 pub use ray::Direction;
-pub use top::{Step, TopBvh, Visit};
-pub use widest::{Work, widest};
+pub use stack::{Room, Stack};
+pub use top::{TopBvh, TopWalk};

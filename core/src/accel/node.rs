@@ -1,9 +1,12 @@
-//! The wide tree in memory: nodes of four boxes, blocks of four triangles, references between them.
+//! The wide tree in memory: nodes of eight boxes, blocks of four triangles, references between them.
 
 use glam::{Vec3, Vec4};
 
-/// Children of a node, triangles of a block, lanes of a register.
-pub(super) const WIDTH: usize = 4;
+/// Children of a node.
+pub(super) const WIDTH: usize = 8;
+
+/// Triangles of a block.
+pub(super) const LANES: usize = 4;
 
 /// A node or a run of blocks: bit 31 tells a leaf; a leaf holds its first block and, in the low two
 /// bits, how many blocks follow it; a node holds its position.
@@ -87,62 +90,67 @@ impl Bounds {
     }
 }
 
-/// The first half of every node, whatever its precision: which children, in which order.
+/// In which order the children of a node lie along a ray, for each of the eight sign patterns of its
+/// direction (bit a set if component a is negative): the slots by the centres of their boxes, three
+/// bits each, the farthest lowest.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Order(pub(super) [u8; 8]);
+#[repr(C)]
+pub(super) struct Order(pub(super) [u32; 8]);
 
 impl Order {
-    /// For each of the eight sign patterns of a direction (bit a set if component a is negative),
-    /// the slots from near to far by their centres, two bits each, the nearest lowest.
     pub(super) fn of(centres: &[[f64; 3]; WIDTH]) -> Self {
         let mut orders = [0; 8];
         for (octant, order) in orders.iter_mut().enumerate() {
-            let key = |slot: u8| -> f64 {
+            let key = |slot: u32| -> f64 {
                 let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
-                let c = centres[usize::from(slot)];
+                let c = centres[slot as usize];
                 (0..3).map(|axis| c[axis] * sign(axis)).sum()
             };
-            let mut slots = [0u8, 1, 2, 3];
+            let mut slots = [0u32, 1, 2, 3, 4, 5, 6, 7];
             slots.sort_by(|&a, &b| key(a).total_cmp(&key(b)));
-            *order = slots.iter().rev().fold(0, |bits, slot| bits << 2 | slot);
+            *order = slots.iter().fold(0, |bits, slot| bits << 3 | slot);
         }
         Self(orders)
+    }
+
+    /// The slots for a direction of this octant, as they are stored.
+    #[inline(always)]
+    pub(super) fn bits(self, octant: usize) -> u32 {
+        self.0[octant & 7]
     }
 
     /// The slots from far to near, for a direction of this octant.
     #[inline(always)]
     pub(super) fn far_to_near(self, octant: usize) -> [usize; WIDTH] {
-        let slots = usize::from(self.0[octant & 7]);
-        [slots >> 6, slots >> 4 & 3, slots >> 2 & 3, slots & 3]
+        let bits = self.bits(octant) as usize;
+        [0, 3, 6, 9, 12, 15, 18, 21].map(|shift| bits >> shift & 7)
     }
 }
 
-/// Four boxes by coordinate: `planes[axis][0]` holds four minima, `[1]` four maxima.
+/// Eight boxes by coordinate: `planes[axis][0]` holds their minima, `[1]` their maxima.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    pub(super) planes: [[Vec4; 2]; 3],
+    pub(super) planes: [[[f32; WIDTH]; 2]; 3],
     pub(super) children: [Child; WIDTH],
     pub(super) order: Order,
 }
 
 impl Node {
-    /// A node over 1..=4 slots; those that are left over have empty boxes, which no ray enters.
+    /// A node over 1..=8 slots; those that are left over have empty boxes, which no ray enters.
     pub(super) fn of(slots: &[(Child, Bounds)]) -> Self {
         debug_assert!((1..=WIDTH).contains(&slots.len()));
-        let mut min = [[f32::INFINITY; WIDTH]; 3];
-        let mut max = [[f32::NEG_INFINITY; WIDTH]; 3];
+        let mut planes = [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3];
         let mut children = [Child(0); WIDTH];
         let mut centres = [[f64::INFINITY; 3]; WIDTH];
         for (slot, (child, bounds)) in slots.iter().enumerate() {
             children[slot] = *child;
             for axis in 0..3 {
-                (min[axis][slot], max[axis][slot]) = (bounds.min[axis], bounds.max[axis]);
+                (planes[axis][0][slot], planes[axis][1][slot]) =
+                    (bounds.min[axis], bounds.max[axis]);
                 centres[slot][axis] = f64::from(bounds.min[axis]) + f64::from(bounds.max[axis]);
             }
         }
-        let planes =
-            [0, 1, 2].map(|axis| [Vec4::from_array(min[axis]), Vec4::from_array(max[axis])]);
         Self { planes, children, order: Order::of(&centres) }
     }
 }
@@ -153,15 +161,15 @@ impl Node {
 #[repr(C)]
 pub(super) struct Block {
     pub(super) points: [[Vec4; 3]; 3],
-    pub(super) ids: [u32; WIDTH],
+    pub(super) ids: [u32; LANES],
 }
 
 impl Block {
     /// A block of 1..=4 triangles and their numbers.
     pub(super) fn of(triangles: impl Iterator<Item = (u32, [Vec3; 3])>) -> Self {
-        let mut points = [[[f32::NAN; WIDTH]; 3]; 3];
-        let mut ids = [u32::MAX; WIDTH];
-        for (lane, (id, triangle)) in triangles.take(WIDTH).enumerate() {
+        let mut points = [[[f32::NAN; LANES]; 3]; 3];
+        let mut ids = [u32::MAX; LANES];
+        for (lane, (id, triangle)) in triangles.take(LANES).enumerate() {
             ids[lane] = id;
             for (vertex, p) in triangle.iter().enumerate() {
                 for axis in 0..3 {

@@ -2,16 +2,18 @@
 //!
 //! Source: PBR4 §6.8.2 (slabs) with the bound of §6.8.3; Woop, Benthin and Wald 2013 (the shear).
 
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3};
 
-use super::node::Node;
+use super::node::{Node, WIDTH};
+use super::precision::Precision;
+use super::stack::Stack;
 
 /// Unit roundoff of f32.
 const U: f32 = f32::EPSILON / 2.0;
 
 /// 1 + 2γ(3): each slab distance has three roundings (subtraction, reciprocal, product), so a far
 /// plane this much farther is never before a near plane that it touches.
-const FAR: f32 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f32::EPSILON;
+pub(super) const FAR: f32 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f32::EPSILON;
 
 /// A direction in the frame of meshes, made ready for their triangles: once per ray and frame.
 ///
@@ -20,6 +22,8 @@ const FAR: f32 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f32::EPSILON;
 pub struct Direction {
     /// Its largest |component| is in [1, 2].
     pub(super) d: Vec3,
+    /// The same before it was rounded.
+    pub(super) exact: DVec3,
     /// Axes with the largest component last; each is below 3.
     pub(super) axes: [usize; 3],
     /// `d[kx]/d[kz]`, `d[ky]/d[kz]`, `1/d[kz]`.
@@ -48,11 +52,12 @@ impl Direction {
         // Powers of two, whose exponents add up to that of 1.
         let scale = f64::from_bits(exponent);
         let per_scale = f64::from_bits(2 * 1f64.to_bits() - exponent);
-        let d = (d * per_scale).as_vec3();
+        let exact = d * per_scale;
+        let d = exact.as_vec3();
         let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][kz];
         let rz = 1.0 / d[kz];
         let shear = [d[axes[0]] * rz, d[axes[1]] * rz, rz];
-        Some(Self { d, axes, shear, scale, per_scale })
+        Some(Self { d, exact, axes, shear, scale, per_scale })
     }
 
     /// Length of the direction that was given in lengths of the scaled one: what a parameter `t`
@@ -69,7 +74,16 @@ impl Direction {
     }
 }
 
-/// A ray in a mesh's scaled frame, as the triangle test wants it.
+/// A ray in a mesh's scaled frame, in double precision.
+#[derive(Debug)]
+pub(super) struct Line {
+    pub(super) o: DVec3,
+    /// Its largest |component| is in [1, 2].
+    pub(super) d: DVec3,
+}
+
+/// A ray in a mesh's scaled frame, as the watertight triangle test wants it.
+#[derive(Debug)]
 pub(super) struct Shear {
     /// As in [`Direction`].
     pub(super) axes: [usize; 3],
@@ -91,13 +105,14 @@ impl Shear {
 }
 
 /// The same ray, as the box test wants it.
+#[derive(Debug)]
 pub(super) struct Slabs {
     /// Origins for the near and the far planes: `o` moved apart by the slack of [`Slabs::new`].
-    near_o: [Vec4; 3],
-    far_o: [Vec4; 3],
-    rdir: [Vec4; 3],
+    pub(super) near_o: [f32; 3],
+    pub(super) far_o: [f32; 3],
+    pub(super) rdir: [f32; 3],
     /// Which plane of each axis is entered first, 0 or 1.
-    near: [usize; 3],
+    pub(super) near: [usize; 3],
     /// One bit per negative component.
     pub(super) octant: usize,
 }
@@ -109,39 +124,48 @@ impl Slabs {
     /// The triangle test shifts each vertex by at most 7u·(|o| + |p|) in the shear plane (u the
     /// unit roundoff: two subtractions, a shear factor of two roundings, a product, and again a
     /// subtraction). Boxes widened by 8u·(|o| + |p|) therefore hold every triangle the test
-    /// accepts; widening is moving the origin, once per ray.
+    /// accepts; widening is moving the origin, once per ray. Without a promise it is not moved.
     #[inline(always)]
-    pub(super) fn new(o: Vec3, d: Vec3, reach: f32) -> Self {
-        let slack = 8.0 * U * (o.abs().max_element() + reach);
+    pub(super) fn new(o: Vec3, d: Vec3, reach: f32, precision: Precision) -> Self {
+        let slack = match precision {
+            Precision::Fast => 0.0,
+            _ => 8.0 * U * (o.abs().max_element() + reach),
+        };
         let rdir = d.recip();
         let sign = |c: f32| usize::from(c.is_sign_negative());
         let near = [sign(d.x), sign(d.y), sign(d.z)];
         let apart = slack * Vec3::ONE.copysign(d);
-        let splat = |v: Vec3| [Vec4::splat(v.x), Vec4::splat(v.y), Vec4::splat(v.z)];
         Self {
-            near_o: splat(o + apart),
-            far_o: splat(o - apart),
-            rdir: splat(rdir),
+            near_o: (o + apart).to_array(),
+            far_o: (o - apart).to_array(),
+            rdir: rdir.to_array(),
             near,
             octant: near[0] | near[1] << 1 | near[2] << 2,
         }
     }
 
-    /// Which of the node's four boxes the ray may enter at or before `t_max`, and where.
+    /// Puts the children that the ray enters at or before `t_max` on the stack, the nearest last.
     ///
-    /// A direction component of zero makes infinities, and NaN where the origin lies in a plane.
-    /// `min` and `max` give their second operand if either is NaN, so that slab does not cut.
+    /// A direction component of zero makes infinities, and NaN where the origin lies in a plane: a
+    /// slab with a NaN does not cut.
     #[inline(always)]
-    pub(super) fn enter(&self, node: &Node, t_max: f32) -> (u32, Vec4) {
-        let mut t_near = Vec4::ZERO;
-        let mut t_far = Vec4::splat(t_max);
+    pub(super) fn enter(&self, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
+        let mut t_near = [0.0; WIDTH];
+        let mut t_far = [t_max; WIDTH];
         for axis in 0..3 {
-            let near = self.near[axis] & 1;
-            let rdir = self.rdir[axis];
-            t_near = ((node.planes[axis][near] - self.near_o[axis]) * rdir).max(t_near);
-            t_far = ((node.planes[axis][near ^ 1] - self.far_o[axis]) * rdir).min(t_far);
+            let side = self.near[axis] & 1;
+            let (near, far) = (&node.planes[axis][side], &node.planes[axis][side ^ 1]);
+            for lane in 0..WIDTH {
+                let enter = (near[lane] - self.near_o[axis]) * self.rdir[axis];
+                let leave = (far[lane] - self.far_o[axis]) * self.rdir[axis];
+                t_near[lane] = if enter > t_near[lane] { enter } else { t_near[lane] };
+                t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
+            }
         }
-        (t_near.cmple(t_far * FAR).bitmask(), t_near)
+        for slot in node.order.far_to_near(self.octant) {
+            let entered = t_near[slot] <= t_far[slot] * FAR;
+            stack.push_if(entered, node.children[slot], t_near[slot]);
+        }
     }
 }
 

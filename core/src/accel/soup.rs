@@ -4,8 +4,7 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use super::{Direction, MeshBvh, MeshHit};
-use crate::cast::narrow;
+use super::{Direction, MeshBvh, MeshHit, Precision, Processor, Query};
 
 /// Points and triangles.
 pub(super) type Arrays = (Vec<Vec3>, Vec<[u32; 3]>);
@@ -89,12 +88,30 @@ pub(super) fn icosphere(level: u32, radius: f32) -> Arrays {
 }
 
 impl MeshBvh {
-    /// The nearest hit along a direction of any length, its `t` in that length, and the steps taken.
+    /// The nearest hit along a direction of any length, its `t` in that length, and the steps taken:
+    /// the same on every processor.
     pub(super) fn shoot(&self, o: Vec3, d: Vec3, t_max: f32) -> (Option<MeshHit>, u32) {
+        self.shoot_with(Precision::Standard, o, d, t_max)
+    }
+
+    pub(super) fn shoot_with(
+        &self,
+        precision: Precision,
+        o: Vec3,
+        d: Vec3,
+        t_max: f32,
+    ) -> (Option<MeshHit>, u32) {
         let Some(direction) = Direction::new(d.as_dvec3()) else { return (None, 0) };
-        let (hit, steps) = self.intersect(o, &direction, scaled(t_max, &direction), None);
-        let t = |t: f32| narrow(f64::from(t) * direction.per_scale()).min(t_max);
-        (hit.map(|hit| MeshHit { t: t(hit.t), ..hit }), steps)
+        let t_max = f64::from(t_max) * direction.scale();
+        let (o, direction) = (o.as_dvec3(), &direction);
+        let query = Query { o, direction, t_max, skip: None, precision };
+        let (hit, steps) = self.intersect(Processor::ANY, &query);
+        for processor in Processor::all() {
+            let name = processor.name();
+            assert_eq!(self.intersect(processor, &query), (hit, steps), "{name}");
+            assert_eq!(self.occluded(processor, &query), hit.is_some(), "{name}");
+        }
+        (hit.map(|hit| MeshHit { t: hit.t * direction.per_scale(), ..hit }), steps)
     }
 
     pub(super) fn hit(&self, o: Vec3, d: Vec3, t_max: f32) -> Option<MeshHit> {
@@ -102,13 +119,8 @@ impl MeshBvh {
     }
 
     pub(super) fn is_hit(&self, o: Vec3, d: Vec3, t_max: f32) -> bool {
-        Direction::new(d.as_dvec3())
-            .is_some_and(|direction| self.occluded(o, &direction, scaled(t_max, &direction), None))
+        self.hit(o, d, t_max).is_some()
     }
-}
-
-fn scaled(t_max: f32, direction: &Direction) -> f32 {
-    narrow(f64::from(t_max) * direction.scale())
 }
 
 /// One tree per triangle: a single leaf, so no box is ever tested.

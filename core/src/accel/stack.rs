@@ -3,53 +3,112 @@
 
 use std::mem::MaybeUninit;
 
-/// One more than a tree may ask for: builders bound the depth.
-const ROOM: usize = 257;
+use super::node::{Child, WIDTH};
 
-/// Room for a stack of small values. It is not cleared when it is made: a ray would pay for that more
-/// than for a small tree.
-pub(super) struct Room<T: Copy>([MaybeUninit<T>; ROOM]);
+/// One more than a tree may ask for: builders bound the depth.
+const ROOM: usize = 640;
+
+/// Entries that a walk through a tree of this many levels can need: a node takes itself off the
+/// stack and puts all its children on it, written in one piece.
+fn need(depth: usize) -> usize {
+    (WIDTH - 1) * depth + 2 * WIDTH
+}
+
+/// Whether a stack has room for a tree of this many levels.
+pub(super) fn is_enough_for(depth: usize) -> bool {
+    need(depth) < ROOM
+}
+
+/// Room for what is still to be visited, and where the ray enters it. It is not cleared when it is
+/// made: a ray would pay for that more than for a small tree.
+#[derive(Debug)]
+pub struct Room<T: Copy> {
+    children: [MaybeUninit<Child>; ROOM],
+    entries: [MaybeUninit<T>; ROOM],
+}
 
 /// A stack in its room, apart from it so that its length stays in a register.
-pub(super) struct Stack<'a, T: Copy> {
-    room: &'a mut [MaybeUninit<T>; ROOM],
+#[derive(Debug)]
+pub struct Stack<'a, T: Copy> {
+    room: &'a mut Room<T>,
     len: usize,
 }
 
-impl<T: Copy> Room<T> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        Self([const { MaybeUninit::uninit() }; ROOM])
-    }
+/// Room for the children of one node on top of a stack.
+pub(super) struct Top<'a, T> {
+    pub(super) children: &'a mut [MaybeUninit<Child>; WIDTH],
+    pub(super) entries: &'a mut [MaybeUninit<T>; WIDTH],
+}
 
-    /// An empty stack for at most `need` entries at once.
-    ///
-    /// # Panics
-    /// For a tree that needs more than there is: builders bound that.
+impl<T: Copy> Default for Room<T> {
     #[inline(always)]
-    pub(super) fn stack(&mut self, need: usize) -> Stack<'_, T> {
-        assert!(need < ROOM, "builders bound the depth of trees");
-        Stack { room: &mut self.0, len: 0 }
+    fn default() -> Self {
+        Self {
+            children: [const { MaybeUninit::uninit() }; ROOM],
+            entries: [const { MaybeUninit::uninit() }; ROOM],
+        }
+    }
+}
+
+impl<T: Copy> Room<T> {
+    /// An empty stack.
+    #[inline(always)]
+    pub fn stack(&mut self) -> Stack<'_, T> {
+        Stack { room: self, len: 0 }
     }
 }
 
 impl<T: Copy> Stack<'_, T> {
+    /// Forgets what it holds.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
     /// Writes a value and keeps it if `kept`: without a branch, which could not be foreseen.
     ///
     /// # Panics
     /// Beyond the room.
     #[inline(always)]
-    pub(super) fn push_if(&mut self, kept: bool, value: T) {
-        self.room[self.len].write(value);
+    pub(super) fn push_if(&mut self, kept: bool, child: Child, entry: T) {
+        self.room.children[self.len].write(child);
+        self.room.entries[self.len].write(entry);
         self.len += usize::from(kept);
     }
 
-    /// The value that was kept last.
+    /// Where eight more would stand.
+    ///
+    /// # Panics
+    /// Beyond the room.
     #[inline(always)]
-    pub(super) fn pop(&mut self) -> Option<T> {
+    pub(super) fn top(&mut self) -> Top<'_, T> {
+        let range = self.len..self.len + WIDTH;
+        let children = (&mut self.room.children[range.clone()]).try_into();
+        let entries = (&mut self.room.entries[range]).try_into();
+        Top {
+            children: children.expect("the range has this length"),
+            entries: entries.expect("the range has this length"),
+        }
+    }
+
+    /// Keeps so many of what was written at [`Stack::top`].
+    ///
+    /// # Safety
+    /// The first `n` children and entries have been written.
+    #[inline(always)]
+    pub(super) unsafe fn keep(&mut self, n: usize) {
+        self.len += n;
+    }
+
+    /// What was kept last.
+    #[inline(always)]
+    pub(super) fn pop(&mut self) -> Option<(Child, T)> {
         self.len = self.len.checked_sub(1)?;
-        // SAFETY: `push_if` wrote this entry before it counted it.
-        Some(unsafe { self.room[self.len].assume_init() })
+        // SAFETY: this entry was written before it was counted.
+        let child = unsafe { self.room.children[self.len].assume_init() };
+        // SAFETY: as above.
+        let entry = unsafe { self.room.entries[self.len].assume_init() };
+        Some((child, entry))
     }
 }
 
@@ -59,11 +118,12 @@ mod tests {
 
     #[test]
     fn what_is_kept_comes_back_last_first() {
-        let mut room = Room::new();
-        let mut stack = room.stack(3);
+        let mut room = Room::default();
+        let mut stack = room.stack();
         for (kept, value) in [(true, 1), (false, 2), (true, 3), (false, 4)] {
-            stack.push_if(kept, value);
+            stack.push_if(kept, Child::node(value), value);
         }
-        assert_eq!([stack.pop(), stack.pop(), stack.pop()], [Some(3), Some(1), None]);
+        let mut pop = || stack.pop().map(|(child, value)| (child.index(), value));
+        assert_eq!([pop(), pop(), pop()], [Some((3, 3)), Some((1, 1)), None]);
     }
 }

@@ -9,31 +9,31 @@ use super::cluster::binary;
 use super::collapse::{Costs, Sink, collapse};
 use super::node::{Bounds, Child, Order, WIDTH, narrow};
 use super::partition::Prim;
-use super::stack::Room;
+use super::processor::Processor;
+use super::stack::{Stack, is_enough_for};
 
 /// Unit roundoff of f64.
 const U: f64 = f64::EPSILON / 2.0;
 
 /// 1 + 2γ(3), see PBR4 §6.8.3.
-const FAR: f64 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f64::EPSILON;
+pub(super) const FAR: f64 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f64::EPSILON;
 
 /// Visiting one placement costs several box tests.
 const COSTS: Costs = Costs { node: 1.0, block: 2.0, max_leaf: 1 };
 
-/// Boxes in world space in a four-wide tree.
+/// Boxes in world space in an eight-wide tree.
 #[derive(Debug)]
 pub struct TopBvh {
     nodes: Vec<TopNode>,
     root: Option<Child>,
-    stack: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-struct TopNode {
-    planes: [[[f64; WIDTH]; 2]; 3],
-    children: [Child; WIDTH],
-    order: Order,
+pub(super) struct TopNode {
+    pub(super) planes: [[[f64; WIDTH]; 2]; 3],
+    pub(super) children: [Child; WIDTH],
+    pub(super) order: Order,
 }
 
 type Box64 = (DVec3, DVec3);
@@ -50,7 +50,7 @@ impl TopBvh {
         assert!(boxes.len() < Child::BLOCK_LIMIT, "at most 2^29 placements");
         let mut prims = prims(boxes);
         if prims.is_empty() {
-            return Self { nodes: Vec::new(), root: None, stack: 0 };
+            return Self { nodes: Vec::new(), root: None };
         }
         let binary = binary(&mut prims);
         let mut sink = TopSink { boxes, prims: &prims, nodes: Vec::new() };
@@ -59,72 +59,67 @@ impl TopBvh {
             root.child = sink.node(&[(root.child, root.bounds)]).0;
             root.depth = 1;
         }
-        Self { nodes: sink.nodes, root: Some(root.child), stack: 3 * root.depth + 4 }
+        debug_assert!(is_enough_for(root.depth), "builders bound the depth");
+        Self { nodes: sink.nodes, root: Some(root.child) }
     }
 
-    /// Visits the boxes that the ray enters at or before the current limit, at first `t_max`, roughly
-    /// near to far, until the visitor stops.
+    /// A ray that looks for the boxes it enters at or before a limit.
     ///
     /// `t` is in units of `d`, whose length is any but zero. A ray that is not finite enters nothing.
     #[inline(always)]
-    pub fn walk(&self, o: DVec3, d: DVec3, t_max: f64, visitor: &mut impl Visit) {
-        let Some(root) = self.root else { return };
-        if !(o.is_finite() && d.is_finite() && d != DVec3::ZERO) {
-            return;
+    pub fn walk(&self, o: DVec3, d: DVec3, t_max: f64) -> TopWalk<'_> {
+        let is_ray = o.is_finite() && d.is_finite() && d != DVec3::ZERO;
+        let current = self.root.filter(|_| is_ray);
+        let (ray, t_max) = (TopRay::new(o, d), t_max.min(f64::MAX));
+        TopWalk { nodes: &self.nodes, ray, current, t_max }
+    }
+}
+
+/// A ray among boxes: gives those that it enters, roughly near to far.
+#[derive(Debug)]
+pub struct TopWalk<'t> {
+    nodes: &'t [TopNode],
+    ray: TopRay,
+    /// The root, until it has been looked at.
+    current: Option<Child>,
+    /// Boxes that are entered farther away are passed. It may be made smaller at any time.
+    pub t_max: f64,
+}
+
+impl TopWalk<'_> {
+    /// The next box, and where the ray enters it: at least 0 and perhaps a few roundings early. The
+    /// stack is this walk's own, empty at first.
+    #[inline(always)]
+    pub fn next(&mut self, processor: Processor, stack: &mut Stack<'_, f64>) -> Option<(u32, f64)> {
+        let (mut current, mut t_enter) = match self.current.take() {
+            Some(root) => (root, 0.0),
+            None => self.pop(stack)?,
+        };
+        while !current.is_leaf() {
+            processor.enter_top(&self.ray, &self.nodes[current.index()], self.t_max, stack);
+            (current, t_enter) = self.pop(stack)?;
         }
-        let ray = TopRay::new(o, d);
-        let mut t_max = t_max.min(f64::MAX);
-        let mut room = Room::<(Child, f64)>::new();
-        let mut stack = room.stack(self.stack);
-        let (mut current, mut t_enter) = (root, 0.0);
+        Some((narrow(current.blocks().start), t_enter))
+    }
+
+    #[inline(always)]
+    fn pop(&self, stack: &mut Stack<'_, f64>) -> Option<(Child, f64)> {
         loop {
-            if current.is_leaf() {
-                match visitor.enter(narrow(current.blocks().start), t_enter, t_max) {
-                    Step::Go(limit) => t_max = limit,
-                    Step::Stop => return,
-                }
-            } else {
-                let node = &self.nodes[current.index()];
-                let (entered, t) = ray.enter(node, t_max);
-                // Writes all four, keeps those that are entered; the nearest comes last.
-                for slot in node.order.far_to_near(ray.octant) {
-                    stack.push_if(entered >> slot & 1 == 1, (node.children[slot], t[slot]));
-                }
-            }
-            loop {
-                let Some(top) = stack.pop() else { return };
-                (current, t_enter) = top;
-                if t_enter <= t_max * FAR {
-                    break;
-                }
+            let top = stack.pop()?;
+            if top.1 <= self.t_max * FAR {
+                return Some(top);
             }
         }
     }
 }
 
-/// Who is shown the boxes that a ray enters. A trait and not a closure, so that it can be compiled
-/// for several processors: see [`super::widest`].
-pub trait Visit {
-    /// A box is entered at `t_enter`, at least 0 and perhaps a few roundings early; `t_max` is the
-    /// limit now. To be `inline(always)`.
-    fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step;
-}
-
-/// What a visitor wants.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
-    /// More boxes, up to this limit.
-    Go(f64),
-    /// No more.
-    Stop,
-}
-
-struct TopRay {
-    near_o: [f64; 3],
-    far_o: [f64; 3],
-    rdir: [f64; 3],
-    near: [usize; 3],
-    octant: usize,
+#[derive(Debug)]
+pub(super) struct TopRay {
+    pub(super) near_o: [f64; 3],
+    pub(super) far_o: [f64; 3],
+    pub(super) rdir: [f64; 3],
+    pub(super) near: [usize; 3],
+    pub(super) octant: usize,
 }
 
 impl TopRay {
@@ -145,10 +140,10 @@ impl TopRay {
         }
     }
 
-    /// Which of the four boxes the ray enters, one bit each, and where. A slab that gives NaN (a
-    /// parallel ray within its plane) does not cut.
+    /// Puts the children that the ray enters at or before `t_max` on the stack, the nearest last. A
+    /// slab that gives NaN (a parallel ray within its plane) does not cut.
     #[inline(always)]
-    fn enter(&self, node: &TopNode, t_max: f64) -> (u32, [f64; WIDTH]) {
+    pub(super) fn enter(&self, node: &TopNode, t_max: f64, stack: &mut Stack<'_, f64>) {
         let mut t_near = [0.0; WIDTH];
         let mut t_far = [t_max; WIDTH];
         for axis in 0..3 {
@@ -161,8 +156,10 @@ impl TopRay {
                 t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
             }
         }
-        let entered = |lane: usize| u32::from(t_near[lane] <= t_far[lane] * FAR) << lane;
-        ((0..WIDTH).map(entered).sum(), t_near)
+        for slot in node.order.far_to_near(self.octant) {
+            let entered = t_near[slot] <= t_far[slot] * FAR;
+            stack.push_if(entered, node.children[slot], t_near[slot]);
+        }
     }
 }
 
@@ -228,13 +225,24 @@ impl Sink for TopSink<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::soup::Rng;
+    use super::super::stack::Room;
     use super::*;
 
-    struct By<F>(F);
-
-    impl<F: FnMut(u32, f64, f64) -> Step> Visit for By<F> {
-        fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step {
-            (self.0)(index, t_enter, t_max)
+    /// Shows the boxes that a ray enters to `see`, which gives the limit from there on, until it
+    /// gives none.
+    fn walk(
+        processor: Processor,
+        tree: &TopBvh,
+        (o, d): (DVec3, DVec3),
+        t_max: f64,
+        mut see: impl FnMut(u32, f64, f64) -> Option<f64>,
+    ) {
+        let mut room = Room::default();
+        let mut stack = room.stack();
+        let mut walk = tree.walk(o, d, t_max);
+        while let Some((index, t_enter)) = walk.next(processor, &mut stack) {
+            let Some(limit) = see(index, t_enter, walk.t_max) else { break };
+            walk.t_max = limit;
         }
     }
 
@@ -254,19 +262,20 @@ mod tests {
         (near <= far).then_some(near)
     }
 
+    /// What a ray enters, which is the same on every processor.
     fn visited(tree: &TopBvh, o: DVec3, d: DVec3, t_max: f64) -> Vec<u32> {
-        let mut seen = Vec::new();
-        tree.walk(
-            o,
-            d,
-            t_max,
-            &mut By(|index, _, t_max| {
+        let mut all = vec![];
+        for processor in Processor::all() {
+            let mut seen = vec![];
+            walk(processor, tree, (o, d), t_max, |index, _, t_max| {
                 seen.push(index);
-                Step::Go(t_max)
-            }),
-        );
-        seen.sort_unstable();
-        seen
+                Some(t_max)
+            });
+            seen.sort_unstable();
+            all.push(seen);
+        }
+        assert!(all.iter().all(|seen| *seen == all[0]));
+        all.swap_remove(0)
     }
 
     #[test]
@@ -294,37 +303,28 @@ mod tests {
             let (o, d) = (rng.point().as_dvec3() * 15.0, rng.point().as_dvec3());
             let best = boxes.iter().filter_map(|b| slab(*b, o, d, 1e9)).fold(f64::MAX, f64::min);
             let mut found = f64::MAX;
-            tree.walk(
-                o,
-                d,
-                1e9,
-                &mut By(|index: u32, t_enter, t_max| {
-                    if let Some(t) = slab(boxes[index as usize], o, d, t_max) {
-                        // Three roundings on either side, and the slack of the origin.
-                        assert!(t_enter <= t * FAR, "{t_enter} {t}");
-                        found = found.min(t);
-                    }
-                    Step::Go(found.min(t_max))
-                }),
-            );
+            walk(Processor::widest(), &tree, (o, d), 1e9, |index, t_enter, t_max| {
+                if let Some(t) = slab(boxes[index as usize], o, d, t_max) {
+                    // Three roundings on either side, and the slack of the origin.
+                    assert!(t_enter <= t * FAR, "{t_enter} {t}");
+                    found = found.min(t);
+                }
+                Some(found.min(t_max))
+            });
             assert_eq!(found.to_bits(), best.to_bits());
         }
     }
 
     #[test]
-    fn a_visitor_stops_the_walk() {
+    fn a_walk_may_be_left() {
         let mut rng = Rng(23);
         let tree = TopBvh::build(&boxes(500, 3.0, &mut rng));
         let mut calls = 0;
-        tree.walk(
-            DVec3::splat(-20.0),
-            DVec3::ONE,
-            f64::INFINITY,
-            &mut By(|_, _, t_max| {
-                calls += 1;
-                if calls == 3 { Step::Stop } else { Step::Go(t_max) }
-            }),
-        );
+        let ray = (DVec3::splat(-20.0), DVec3::ONE);
+        walk(Processor::ANY, &tree, ray, f64::INFINITY, |_, _, t_max| {
+            calls += 1;
+            (calls < 3).then_some(t_max)
+        });
         assert_eq!(calls, 3);
     }
 

@@ -5,10 +5,11 @@
 //! exact or lost to zero, and f64 holds both products exactly: every edge is decided the same way
 //! for both its triangles.
 
-use glam::{BVec4A, Vec4};
+use glam::{BVec4A, DVec3, Vec4};
 
-use super::node::{Block, WIDTH};
-use super::ray::Shear;
+use super::node::{Block, LANES};
+use super::ray::{Line, Shear};
+use crate::cast::narrow;
 
 /// The nearest hit so far; `id` is `u32::MAX` while there is none and `t` is then the limit.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +18,15 @@ pub(super) struct Nearest {
     pub(super) id: u32,
     pub(super) b1: f32,
     pub(super) b2: f32,
+    /// `t`, `b1` and `b2` where they are known in double precision; `t` above is then rounded up.
+    pub(super) exact: [f64; 3],
+}
+
+impl Nearest {
+    /// No hit yet, and none beyond `t`.
+    pub(super) fn none(t: f64) -> Self {
+        Self { t: narrow(t), id: u32::MAX, b1: 0.0, b2: 0.0, exact: [t, 0.0, 0.0] }
+    }
 }
 
 /// Scaled barycentrics of the three vertices, one lane per triangle.
@@ -40,22 +50,99 @@ impl Block {
     /// number. True if any of its triangles is hit with 0 < t <= `best.t`.
     #[inline(always)]
     pub(super) fn intersect<const ANY: bool>(&self, ray: &Shear, best: &mut Nearest) -> bool {
-        let Some(lanes) = self.lanes(ray, best.t) else { return false };
+        let lanes = self.lanes(ray, best.t);
+        self.take::<ANY>(lanes, best)
+    }
+
+    /// The same by Möller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection": edges
+    /// are decided for each triangle by itself, so rays may slip between two.
+    #[inline(always)]
+    pub(super) fn intersect_fast<const ANY: bool>(
+        &self,
+        line: &Line,
+        skip: u32,
+        best: &mut Nearest,
+    ) -> bool {
+        let lanes = self.fast_lanes(line, skip, best.t);
+        self.take::<ANY>(lanes, best)
+    }
+
+    /// The same as `intersect` in double precision, one triangle after another.
+    #[inline(never)]
+    pub(super) fn intersect_exact<const ANY: bool>(
+        &self,
+        line: &Line,
+        skip: u32,
+        best: &mut Nearest,
+    ) -> bool {
+        let mut is_hit = false;
+        for lane in 0..LANES {
+            let id = self.ids[lane];
+            let corners = self.points.map(|p| DVec3::from_array(p.map(|c| f64::from(c[lane]))));
+            let Some([t, b1, b2]) = watertight(line, corners) else { continue };
+            let is_nearer = t < best.exact[0] || (t <= best.exact[0] && id < best.id);
+            if id != skip && is_nearer {
+                let above = narrow(t * (1.0 + f64::from(f32::EPSILON)));
+                *best = Nearest { t: above, id, b1: 0.0, b2: 0.0, exact: [t, b1, b2] };
+                is_hit = true;
+                if ANY {
+                    break;
+                }
+            }
+        }
+        is_hit
+    }
+
+    #[inline(always)]
+    fn take<const ANY: bool>(&self, lanes: Option<Lanes>, best: &mut Nearest) -> bool {
+        let Some(lanes) = lanes else { return false };
         if ANY {
             return true;
         }
         let (t, b1, b2) = (lanes.t.to_array(), lanes.b1.to_array(), lanes.b2.to_array());
         let mut mask = lanes.mask;
         while mask != 0 {
-            let lane = mask.trailing_zeros() as usize & (WIDTH - 1);
+            let lane = mask.trailing_zeros() as usize & (LANES - 1);
             mask &= mask - 1;
             let id = self.ids[lane];
             #[expect(clippy::float_cmp, reason = "equal distances are a tie, decided by number")]
             if t[lane] < best.t || (t[lane] == best.t && id < best.id) {
-                *best = Nearest { t: t[lane], id, b1: b1[lane], b2: b2[lane] };
+                (best.t, best.id, best.b1, best.b2) = (t[lane], id, b1[lane], b2[lane]);
             }
         }
         true
+    }
+
+    #[inline(always)]
+    fn fast_lanes(&self, line: &Line, skip: u32, t_max: f32) -> Option<Lanes> {
+        let splat = |v: DVec3| v.as_vec3().to_array().map(Vec4::splat);
+        let (o, d) = (splat(line.o), splat(line.d));
+        let [a, b, c] = &self.points;
+        let minus = |p: &[Vec4; 3], q: &[Vec4; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let cross = |p: &[Vec4; 3], q: &[Vec4; 3]| {
+            [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+        };
+        let dot = |p: &[Vec4; 3], q: &[Vec4; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        let (e1, e2, s) = (minus(b, a), minus(c, a), minus(&o, a));
+        let p = cross(&d, &e2);
+        let q = cross(&s, &e1);
+        let r = Vec4::ONE / dot(&e1, &p);
+        let (b1, b2, t) = (dot(&s, &p) * r, dot(&d, &q) * r, dot(&e2, &q) * r);
+        let inside = b1.min(b2).cmpge(Vec4::ZERO) & (b1 + b2).cmple(Vec4::ONE);
+        let within = t.cmpgt(Vec4::ZERO) & t.cmple(Vec4::splat(t_max));
+        let mask = self.others((inside & within).bitmask(), skip);
+        (mask != 0).then_some(Lanes { mask, t, b1, b2 })
+    }
+
+    /// Those of these lanes that do not hold the triangle to be passed.
+    #[inline(always)]
+    fn others(&self, mut mask: u32, skip: u32) -> u32 {
+        if mask != 0 {
+            for lane in 0..LANES {
+                mask &= !(u32::from(self.ids[lane] == skip) << lane);
+            }
+        }
+        mask
     }
 
     #[inline(always)]
@@ -88,12 +175,7 @@ impl Block {
         let r = Vec4::ONE / det;
         let t = (edges.u * az + edges.v * bz + edges.w * cz) * sz * r;
         let within = t.cmpgt(Vec4::ZERO) & t.cmple(Vec4::splat(t_max)) & det.cmpne(Vec4::ZERO);
-        let mut mask = (inside & within).bitmask();
-        if mask != 0 {
-            for lane in 0..WIDTH {
-                mask &= !(u32::from(self.ids[lane] == ray.skip) << lane);
-            }
-        }
+        let mask = self.others((inside & within).bitmask(), ray.skip);
         (mask != 0).then(|| Lanes { mask, t, b1: edges.v * r, b2: edges.w * r })
     }
 }
@@ -135,4 +217,27 @@ impl Edges {
             w: difference(bx, ay, by, ax),
         }
     }
+}
+
+/// `t` and the weights of the second and third corner where a line meets a triangle with t > 0.
+///
+/// Like the lanes above, in double precision. Its products round: the sign of a rounded difference of
+/// products is right or zero unless both products round to the same number, which an edge's two
+/// triangles do alike; a zero counts as inside for both.
+fn watertight(line: &Line, corners: [DVec3; 3]) -> Option<[f64; 3]> {
+    let kz = line.d.abs().max_position();
+    let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
+    let rz = line.d[kz].recip();
+    let (sx, sy) = (line.d[kx] * rz, line.d[ky] * rz);
+    let sheared = corners.map(|p| {
+        let p = p - line.o;
+        (p[kx] - sx * p[kz], p[ky] - sy * p[kz], p[kz])
+    });
+    let [a, b, c] = sheared;
+    let (u, v, w) = (c.0 * b.1 - c.1 * b.0, a.0 * c.1 - a.1 * c.0, b.0 * a.1 - b.1 * a.0);
+    let inside = u.min(v).min(w) >= 0.0 || u.max(v).max(w) <= 0.0;
+    let det = u + v + w;
+    let r = det.recip();
+    let t = (u * a.2 + v * b.2 + w * c.2) * rz * r;
+    (inside && t > 0.0 && det != 0.0).then_some([t, v * r, w * r])
 }

@@ -5,6 +5,8 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Maybe, Text};
 use luxel_sdk::{Choice, Params};
 
+use crate::accel::Precision;
+
 /// Which colour-matching functions turn spectra into colours.
 #[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -52,6 +54,10 @@ pub struct FilmSettings<'a> {
     /// How the PNG shows radiance.
     #[param(choice, default = Display::Srgb)]
     pub display: Display,
+    /// How rays meet the triangles of meshes: `fast` may let them slip between two, `exact` does all
+    /// of it in double precision.
+    #[param(choice, default = Precision::Standard)]
+    pub precision: Precision,
     /// Where the EXR is written; the PNG stands beside it. The scene's name if absent.
     #[param(optional)]
     pub file: Text<'a>,

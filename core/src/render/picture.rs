@@ -13,6 +13,7 @@ use super::light::{Bundle, Splat};
 use super::tile::{StageHost, Worker};
 use super::watched::Watched;
 use super::{FROM_CAMERA, Stop};
+use crate::accel::Processor;
 use crate::film::{Film, Rect};
 use crate::stage::{Emitters, Leaving, Skin, Stage};
 
@@ -223,7 +224,7 @@ impl PictureJob for PictureHost<'_> {
 fn arrival(stage: &Stage, ray: Ray) -> Arrival {
     let mut at = Arrival { t: f64::INFINITY, wo: -ray.d, material: u32::MAX, ..Arrival::default() };
     let (mut leg, mut flown, mut from) = (ray, 0.0, None);
-    while let Some(hit) = stage.intersect(&leg, from, &mut at.steps) {
+    while let Some(hit) = stage.intersect(Processor::ANY, &leg, from, &mut at.steps) {
         let surface = stage.surface(&leg, &hit);
         let skin = stage.placements[hit.placement as usize].skin;
         if skin == Skin::Open {

@@ -5,12 +5,14 @@ use luxel_sdk::kind::Samples;
 use luxel_sdk::num::{Ray, offset_origin};
 
 use super::path::Path;
+use crate::accel::Processor;
 use crate::object::{Scratch, Site};
 use crate::stage::{Leaving, Skin, Stage};
 
 /// The fraction of light that passes along a ray that is not occluded: less through media. Surfaces
 /// that are only the boundary of a medium are passed.
 pub(super) fn passes(
+    processor: Processor,
     stage: &Stage,
     ray: &Ray,
     path: &Path,
@@ -26,7 +28,7 @@ pub(super) fn passes(
     let mut ray = *ray;
     loop {
         let open = stage.features.open_surfaces;
-        let hit = if open { stage.intersect(&ray, from, &mut 0) } else { None };
+        let hit = if open { stage.intersect(processor, &ray, from, &mut 0) } else { None };
         let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
         if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
             scratch.reset();

@@ -15,11 +15,11 @@ use super::arrival::Shader;
 use super::light::{Bundle, Splat};
 use super::path::Path;
 use super::{Stop, shadow};
-use crate::accel::{Work, widest};
+use crate::accel::{Processor, Work};
 use crate::cast;
 use crate::film::{Rect, Tile};
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Leaving, SceneHit, Skin, Stage};
+use crate::stage::{Leaving, Rooms, SceneHit, Skin, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
 const LANES: usize = 128;
@@ -27,6 +27,7 @@ const LANES: usize = 128;
 /// What one thread needs; reused from tile to tile.
 pub(super) struct Worker<'s> {
     pub(super) stage: &'s Stage,
+    processor: Processor,
     pub(super) seed: u32,
     pub(super) sampler: &'s dyn Sampler,
     pub(super) wants: Wants,
@@ -40,6 +41,10 @@ pub(super) struct Worker<'s> {
     now: Requests,
     next: Requests,
     hits: Vec<(Option<SceneHit>, u32)>,
+    shadowed: Vec<bool>,
+    /// Whether rays take turns, and room for those that do.
+    in_turns: bool,
+    rooms: Rooms,
     arrived: Vec<u32>,
     pub(super) results: Vec<DVec3>,
     /// Light for other pixels than the path's own.
@@ -63,6 +68,7 @@ impl<'s> Worker<'s> {
         let lane = Lane { at: Arrival::default(), l: Spectrum::ZERO, numbers: at };
         Self {
             stage,
+            processor: Processor::widest(),
             seed,
             sampler: stage.sampler.fixed().sampler(),
             wants: Wants(integrator.wants().0 & most.0),
@@ -74,6 +80,9 @@ impl<'s> Worker<'s> {
             now: Requests::default(),
             next: Requests::default(),
             hits: vec![],
+            shadowed: vec![],
+            in_turns: stage.is_for_turns(),
+            rooms: Rooms::default(),
             arrived: vec![],
             results: vec![],
             splats: vec![],
@@ -123,7 +132,7 @@ impl<'s> Worker<'s> {
             }
             std::mem::swap(&mut self.now, &mut self.next);
             self.next.clear();
-            widest(Shadows(self));
+            self.processor.run(Shadows(self));
             self.arrivals();
             self.retire();
         }
@@ -172,16 +181,30 @@ impl<'s> Worker<'s> {
 
     /// Light that depended on shadow rays, in asking order.
     #[inline(always)]
-    fn shadows(&mut self) {
-        for request in self.now.shadows.iter() {
-            let lane = &mut self.lanes[request.lane as usize];
-            let path = &self.paths[request.lane as usize];
-            if self.stage.occluded(&request.ray, path.leaving()) {
+    fn shadows(&mut self, processor: Processor) {
+        self.shadowed.clear();
+        self.shadowed.resize(self.now.shadows.len(), false);
+        let (paths, shadowed) = (&self.paths, &mut self.shadowed);
+        let leaving = |lane: u32| paths[lane as usize].leaving();
+        let rays = self.now.shadows.iter().map(|asked| (&asked.ray, leaving(asked.lane)));
+        if self.in_turns {
+            let tell = |i: usize, is_hit| shadowed[i] = is_hit;
+            self.stage.occluded_all(processor, rays, &mut self.rooms, tell);
+        } else {
+            for ((ray, from), shadowed) in rays.zip(shadowed) {
+                *shadowed = self.stage.occluded(processor, ray, from);
+            }
+        }
+        for (request, shadowed) in self.now.shadows.iter().zip(&self.shadowed) {
+            if *shadowed {
                 continue;
             }
+            let lane = &mut self.lanes[request.lane as usize];
+            let path = &self.paths[request.lane as usize];
             let mut samples = Samples::new(self.sampler, lane.numbers);
             let scratch = &mut self.scratch;
-            let left = shadow::passes(self.stage, &request.ray, path, &mut samples, scratch);
+            let left =
+                shadow::passes(processor, self.stage, &request.ray, path, &mut samples, scratch);
             lane.numbers = samples.at();
             if request.pixel == Shadow::OWN {
                 lane.l += request.l * left;
@@ -197,13 +220,10 @@ impl<'s> Worker<'s> {
     fn arrivals(&mut self) {
         let stage = self.stage;
         if stage.features.media || stage.features.open_surfaces {
-            for i in 0..self.now.rays.len() {
-                let Onward { ray, lane } = self.now.rays[i];
-                self.fly_through(ray, lane as usize);
-            }
+            self.processor.run(Fly(self));
         } else {
-            widest(Trace(self));
-            widest(Shade(self));
+            self.processor.run(Trace(self));
+            self.processor.run(Shade(self));
         }
         self.arrived.clear();
         self.arrived.extend(self.now.rays.iter().map(|onward| onward.lane));
@@ -213,13 +233,21 @@ impl<'s> Worker<'s> {
 
     /// Where the rays of this round meet the scene.
     #[inline(always)]
-    fn trace(&mut self) {
+    fn trace(&mut self, processor: Processor) {
         self.hits.clear();
-        for Onward { ray, lane } in self.now.rays.iter() {
+        let (paths, hits) = (&self.paths, &mut self.hits);
+        let leaving = |lane: u32| paths[lane as usize].leaving();
+        let rays = self.now.rays.iter().map(|onward| (&onward.ray, leaving(onward.lane)));
+        if self.in_turns {
+            hits.resize(self.now.rays.len(), (None, 0));
+            let tell = |i: usize, hit, steps| hits[i] = (hit, steps);
+            self.stage.intersect_all(processor, rays, &mut self.rooms, tell);
+            return;
+        }
+        for (ray, from) in rays {
             let mut steps = 0;
-            let from = self.paths[*lane as usize].leaving();
-            let hit = self.stage.intersect(ray, from, &mut steps);
-            self.hits.push((hit, steps));
+            let hit = self.stage.intersect(processor, ray, from, &mut steps);
+            hits.push((hit, steps));
         }
     }
 
@@ -241,20 +269,26 @@ impl<'s> Worker<'s> {
         }
     }
 
-    /// Traces and shades one path whose ray may end in a medium, or pass open surfaces on its way.
-    fn fly_through(&mut self, ray: Ray, lane: usize) {
-        let mut samples = Samples::new(self.sampler, self.lanes[lane].numbers);
-        self.fly(ray, lane, &mut samples);
-        self.lanes[lane].numbers = samples.at();
+    /// Traces and shades paths whose rays may end in a medium, or pass open surfaces on their way.
+    #[inline(always)]
+    fn fly(&mut self) {
+        for i in 0..self.now.rays.len() {
+            let Onward { ray, lane } = self.now.rays[i];
+            let lane = lane as usize;
+            let mut samples = Samples::new(self.sampler, self.lanes[lane].numbers);
+            self.fly_one(ray, lane, &mut samples);
+            self.lanes[lane].numbers = samples.at();
+        }
     }
 
-    fn fly(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) {
+    #[inline(always)]
+    fn fly_one(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) {
         let stage = self.stage;
         let mut media = self.paths[lane].media_along(&ray, stage);
         let mut from = self.paths[lane].leaving();
         let (mut steps, mut flight) = (0, Spectrum::ONE);
         loop {
-            let hit = stage.intersect(&ray, from, &mut steps);
+            let hit = stage.intersect(self.processor, &ray, from, &mut steps);
             let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
             let path = &mut self.paths[lane];
             let arrival = &mut self.lanes[lane].at;
@@ -324,25 +358,33 @@ impl<'s> Worker<'s> {
 struct Shadows<'a, 's>(&'a mut Worker<'s>);
 struct Trace<'a, 's>(&'a mut Worker<'s>);
 struct Shade<'a, 's>(&'a mut Worker<'s>);
+struct Fly<'a, 's>(&'a mut Worker<'s>);
 
 impl Work for Shadows<'_, '_> {
     #[inline(always)]
-    fn run(self) {
-        self.0.shadows();
+    fn run(self, processor: Processor) {
+        self.0.shadows(processor);
     }
 }
 
 impl Work for Trace<'_, '_> {
     #[inline(always)]
-    fn run(self) {
-        self.0.trace();
+    fn run(self, processor: Processor) {
+        self.0.trace(processor);
     }
 }
 
 impl Work for Shade<'_, '_> {
     #[inline(always)]
-    fn run(self) {
+    fn run(self, _: Processor) {
         self.0.shade();
+    }
+}
+
+impl Work for Fly<'_, '_> {
+    #[inline(always)]
+    fn run(self, _: Processor) {
+        self.0.fly();
     }
 }
 
@@ -407,7 +449,7 @@ pub(super) struct StageHost<'a>(pub(super) &'a Stage);
 
 impl Host for StageHost<'_> {
     fn occluded(&self, ray: &Ray) -> bool {
-        self.0.occluded(ray, None)
+        self.0.occluded(Processor::ANY, ray, None)
     }
 
     fn scene_sphere(&self) -> (DVec3, f64) {

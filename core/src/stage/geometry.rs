@@ -5,13 +5,12 @@ mod tests;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
-use luxel_sdk::num::{Bounds3, Ray, gamma32, unit_and_length};
+use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
 use super::closed::is_closed;
-use crate::accel::{Direction, MeshBvh};
-use crate::cast::narrow;
+use crate::accel::{Begun, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
 use crate::object::Object;
 
 /// What a placement places. Shared by every placement of the same shape.
@@ -23,8 +22,38 @@ pub enum Geometry {
     Mesh(Arc<Mesh>),
 }
 
+/// How a ray comes to a geometry, in its frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach<'a> {
+    /// Whose instructions are used.
+    pub processor: Processor,
+    /// How triangles are met.
+    pub precision: Precision,
+    /// The ray's direction; `None` if it cannot be made ready, and meshes are missed.
+    pub direction: Option<&'a Direction>,
+    /// Where the ray enters the box.
+    pub t_enter: f64,
+    /// The triangle that it leaves, if it starts on one.
+    pub from: Option<u32>,
+}
+
 /// Most triangles behind its origin that a ray passes; what it then meets counts.
-const MOST_BEHIND: u32 = 8;
+const MOST_BEHIND: u32 = 7;
+
+/// What a ray that was traced through a mesh's tree has met.
+pub(super) enum Landed {
+    Nowhere,
+    At(Hit),
+    /// A triangle that double precision finds behind the ray's origin: the ray is taken up there.
+    Behind(Taken),
+}
+
+/// Where a ray is taken up, and how many triangles behind its origin it may still pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Taken {
+    start: f64,
+    left: u32,
+}
 
 /// A mesh with its tree.
 #[derive(Debug)]
@@ -67,51 +96,89 @@ impl Mesh {
     /// lost by rounding, and triangles on the box's faces stay ahead however their distance is
     /// rounded.
     #[inline(always)]
-    fn start(&self, direction: &Direction, t_enter: f64) -> f64 {
-        (t_enter - self.diagonal * direction.per_scale()).max(0.0)
+    pub(super) fn take_up(&self, direction: &Direction, t_enter: f64) -> Taken {
+        let start = (t_enter - self.diagonal * direction.per_scale()).max(0.0);
+        Taken { start, left: MOST_BEHIND }
     }
 
-    /// The local ray from `start` on in single precision about the mesh's centre: its origin, and
-    /// its end along the scaled direction, rounded up.
+    /// What is asked of the tree about a ray that is taken up there.
     #[inline(always)]
-    fn narrow(&self, ray: &Ray, direction: &Direction, start: f64) -> (Vec3, f32) {
-        let o = ray.at(start) - self.centre;
-        let t_max = (ray.t_max - start) * direction.scale();
-        (o.as_vec3(), narrow(t_max * (1.0 + f64::from(f32::EPSILON))))
+    fn query<'a>(
+        &self,
+        ray: &Ray,
+        approach: &Approach<'_>,
+        direction: &'a Direction,
+        taken: Taken,
+    ) -> Query<'a> {
+        let o = ray.at(taken.start) - self.centre;
+        // What is rounded stays beyond the end: `land` looks again.
+        let t_max = (ray.t_max - taken.start) * direction.scale();
+        let t_max = t_max * (1.0 + f64::from(f32::EPSILON));
+        Query { o, direction, t_max, skip: approach.from, precision: approach.precision }
     }
 
     /// The nearest hit. A ray that leaves this mesh may seem to meet a sliver beside the triangle
     /// that it leaves, by rounding: what double precision finds behind the origin is passed.
     #[inline(always)]
-    fn intersect(
+    pub(super) fn intersect(
         &self,
         ray: &Ray,
-        direction: &Direction,
-        t_enter: f64,
-        from: Option<u32>,
+        approach: Approach<'_>,
         steps: &mut u32,
     ) -> Option<Hit> {
-        let mut start = self.start(direction, t_enter);
-        for left in (0..MOST_BEHIND).rev() {
-            let (o, t_max) = self.narrow(ray, direction, start);
-            let (hit, n) = self.bvh.intersect(o, direction, t_max, from);
+        let direction = approach.direction?;
+        let mut taken = self.take_up(direction, approach.t_enter);
+        loop {
+            let query = self.query(ray, &approach, direction, taken);
+            let (hit, n) = self.bvh.intersect(approach.processor, &query);
             *steps += n;
-            let hit = hit?;
-            let t = start + f64::from(hit.t) * direction.per_scale();
-            if from.is_none() || left == 0 || !self.is_behind(hit.triangle, ray) {
-                let at = DVec2::new(f64::from(hit.b1), f64::from(hit.b2));
-                return (t <= ray.t_max).then_some(Hit { t, at, face: hit.triangle });
+            match self.land(ray, &approach, taken, hit) {
+                Landed::Behind(next) => taken = next,
+                Landed::Nowhere => return None,
+                Landed::At(hit) => return Some(hit),
             }
-            start = t;
         }
-        None
+    }
+
+    /// What a hit of the tree means for a ray that was taken up there.
+    #[inline(always)]
+    pub(super) fn land(
+        &self,
+        ray: &Ray,
+        approach: &Approach<'_>,
+        taken: Taken,
+        hit: Option<MeshHit>,
+    ) -> Landed {
+        let (Some(hit), Some(direction)) = (hit, approach.direction) else {
+            return Landed::Nowhere;
+        };
+        let t = taken.start + hit.t * direction.per_scale();
+        if approach.from.is_some() && taken.left > 0 && self.is_behind(hit.triangle, ray) {
+            return Landed::Behind(Taken { start: t, left: taken.left - 1 });
+        }
+        let at = DVec2::new(hit.b1, hit.b2);
+        if t <= ray.t_max { Landed::At(Hit { t, at, face: hit.triangle }) } else { Landed::Nowhere }
+    }
+
+    /// Sets out through the tree.
+    #[inline(always)]
+    pub(super) fn begin<const ANY: bool>(
+        &self,
+        ray: &Ray,
+        approach: &Approach<'_>,
+        taken: Taken,
+    ) -> Begun<'_> {
+        let Some(direction) = approach.direction else { return Begun::Over(None, 0) };
+        self.bvh.begin::<ANY>(&self.query(ray, approach, direction, taken))
     }
 
     #[inline(always)]
-    fn occluded(&self, ray: &Ray, direction: &Direction, t_enter: f64, from: Option<u32>) -> bool {
-        let (o, t_max) = self.narrow(ray, direction, self.start(direction, t_enter));
-        self.bvh.occluded(o, direction, t_max, from)
-            && (from.is_none() || self.intersect(ray, direction, t_enter, from, &mut 0).is_some())
+    fn occluded(&self, ray: &Ray, approach: Approach<'_>) -> bool {
+        let Some(direction) = approach.direction else { return false };
+        let taken = self.take_up(direction, approach.t_enter);
+        let query = self.query(ray, &approach, direction, taken);
+        self.bvh.occluded(approach.processor, &query)
+            && (approach.from.is_none() || self.intersect(ray, approach, &mut 0).is_some())
     }
 
     /// Whether the plane of a triangle lies behind the origin of a ray, in double precision. Asked for
@@ -125,7 +192,7 @@ impl Mesh {
 
     /// The point of a triangle with barycentrics `at` of its second and third corner.
     #[inline(always)]
-    pub fn surface(&self, triangle: u32, at: DVec2) -> Surface {
+    pub fn surface(&self, triangle: u32, at: DVec2, precision: Precision) -> Surface {
         let mesh = self.triangles();
         let corners = mesh.indices[triangle as usize].map(|i| i as usize);
         let [a, b, c] = corners.map(|i| mesh.points[i].as_dvec3());
@@ -134,12 +201,18 @@ impl Mesh {
         // The next ray's origin is rounded to single precision about the centre: γ(7) covers the
         // sum of three products and that rounding (PBR4 §6.8.5). The triangle test shears all axes
         // into each other, so each axis takes the error of the largest: a plane through the centre
-        // has none of its own, and rays would meet the triangle that they leave.
+        // has none of its own, and rays would meet the triangle that they leave. In double precision
+        // the origin is not rounded again, but the test shears what the world's coordinates round.
         let spread =
             a.abs() * weights[0].abs() + b.abs() * weights[1].abs() + c.abs() * weights[2].abs();
         let p = about + mesh.centre;
-        let sheared = spread.max_element() * f64::from(gamma32(7));
-        let p_err = sheared + p.abs() * f64::EPSILON;
+        let p_err = match precision {
+            Precision::Exact => {
+                let sheared = spread.max_element() + p.abs().max_element();
+                DVec3::splat(sheared * gamma64(10))
+            }
+            _ => spread.max_element() * f64::from(gamma32(7)) + p.abs() * f64::EPSILON,
+        };
         let (ng, _) = unit_and_length((b - a).cross(c - a));
         let ng = if ng.is_nan() { DVec3::Z } else { ng };
         let ns = shading_normal(mesh, corners, weights, ng);
@@ -209,47 +282,30 @@ impl Geometry {
         }
     }
 
-    /// The nearest hit of a ray in the geometry's frame; it enters the box at `t_enter`, and leaves
-    /// the triangle `from` if it starts on one. A mesh is missed by a ray whose direction cannot be
-    /// made ready.
+    /// The nearest hit of a ray in the geometry's frame.
     #[inline(always)]
-    pub fn intersect(
-        &self,
-        ray: &Ray,
-        direction: Option<&Direction>,
-        t_enter: f64,
-        from: Option<u32>,
-        steps: &mut u32,
-    ) -> Option<Hit> {
+    pub fn intersect(&self, ray: &Ray, approach: Approach<'_>, steps: &mut u32) -> Option<Hit> {
         match self {
             Self::Analytic(object) => object.fixed().shape().intersect(ray),
-            Self::Mesh(mesh) => mesh.intersect(ray, direction?, t_enter, from, steps),
+            Self::Mesh(mesh) => mesh.intersect(ray, approach, steps),
         }
     }
 
     /// Whether anything is hit.
     #[inline(always)]
-    pub fn occluded(
-        &self,
-        ray: &Ray,
-        direction: Option<&Direction>,
-        t_enter: f64,
-        from: Option<u32>,
-    ) -> bool {
+    pub fn occluded(&self, ray: &Ray, approach: Approach<'_>) -> bool {
         match self {
             Self::Analytic(object) => object.fixed().shape().intersect(ray).is_some(),
-            Self::Mesh(mesh) => {
-                direction.is_some_and(|direction| mesh.occluded(ray, direction, t_enter, from))
-            }
+            Self::Mesh(mesh) => mesh.occluded(ray, approach),
         }
     }
 
     /// The point that a hit names, in the geometry's frame.
     #[inline(always)]
-    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+    pub fn surface(&self, ray: &Ray, hit: &Hit, precision: Precision) -> Surface {
         match self {
             Self::Analytic(object) => object.fixed().shape().surface(ray, hit),
-            Self::Mesh(mesh) => mesh.surface(hit.face, hit.at),
+            Self::Mesh(mesh) => mesh.surface(hit.face, hit.at, precision),
         }
     }
 }

@@ -240,7 +240,7 @@ impl Stage {
             (Geometry::Mesh(mesh), Some(triangle)) => {
                 let at = luxel_sdk::sampling::uniform_triangle(u);
                 let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                let surface = mesh.surface(triangle, at);
+                let surface = mesh.surface(triangle, at, self.film.precision);
                 // The world's density in the mesh's own frame.
                 let pdf = placement.area_scale(surface.ng) / light.area;
                 Some(ShapeSample { surface, pdf })

@@ -89,7 +89,7 @@ impl From<&SceneHit> for Leaving {
 }
 
 /// Where a ray met the scene.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneHit {
     /// Which placement.
     pub placement: u32,

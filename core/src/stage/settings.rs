@@ -3,6 +3,7 @@
 use glam::UVec2;
 use luxel_sdk::color::Observer;
 
+use crate::accel::Precision;
 use crate::cast::whole;
 use crate::registry::Display;
 use crate::scene::{Argument, Node, Value};
@@ -31,6 +32,8 @@ pub struct Film {
     pub observer: Observer,
     /// How the PNG shows radiance.
     pub display: Display,
+    /// How rays meet the triangles of meshes.
+    pub precision: Precision,
     /// Where the EXR is written.
     pub file: Option<String>,
 }
@@ -43,6 +46,7 @@ impl Default for Film {
             exposure: None,
             observer: Observer::Cie1931,
             display: Display::Srgb,
+            precision: Precision::Standard,
             file: None,
         }
     }
@@ -76,6 +80,13 @@ impl Film {
                         "linear" => Display::Linear,
                         "filmic" => Display::Filmic,
                         _ => Display::Srgb,
+                    };
+                }
+                ("precision", Value::Text(word)) => {
+                    film.precision = match &**word {
+                        "fast" => Precision::Fast,
+                        "exact" => Precision::Exact,
+                        _ => Precision::Standard,
                     };
                 }
                 ("file", Value::Text(name)) => film.file = Some(name.to_string()),

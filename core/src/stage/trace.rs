@@ -3,28 +3,76 @@
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::{Ray, sphere_roots};
 
-use crate::accel::{Direction, Step, Visit};
+use crate::accel::{Direction, Processor, Room};
 
+use super::geometry::Approach;
 use super::placement::carried;
-use super::{Leaving, MediumStack, SceneHit, Skin, Stage};
+use super::{Leaving, MediumStack, Placement, SceneHit, Skin, Stage};
 
 impl Stage {
     /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
     #[inline(always)]
-    pub fn intersect(&self, ray: &Ray, from: Option<Leaving>, steps: &mut u32) -> Option<SceneHit> {
+    pub fn intersect(
+        &self,
+        processor: Processor,
+        ray: &Ray,
+        from: Option<Leaving>,
+        steps: &mut u32,
+    ) -> Option<SceneHit> {
         let world = Direction::new(ray.d);
-        let mut visitor = Nearest { stage: self, ray: *ray, world, from, steps, hit: None };
-        self.top.walk(ray.o, ray.d, ray.t_max, &mut visitor);
-        visitor.hit
+        let mut room = Room::default();
+        let mut stack = room.stack();
+        let mut walk = self.top.walk(ray.o, ray.d, ray.t_max);
+        let mut found = None;
+        while let Some((index, t_enter)) = walk.next(processor, &mut stack) {
+            *steps += 1;
+            let placement = &self.placements[index as usize];
+            let geometry = &self.geometries[placement.geometry as usize];
+            let local = Local::of(placement, &Ray { t_max: walk.t_max, ..*ray }, world);
+            let from = Leaving::face_on(from, index);
+            let approach = self.approach(processor, &local, t_enter, from);
+            if let Some(hit) = geometry.intersect(&local.ray, approach, steps) {
+                found = Some(SceneHit { placement: index, hit });
+                walk.t_max = hit.t;
+            }
+        }
+        found
     }
 
     /// Whether a surface that stops light lies along a ray that leaves `from`.
     #[inline(always)]
-    pub fn occluded(&self, ray: &Ray, from: Option<Leaving>) -> bool {
+    pub fn occluded(&self, processor: Processor, ray: &Ray, from: Option<Leaving>) -> bool {
         let world = Direction::new(ray.d);
-        let mut visitor = Anything { stage: self, ray, world, from, found: false };
-        self.top.walk(ray.o, ray.d, ray.t_max, &mut visitor);
-        visitor.found
+        let mut room = Room::default();
+        let mut stack = room.stack();
+        let mut walk = self.top.walk(ray.o, ray.d, ray.t_max);
+        while let Some((index, t_enter)) = walk.next(processor, &mut stack) {
+            let placement = &self.placements[index as usize];
+            if placement.skin == Skin::Open {
+                continue;
+            }
+            let geometry = &self.geometries[placement.geometry as usize];
+            let local = Local::of(placement, ray, world);
+            let from = Leaving::face_on(from, index);
+            let approach = self.approach(processor, &local, t_enter, from);
+            if geometry.occluded(&local.ray, approach) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// How a ray comes to a placement that it enters at `t_enter`.
+    #[inline(always)]
+    pub(super) fn approach<'a>(
+        &self,
+        processor: Processor,
+        local: &'a Local,
+        t_enter: f64,
+        from: Option<u32>,
+    ) -> Approach<'a> {
+        let (precision, direction) = (self.film.precision, local.direction.as_ref());
+        Approach { processor, precision, direction, t_enter, from }
     }
 
     /// The point of a hit, in the world.
@@ -33,9 +81,10 @@ impl Stage {
         let placement = &self.placements[hit.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
         match &placement.transform {
-            None => geometry.surface(ray, &hit.hit),
+            None => geometry.surface(ray, &hit.hit, self.film.precision),
             Some(transform) => {
-                let local = geometry.surface(&transform.inverse_ray(ray), &hit.hit);
+                let local =
+                    geometry.surface(&transform.inverse_ray(ray), &hit.hit, self.film.precision);
                 carried(transform, &local)
             }
         }
@@ -73,7 +122,7 @@ impl Stage {
         let mut entered: Vec<u32> = vec![];
         let mut left: Vec<u32> = vec![];
         let mut from = None;
-        while let Some(hit) = self.intersect(&ray, from, &mut 0) {
+        while let Some(hit) = self.intersect(Processor::ANY, &ray, from, &mut 0) {
             from = Some(Leaving::from(&hit));
             let surface = self.surface(&ray, &hit);
             if self.placements[hit.placement as usize].closed {
@@ -97,64 +146,22 @@ impl Stage {
     }
 }
 
-/// Looks for the nearest surface along a ray, which it shortens.
-struct Nearest<'a> {
-    stage: &'a Stage,
-    ray: Ray,
-    /// The ray's direction, for placements without a transform.
-    world: Option<Direction>,
-    from: Option<Leaving>,
-    steps: &'a mut u32,
-    hit: Option<SceneHit>,
+/// A ray in the frame of a placement.
+pub(super) struct Local {
+    pub(super) ray: Ray,
+    pub(super) direction: Option<Direction>,
 }
 
-impl Visit for Nearest<'_> {
+impl Local {
+    /// Carries a ray of the world, whose direction is `world` made ready.
     #[inline(always)]
-    fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step {
-        *self.steps += 1;
-        self.ray.t_max = t_max;
-        let placement = &self.stage.placements[index as usize];
-        let geometry = &self.stage.geometries[placement.geometry as usize];
-        let from = Leaving::face_on(self.from, index);
-        let found = match &placement.transform {
-            None => geometry.intersect(&self.ray, self.world.as_ref(), t_enter, from, self.steps),
+    pub(super) fn of(placement: &Placement, ray: &Ray, world: Option<Direction>) -> Self {
+        match &placement.transform {
+            None => Self { ray: *ray, direction: world },
             Some(transform) => {
-                let ray = transform.inverse_ray(&self.ray);
-                let direction = Direction::new(ray.d);
-                geometry.intersect(&ray, direction.as_ref(), t_enter, from, self.steps)
+                let ray = transform.inverse_ray(ray);
+                Self { ray, direction: Direction::new(ray.d) }
             }
-        };
-        let Some(hit) = found else { return Step::Go(t_max) };
-        self.hit = Some(SceneHit { placement: index, hit });
-        Step::Go(hit.t)
-    }
-}
-
-/// Looks for any surface that stops light along a ray.
-struct Anything<'a> {
-    stage: &'a Stage,
-    ray: &'a Ray,
-    world: Option<Direction>,
-    from: Option<Leaving>,
-    found: bool,
-}
-
-impl Visit for Anything<'_> {
-    #[inline(always)]
-    fn enter(&mut self, index: u32, t_enter: f64, t_max: f64) -> Step {
-        let placement = &self.stage.placements[index as usize];
-        let geometry = &self.stage.geometries[placement.geometry as usize];
-        let from = Leaving::face_on(self.from, index);
-        if placement.skin == Skin::Open {
-            return Step::Go(t_max);
         }
-        self.found = match &placement.transform {
-            None => geometry.occluded(self.ray, self.world.as_ref(), t_enter, from),
-            Some(transform) => {
-                let ray = transform.inverse_ray(self.ray);
-                geometry.occluded(&ray, Direction::new(ray.d).as_ref(), t_enter, from)
-            }
-        };
-        if self.found { Step::Stop } else { Step::Go(t_max) }
     }
 }

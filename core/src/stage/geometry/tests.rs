@@ -11,8 +11,8 @@ use luxel_sdk::num::{Bounds3, Ray, offset_origin};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared, Table};
 use luxel_sdk::sampling::Rng;
 
-use super::Mesh;
-use crate::accel::{Direction, MeshBvh};
+use super::{Approach, Mesh};
+use crate::accel::{Direction, MeshBvh, Precision, Processor};
 use crate::diag::{SourceId, Span};
 use crate::files::MemoryFiles;
 use crate::object::{Builder, ColorMode, Objects};
@@ -110,7 +110,10 @@ fn rays_from_a_flat_quad_do_not_meet_it_whatever_its_place_and_shape() {
         [DVec3::ZERO, DVec3::new(1.0, 1e-3, 0.0), DVec3::new(0.5, 1e-3, 1e-3)],
     ];
     for (index, corners) in triangles.iter().enumerate() {
-        for scale in [1e-3, 1.0, 1e3] {
+        let promises = [Precision::Standard, Precision::Exact];
+        for (scale, precision) in
+            [1e-3, 1.0, 1e3].into_iter().flat_map(|scale| promises.map(|p| (scale, p)))
+        {
             let corners = corners.map(|p| p * scale);
             let mesh = mesh_of(corners);
             let mut hits = 0;
@@ -118,14 +121,21 @@ fn rays_from_a_flat_quad_do_not_meet_it_whatever_its_place_and_shape() {
                 let [u, v] = rng.pair();
                 let at = luxel_sdk::sampling::uniform_triangle([u, v]);
                 let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                let surface = mesh.surface(0, at);
+                let surface = mesh.surface(0, at, precision);
                 let d = direction(&mut rng, surface.ng);
                 let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
                 let ray = Ray { o, d, t_max: f64::INFINITY };
                 let direction = Direction::new(d).unwrap();
-                hits += u32::from(mesh.intersect(&ray, &direction, 0.0, Some(0), &mut 0).is_some());
+                let approach = Approach {
+                    processor: Processor::ANY,
+                    precision,
+                    direction: Some(&direction),
+                    t_enter: 0.0,
+                    from: Some(0),
+                };
+                hits += u32::from(mesh.intersect(&ray, approach, &mut 0).is_some());
             }
-            assert_eq!(hits, 0, "triangle {index} at scale {scale}");
+            assert_eq!(hits, 0, "triangle {index} at scale {scale}, {precision:?}");
         }
     }
 }

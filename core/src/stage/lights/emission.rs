@@ -133,7 +133,7 @@ impl Stage {
             Geometry::Mesh(mesh) => {
                 let triangle = index(triangles.as_ref()?.sample(left).index);
                 let [_, b, c] = uniform_triangle(u.point).map(f64::from);
-                let surface = mesh.surface(triangle, DVec2::new(b, c));
+                let surface = mesh.surface(triangle, DVec2::new(b, c), self.film.precision);
                 (surface, triangle, placement.area_scale(surface.ng) / area)
             }
             Geometry::Analytic(shape) => {

@@ -1,0 +1,256 @@
+//! Many rays through the whole stage, a few at a time in turns: while one waits for memory the others
+//! go on. What they meet is the same as one by one.
+
+use glam::DVec2;
+use luxel_sdk::kind::Hit;
+use luxel_sdk::num::Ray;
+
+use crate::accel::{Begun, Direction, MeshHit, MeshWalk, Processor, Room, Stack, TopWalk};
+
+use super::geometry::{Approach, Geometry, Landed, Mesh, Taken};
+use super::trace::Local;
+use super::{Leaving, SceneHit, Skin, Stage};
+
+/// Rays that take turns.
+const TURNS: usize = 8;
+
+/// Bytes of trees from which on rays wait for memory so much that taking turns pays: what a core
+/// keeps beside it. Below, one by one is faster by what it costs to turn.
+const NEAR: usize = 1 << 20;
+
+/// Room for the rays that take turns, made once.
+#[derive(Debug)]
+pub struct Rooms(Vec<(Room<f64>, Room<f32>)>);
+
+impl Default for Rooms {
+    fn default() -> Self {
+        Self((0..TURNS).map(|_| (Room::default(), Room::default())).collect())
+    }
+}
+
+/// A ray that leaves a primitive, if it starts on one.
+pub type Asked<'a> = (&'a Ray, Option<Leaving>);
+
+impl Stage {
+    /// Whether many rays are traced sooner in turns than one by one.
+    pub fn is_for_turns(&self) -> bool {
+        let bytes = |geometry: &Geometry| match geometry {
+            Geometry::Analytic(_) => 0,
+            Geometry::Mesh(mesh) => mesh.bytes(),
+        };
+        self.geometries.iter().map(|geometry| bytes(geometry)).sum::<usize>() > NEAR
+    }
+
+    /// The nearest surface along each ray and how many nodes and primitives were looked at, given
+    /// to `tell` with the ray's number, in any order.
+    #[inline(always)]
+    pub fn intersect_all<'a>(
+        &self,
+        processor: Processor,
+        rays: impl Iterator<Item = Asked<'a>>,
+        rooms: &mut Rooms,
+        mut tell: impl FnMut(usize, Option<SceneHit>, u32),
+    ) {
+        self.in_turns::<false>(processor, rays, rooms, |flight| {
+            tell(flight.number, flight.hit, flight.steps);
+        });
+    }
+
+    /// Whether a surface that stops light lies along each ray, told as above.
+    #[inline(always)]
+    pub fn occluded_all<'a>(
+        &self,
+        processor: Processor,
+        rays: impl Iterator<Item = Asked<'a>>,
+        rooms: &mut Rooms,
+        mut tell: impl FnMut(usize, bool),
+    ) {
+        self.in_turns::<true>(processor, rays, rooms, |flight| {
+            tell(flight.number, flight.hit.is_some());
+        });
+    }
+
+    #[inline(always)]
+    fn in_turns<'a, const ANY: bool>(
+        &self,
+        processor: Processor,
+        rays: impl Iterator<Item = Asked<'a>>,
+        rooms: &mut Rooms,
+        mut land: impl FnMut(&Flight<'_>),
+    ) {
+        let mut rays = rays.enumerate();
+        let mut flights = Vec::with_capacity(TURNS);
+        for (top, mesh) in &mut rooms.0 {
+            let Some(ray) = rays.next() else { break };
+            flights.push((Flight::new(self, ray), top.stack(), mesh.stack()));
+        }
+        let mut turn = 0;
+        while !flights.is_empty() {
+            turn = if turn < flights.len() { turn } else { 0 };
+            let (flight, top, mesh) = &mut flights[turn];
+            if !flight.step::<ANY>(self, processor, (top, mesh)) {
+                turn += 1;
+                continue;
+            }
+            land(flight);
+            match rays.next() {
+                Some(ray) => {
+                    top.clear();
+                    mesh.clear();
+                    *flight = Flight::new(self, ray);
+                    turn += 1;
+                }
+                None => drop(flights.swap_remove(turn)),
+            }
+        }
+    }
+}
+
+/// One ray on its way.
+struct Flight<'s> {
+    number: usize,
+    ray: Ray,
+    world: Option<Direction>,
+    from: Option<Leaving>,
+    walk: TopWalk<'s>,
+    /// The mesh that it is in.
+    within: Option<(Visit<'s>, MeshWalk<'s>)>,
+    hit: Option<SceneHit>,
+    steps: u32,
+}
+
+/// A ray in the frame of a mesh that it meets.
+struct Visit<'s> {
+    placement: u32,
+    mesh: &'s Mesh,
+    local: Local,
+    t_enter: f64,
+    taken: Taken,
+}
+
+type Stacks<'a, 'r> = (&'a mut Stack<'r, f64>, &'a mut Stack<'r, f32>);
+
+impl<'s> Flight<'s> {
+    #[inline(always)]
+    fn new(stage: &'s Stage, (number, (ray, from)): (usize, Asked<'_>)) -> Self {
+        let (world, walk) = (Direction::new(ray.d), stage.top.walk(ray.o, ray.d, ray.t_max));
+        Self { number, ray: *ray, world, from, walk, within: None, hit: None, steps: 0 }
+    }
+
+    /// Goes on until it has to wait for memory; true when it is over.
+    #[inline(always)]
+    fn step<const ANY: bool>(
+        &mut self,
+        stage: &'s Stage,
+        processor: Processor,
+        (top, mesh): Stacks<'_, '_>,
+    ) -> bool {
+        if let Some((_, walk)) = &mut self.within {
+            if !walk.step::<ANY>(processor, mesh) {
+                walk.prefetch();
+                return false;
+            }
+            mesh.clear();
+            if self.leave::<ANY>(stage, processor) && ANY {
+                return true;
+            }
+        }
+        while self.within.is_none() {
+            let Some((index, t_enter)) = self.walk.next(processor, top) else { return true };
+            if self.enter::<ANY>(stage, processor, index, t_enter) && ANY {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Enters a placement; true if it is done with at once and was hit.
+    #[inline(always)]
+    fn enter<const ANY: bool>(
+        &mut self,
+        stage: &'s Stage,
+        processor: Processor,
+        index: u32,
+        t_enter: f64,
+    ) -> bool {
+        self.steps += 1;
+        let placement = &stage.placements[index as usize];
+        if ANY && placement.skin == Skin::Open {
+            return false;
+        }
+        let local = Local::of(placement, &Ray { t_max: self.walk.t_max, ..self.ray }, self.world);
+        let mesh = match &*stage.geometries[placement.geometry as usize] {
+            Geometry::Analytic(object) => {
+                let hit = object.fixed().shape().intersect(&local.ray);
+                return self.take(index, hit);
+            }
+            Geometry::Mesh(mesh) => mesh,
+        };
+        let Some(direction) = &local.direction else { return false };
+        let taken = mesh.take_up(direction, t_enter);
+        let visit = Visit { placement: index, mesh, local, t_enter, taken };
+        let approach = visit.approach(stage, processor, self.from);
+        match mesh.begin::<ANY>(&visit.local.ray, &approach, taken) {
+            Begun::Over(hit, steps) => {
+                self.steps += steps;
+                self.land::<ANY>(stage, processor, &visit, hit)
+            }
+            Begun::Walk(walk) => {
+                walk.prefetch();
+                self.within = Some((visit, walk));
+                false
+            }
+        }
+    }
+
+    /// Leaves the mesh that it was in; true if it was hit.
+    #[inline(always)]
+    fn leave<const ANY: bool>(&mut self, stage: &Stage, processor: Processor) -> bool {
+        let Some((visit, walk)) = self.within.take() else { return false };
+        self.steps += walk.steps;
+        self.land::<ANY>(stage, processor, &visit, walk.hit())
+    }
+
+    /// True if what the tree found is a hit. Of any triangle that is found it is not known whether
+    /// others lie before it: one behind the ray's origin is asked about again.
+    #[inline(always)]
+    fn land<const ANY: bool>(
+        &mut self,
+        stage: &Stage,
+        processor: Processor,
+        visit: &Visit<'_>,
+        hit: Option<MeshHit>,
+    ) -> bool {
+        let Some(found) = hit else { return false };
+        let approach = visit.approach(stage, processor, self.from);
+        let (mesh, ray) = (visit.mesh, &visit.local.ray);
+        let landed = if ANY && approach.from.is_none() {
+            Some(Hit { t: 0.0, at: DVec2::ZERO, face: found.triangle })
+        } else if ANY {
+            mesh.intersect(ray, approach, &mut self.steps)
+        } else {
+            match mesh.land(ray, &approach, visit.taken, hit) {
+                Landed::At(hit) => Some(hit),
+                Landed::Nowhere => None,
+                Landed::Behind(_) => mesh.intersect(ray, approach, &mut self.steps),
+            }
+        };
+        self.take(visit.placement, landed)
+    }
+
+    #[inline(always)]
+    fn take(&mut self, placement: u32, hit: Option<Hit>) -> bool {
+        let Some(hit) = hit else { return false };
+        self.hit = Some(SceneHit { placement, hit });
+        self.walk.t_max = hit.t;
+        true
+    }
+}
+
+impl Visit<'_> {
+    #[inline(always)]
+    fn approach(&self, stage: &Stage, processor: Processor, from: Option<Leaving>) -> Approach<'_> {
+        let from = Leaving::face_on(from, self.placement);
+        stage.approach(processor, &self.local, self.t_enter, from)
+    }
+}

@@ -1,0 +1,93 @@
+//! Rays that take turns meet what they meet one by one, on every processor.
+
+use glam::DVec3;
+use luxel_core::accel::{Processor, Work};
+use luxel_core::stage::{Leaving, Rooms, SceneHit, Stage};
+use luxel_sdk::num::{Ray, offset_origin};
+use luxel_sdk::sampling::Rng;
+
+use crate::disk::{OnDisk, root};
+use crate::load::stage_of;
+
+/// Meshes, analytic shapes, placements that turn and scale, and open surfaces.
+const SCENES: [&str; 4] = ["spot", "gltf", "parametric", "fog"];
+
+type Rays = Vec<(Ray, Option<Leaving>)>;
+type Found = Vec<(Option<SceneHit>, u32, bool)>;
+
+fn direction(rng: &mut Rng) -> DVec3 {
+    let mut uniform = || 2.0 * rng.f64() - 1.0;
+    DVec3::new(uniform(), uniform(), uniform())
+}
+
+/// Rays from everywhere, and rays that leave what those meet, some of limited length.
+fn rays(stage: &Stage) -> Rays {
+    let mut rng = Rng::new(17);
+    let (centre, radius) = stage.sphere;
+    let mut rays: Rays = (0..3000)
+        .map(|_| {
+            let o = centre + direction(&mut rng) * radius;
+            let towards = centre + direction(&mut rng) * 0.2 * radius;
+            (Ray::new(o, towards - o), None)
+        })
+        .collect();
+    for i in 0..rays.len() {
+        let Some(hit) = stage.intersect(Processor::ANY, &rays[i].0, None, &mut 0) else { continue };
+        let surface = stage.surface(&rays[i].0, &hit);
+        let d = direction(&mut rng);
+        let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
+        let t_max = if i % 2 == 0 { f64::INFINITY } else { 0.3 * radius };
+        rays.push((Ray { o, d, t_max }, Some(Leaving::from(&hit))));
+    }
+    rays
+}
+
+struct OneByOne<'a>(&'a Stage, &'a Rays, &'a mut Found);
+
+impl Work for OneByOne<'_> {
+    #[inline(always)]
+    fn run(self, processor: Processor) {
+        let Self(stage, rays, found) = self;
+        found.extend(rays.iter().map(|(ray, from)| {
+            let mut steps = 0;
+            let hit = stage.intersect(processor, ray, *from, &mut steps);
+            (hit, steps, stage.occluded(processor, ray, *from))
+        }));
+    }
+}
+
+struct InTurns<'a>(&'a Stage, &'a Rays, &'a mut Found);
+
+impl Work for InTurns<'_> {
+    #[inline(always)]
+    fn run(self, processor: Processor) {
+        let Self(stage, rays, found) = self;
+        let mut rooms = Rooms::default();
+        found.resize(rays.len(), (None, 0, false));
+        let asked = || rays.iter().map(|(ray, from)| (ray, *from));
+        stage.intersect_all(processor, asked(), &mut rooms, |i, hit, steps| {
+            (found[i].0, found[i].1) = (hit, steps);
+        });
+        stage.occluded_all(processor, asked(), &mut rooms, |i, is_hit| found[i].2 = is_hit);
+    }
+}
+
+#[test]
+fn turns_change_nothing() {
+    for name in SCENES {
+        let path = root().join(format!("scenes/{name}.scene"));
+        let stage = stage_of(&path, &OnDisk, &[], None).unwrap_or_else(|said| panic!("{said:?}"));
+        let rays = rays(&stage);
+        let mut reference = vec![];
+        Processor::ANY.run(OneByOne(&stage, &rays, &mut reference));
+        let hits = reference.iter().filter(|found| found.0.is_some()).count();
+        assert!(hits > 1000, "{name}: {hits} of {} rays hit", rays.len());
+        for processor in Processor::all() {
+            let (mut single, mut turns) = (vec![], vec![]);
+            processor.run(OneByOne(&stage, &rays, &mut single));
+            processor.run(InTurns(&stage, &rays, &mut turns));
+            assert!(single == reference, "{name}: {}, one by one", processor.name());
+            assert!(turns == reference, "{name}: {}, in turns", processor.name());
+        }
+    }
+}

@@ -1,9 +1,9 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
-//! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|plugins|reload|cornell] [--luxel PATH]
-//! [--python PATH]`. The program under test is `target/release/luxel` beside this one unless given.
+//! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|plugins|
+//! rays|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]`. The program under test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
 
 mod boundary;
@@ -11,6 +11,7 @@ mod parse;
 mod peer;
 mod ply;
 mod process;
+mod rays;
 mod reload;
 mod series;
 
@@ -24,30 +25,34 @@ struct Plan {
     what: String,
     luxel: Luxel,
     python: Option<PathBuf>,
+    embree: Option<PathBuf>,
 }
 
-const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|reload|cornell] [--luxel PATH] [--python PATH]";
+const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|rays|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]";
 
 fn plan() -> Result<Plan, String> {
     let mut what = "all".to_owned();
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
     let mut python = None;
+    let mut embree = None;
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         match word.as_str() {
-            "all" | "parse" | "cold" | "memory" | "ply" | "plugins" | "reload" | "cornell" => {
+            "all" | "parse" | "cold" | "memory" | "ply" | "plugins" | "rays" | "reload"
+            | "cornell" => {
                 what = word;
             }
             "--luxel" => luxel = words.next().map(PathBuf::from),
+            "--embree" => embree = words.next().map(PathBuf::from),
             "--python" => python = words.next().map(PathBuf::from),
             _ => return Err(format!("`{word}`? {USAGE}")),
         }
     }
     let program = luxel.filter(|path| path.exists());
-    if what != "parse" && program.is_none() {
+    if !matches!(what.as_str(), "parse" | "rays") && program.is_none() {
         return Err("no `luxel`: run `cargo build --release -p luxel`, or give --luxel".to_owned());
     }
-    Ok(Plan { what, luxel: Luxel { program: program.unwrap_or_default() }, python })
+    Ok(Plan { what, luxel: Luxel { program: program.unwrap_or_default() }, python, embree })
 }
 
 fn run(plan: &Plan) -> Result<(), String> {
@@ -66,6 +71,9 @@ fn run(plan: &Plan) -> Result<(), String> {
     }
     if wanted("plugins") {
         boundary::run(&plan.luxel)?;
+    }
+    if wanted("rays") {
+        rays::run(plan.embree.as_deref(), plan.python.as_deref());
     }
     if wanted("reload") {
         reload::run(&plan.luxel)?;

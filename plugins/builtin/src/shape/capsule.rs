@@ -237,6 +237,20 @@ mod tests {
     }
 
     #[test]
+    fn rays_pass_or_meet_what_they_all_but_touch() {
+        let c = capsule(DVec3::ZERO, 1.0, 2.0);
+        let [x, y, z] = c.frame;
+        for (reach, met) in [(1.0 - 1e-12, true), (1.0 + 1e-12, false)] {
+            for foot in [x * reach + z, x * reach, z * (2.0 + reach), z * -reach] {
+                let hit = c.intersect(&Ray::new(foot - y * 9.0, y));
+                assert_eq!(hit.is_some(), met, "{foot}: {hit:?}");
+            }
+            let along = c.intersect(&Ray::new(x * reach - z * 9.0, z));
+            assert_eq!(along.is_some(), met, "{along:?}");
+        }
+    }
+
+    #[test]
     fn samples_cover_the_area_and_the_solid_angle() {
         let c = capsule(DVec3::ONE, 1.0, 2.0);
         assert!((c.area() - 4.0 * TAU).abs() <= 1e-14);

@@ -367,6 +367,25 @@ mod tests {
     }
 
     #[test]
+    fn rays_pass_or_meet_what_they_all_but_touch() {
+        for caps in [false, true] {
+            let c = cone(DVec3::ZERO, 1.0, 0.25, 1.0, caps);
+            let [x, y, z] = c.frame;
+            let (middle, n) = (x * 0.625 + z * 0.5, (x * 4.0 + z * 3.0) / 5.0);
+            let down = x * 3.0 - z * 4.0;
+            for (height, met) in [(-1e-12, true), (1e-12, false)] {
+                // Across the side, and almost along it.
+                for d in [y, y + down * 0.1] {
+                    let hit = c.intersect(&Ray::new(middle + n * height - d * 9.0, d));
+                    assert_eq!(hit.is_some(), met, "{d}: {hit:?}");
+                }
+                let rim = c.intersect(&Ray::new(x * (1.0 + height) + z * 1e-13 - y * 9.0, y));
+                assert_eq!(rim.is_some(), met, "{rim:?}");
+            }
+        }
+    }
+
+    #[test]
     fn samples_cover_the_area_and_the_solid_angle() {
         for (caps, top, truth) in [
             (false, 0.0, PI * 5f64.sqrt()),

@@ -29,11 +29,35 @@ fn a_crash_and_an_endless_loop_are_failed_checks() {
 }
 
 #[test]
+fn the_command_that_is_printed_judges_the_library_again() {
+    let folder = Folder::new("judge-again");
+    let library = faulty::build(&folder, faulty::PANIC_AT_THE_THIRD);
+    let told = format!("failed: luxel plugin test {library} material faulty --isolate");
+    let done = folder.luxel(&["plugin", "test", &library, "--isolate"]);
+    let last = done.out.lines().last().unwrap_or_default();
+    assert_eq!(last, told, "{done:?}");
+    let words: Vec<_> = last["failed: luxel ".len()..].split(' ').collect();
+    assert_eq!(folder.luxel(&words).out.lines().last(), Some(last));
+}
+
+#[test]
+fn a_name_of_no_built_in_tells_how_libraries_are_judged() {
+    let folder = Folder::new("judge-unknown");
+    let library = faulty::build(&folder, faulty::NOTHING);
+    let place = std::path::Path::new(&library).parent().unwrap().to_str().unwrap();
+    let done = folder.luxel(&["plugin", "test", "material", "faulty", "--plugin-dir", place]);
+    for part in ["no material `faulty`", "not trusted: luxel plugin trust", "luxel plugin test t"] {
+        assert!(done.code == 2 && done.err.contains(part), "{part}: {done:?}");
+    }
+}
+
+#[test]
 fn a_panic_is_a_failed_check_with_or_without_a_process_apart() {
     for more in [&[][..], &["--isolate"]] {
         let done = judge(faulty::PANIC_AT_THE_THIRD, more);
         let failed = done.code == 1 && done.out.contains(r#""verdict":"fail""#);
-        assert!(failed && done.out.contains("panicked"), "{done:?}");
+        let row = r#""check":"never panics","class":"faulty","detail":"as by default"#;
+        assert!(failed && done.out.contains("panicked") && done.out.contains(row), "{done:?}");
     }
 }
 

@@ -26,7 +26,8 @@ pub(crate) struct IsolateArgs {
     /// Work in a process of its own, so that a plugin that crashes or never ends costs a message
     #[arg(long)]
     isolate: bool,
-    /// With --isolate: how long nothing may move before that process is ended
+    /// With --isolate: how long nothing may move before that process is ended [default: 60; 300 for
+    /// each class that `plugin test` judges]
     #[arg(
         long,
         value_name = "SECONDS",
@@ -45,6 +46,15 @@ impl IsolateArgs {
             Some(folder) => Some(Beat::to_parent(folder.into())),
             None => None,
         }
+    }
+
+    /// The same, as it is written on a command line.
+    pub(crate) fn words(&self) -> Vec<String> {
+        let mut words = vec![];
+        words.extend(self.isolate.then(|| "--isolate".to_owned()));
+        let seconds = self.patience.map(|patience| patience.as_secs_f64().to_string());
+        words.extend(seconds.into_iter().flat_map(|n| ["--patience".to_owned(), n]));
+        words
     }
 
     /// How long nothing may move.

@@ -1,6 +1,7 @@
 //! `luxel plugin test`: whether plugins keep what their kind promises.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fmt::Write;
 use std::io::Read;
 use std::path::Path;
@@ -16,7 +17,7 @@ use super::{apart, mutants};
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::isolate::{Beat, IsolateArgs, Phase};
-use crate::libraries::{Session, Surroundings, is_library, open_file};
+use crate::libraries::{Found, Plugins, Session, Surroundings, is_library, open_file};
 use crate::progress::duration;
 use crate::report::{Form, Stream};
 use crate::{list, load, report};
@@ -75,6 +76,25 @@ impl Args {
             None => (None, &self.what),
         }
     }
+
+    /// The command line that judges one class in the same way.
+    fn again(&self, kind: &str, class: &str) -> String {
+        let mut words = vec!["luxel".into(), "plugin".into(), "test".into()];
+        words.extend(self.library().0.map(|path| path.to_string_lossy().into_owned()));
+        words.extend([kind.to_owned(), class.to_owned()]);
+        words.extend(self.isolate.words());
+        words.extend(self.plugins.words().iter().map(|word| word.to_string_lossy().into_owned()));
+        if self.seed != Options::default().seed {
+            words.extend(["--seed".to_owned(), self.seed.to_string()]);
+        }
+        words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// A word as a shell takes it for one.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./:\\".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{word}'") }
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -104,15 +124,18 @@ fn memory() -> Option<u64> {
 fn judge(args: &Args, beat: &Beat, options: &Options) -> Result<Exit, Failure> {
     beat.phase(Phase::Opening);
     let (library, words) = args.library();
-    let (registry, own) = if let Some(file) = library {
-        with_library(file, &args.plugins)?
+    let (registry, own, choice) = if let Some(file) = library {
+        let (registry, own) = with_library(file, &args.plugins)?;
+        let choice = Choice::new(words, &own)?;
+        (registry, own, choice)
     } else {
         let plugins = load::registry(&args.plugins)?;
         plugins.notes.tell(Form::Text, Stream::Error)?;
-        let all = plugins.registry.all().map(|entry| entry.class).collect();
-        (plugins.registry, all)
+        let all: Vec<_> = plugins.registry.all().map(|entry| entry.class).collect();
+        let choice = Choice::new(words, &all);
+        let choice = choice.map_err(|failure| in_a_library(failure, words, &plugins))?;
+        (plugins.registry, all, choice)
     };
-    let choice = Choice::new(words, &own)?;
     if args.list {
         return list_classes(&own, &choice);
     }
@@ -148,6 +171,21 @@ fn with_library(file: &Path, args: &PluginArgs) -> Result<(Registry, Vec<Class>)
     Ok((registry, opened.classes))
 }
 
+/// Adds to the failure of a name that nobody knows where plugins of libraries are found.
+fn in_a_library(failure: Failure, words: &[String], plugins: &Plugins) -> Failure {
+    let [kind, name] = words else { return failure };
+    if Kind::of_word(kind).is_none() {
+        return failure;
+    }
+    let mut help: Vec<String> = failure.help.into_iter().collect();
+    help.extend(plugins.libraries.iter().filter_map(Found::advice));
+    let file = format!("target/release/{DLL_PREFIX}{name}{DLL_SUFFIX}");
+    help.push(format!(
+        "that of a library: luxel plugin test {file} {kind} {name}, or --plugin-dir with its folder"
+    ));
+    Failure { help: Some(help.join("; ")), ..failure }
+}
+
 /// Prints what was found.
 ///
 /// # Errors
@@ -174,7 +212,7 @@ pub(super) fn tell(args: &Args, found: &Report, course: Course) -> Result<Exit, 
         } else {
             format!("interrupted: {begun} of {total} classes in {time}")
         };
-        report::out(&format!("{found}\n{judged}{}", summary(found, args.seed)))?;
+        report::out(&format!("{found}\n{judged}{}", summary(found, args)))?;
     }
     Ok(exit(found, complete))
 }
@@ -190,7 +228,7 @@ fn exit(found: &Report, complete: bool) -> Exit {
 }
 
 /// `: 20 checks passed, 1 failed`, what could not be judged, and how to judge the failures again.
-fn summary(found: &Report, seed: u64) -> String {
+fn summary(found: &Report, args: &Args) -> String {
     let (failed, skipped) = (found.failed().count(), found.skipped().count());
     let passed = found.rows.len() - failed - skipped;
     let mut text = format!(": {} passed, {failed} failed", count(passed, "check", "checks"));
@@ -198,14 +236,16 @@ fn summary(found: &Report, seed: u64) -> String {
         let _ = write!(text, ", {skipped} could not be made");
     }
     text.push('\n');
+    let mut reasons = BTreeMap::<_, Vec<_>>::new();
     for (Row { kind, class, check, .. }, why) in found.skipped() {
-        let _ = writeln!(text, "not judged: {kind} {class}, {check}: {why}");
+        reasons.entry((kind, class, why)).or_default().push(check.as_ref());
     }
-    let seed =
-        if seed == Options::default().seed { String::new() } else { format!(" --seed {seed}") };
+    for ((kind, class, why), checks) in reasons {
+        let _ = writeln!(text, "not judged: {kind} {class}, {}: {why}", checks.join(", "));
+    }
     let classes: BTreeSet<_> = found.failed().map(|row| (row.kind, &row.class)).collect();
     for (kind, class) in classes {
-        let _ = writeln!(text, "failed: luxel plugin test {kind} {class}{seed}");
+        let _ = writeln!(text, "failed: {}", args.again(kind, class));
     }
     text
 }
@@ -267,9 +307,16 @@ impl Choice {
 
 #[cfg(test)]
 mod tests {
+    use clap::{Args as _, FromArgMatches};
     use luxel_conformance::Verdict;
 
     use super::*;
+
+    fn args(words: &[&str]) -> Args {
+        let command = Args::augment_args(clap::Command::new("test"));
+        let matches = command.get_matches_from(["test"].iter().chain(words));
+        Args::from_arg_matches(&matches).unwrap()
+    }
 
     fn report(verdicts: &[(&'static str, Verdict)]) -> Report {
         let row = |(check, verdict): &(&'static str, Verdict)| Row {
@@ -302,8 +349,31 @@ mod tests {
         let told = ": 1 check passed, 1 failed, 1 could not be made\n\
                     not judged: filter box, c: no file\n\
                     failed: luxel plugin test filter box --seed 7\n";
-        assert_eq!(summary(&found, 7), told);
+        assert_eq!(summary(&found, &args(&["--seed", "7"])), told);
         let fine = report(&[("a", Verdict::Pass), ("b", Verdict::Pass)]);
-        assert_eq!(summary(&fine, Options::default().seed), ": 2 checks passed, 0 failed\n");
+        assert_eq!(summary(&fine, &args(&[])), ": 2 checks passed, 0 failed\n");
+    }
+
+    #[test]
+    fn what_is_skipped_for_one_reason_is_one_line() {
+        let skip = || Verdict::Skip("it failed".into());
+        let found = report(&[("a", skip()), ("b", skip())]);
+        let told = ": 0 checks passed, 0 failed, 2 could not be made\n\
+                    not judged: filter box, a, b: it failed\n";
+        assert_eq!(summary(&found, &args(&[])), told);
+    }
+
+    #[test]
+    fn the_command_that_judges_again_is_this_one_for_one_class() {
+        for words in [
+            &["./my lib.so", "filter", "box", "--isolate", "--patience", "2.5", "--seed", "7"][..],
+            &["filter", "box", "--plugin-dir", "a", "--allow-unlocked-plugins"],
+            &["filter", "box"],
+        ] {
+            let told = args(words).again("filter", "box");
+            let expected: Vec<_> = words.iter().map(|word| quoted(word)).collect();
+            assert_eq!(told, format!("luxel plugin test {}", expected.join(" ")));
+        }
+        assert_eq!(quoted("./my lib.so"), "'./my lib.so'");
     }
 }

@@ -2,6 +2,7 @@
 
 mod embree;
 mod knot;
+mod leaks;
 mod peers;
 mod shots;
 
@@ -70,6 +71,11 @@ fn embree_path(given: Option<&Path>, python: Option<&Path>) -> PathBuf {
     let found = asked.filter(|said| said.status.success());
     let found = found.and_then(|said| Some(String::from_utf8(said.stdout).ok()?.trim().into()));
     found.unwrap_or_else(|| PathBuf::from("libembree4.so.4"))
+}
+
+/// Prints how many rays get out of a closed mesh; `n` for each of eleven cases.
+pub(crate) fn leaks(given: Option<&Path>, python: Option<&Path>, n: usize) {
+    leaks::run(embree::load(&embree_path(given, python)).as_ref(), n);
 }
 
 /// Prints rays per second, build times and bytes per triangle for three meshes.

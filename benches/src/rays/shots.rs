@@ -34,14 +34,20 @@ impl Landing {
 }
 
 /// Uniform numbers in [0, 1): splitmix64.
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
-    fn next(&mut self) -> f32 {
+    pub(super) fn next(&mut self) -> f32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 40) as f32 / 16_777_216.0
+    }
+
+    /// A number below `n`, of at most a few millions.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is below n")]
+    pub(super) fn below(&mut self, n: usize) -> usize {
+        ((self.next() * n as f32) as usize).min(n - 1)
     }
 }
 

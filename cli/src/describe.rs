@@ -106,7 +106,13 @@ fn facts(param: &Param) -> Vec<String> {
         facts.push(format!("one of {}", param.words().collect::<Vec<_>>().join(", ")));
     }
     if param.textured {
-        facts.push("may be a texture".into());
+        let number = param.ty == Type::Float;
+        let what = if number {
+            "may be a texture (of a colour its luminance)"
+        } else {
+            "may be a texture"
+        };
+        facts.push(what.into());
     }
     if !param.group.is_empty() {
         facts.push(format!("exactly one `{}` is given", param.group));

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::abi::Class;
-use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::Kind;
+use luxel_sdk::color::{RgbSpace, Spectrum};
+use luxel_sdk::kind::{Kind, Output};
 use luxel_sdk::params::{
     Emission, Fault, File, Maybe, Param, Preset, Quantity, Role, Table, Text, Type,
 };
@@ -338,21 +338,26 @@ impl Draft {
     }
 
     fn texture(&mut self, param: &Param, texture: Arc<Object>, factor: f32) -> Result<(), String> {
+        let output = texture.fixed().texture().output();
         let target = match param.ty {
+            Type::Float if output == Output::Rgb => {
+                Target::Luminance(RgbSpace::LinearSrgb.luminance_weights().as_vec3())
+            }
             Type::Float => Target::Float,
             Type::Vec3 => Target::Vec3,
             Type::Spectrum | Type::Emission | Type::ComplexIor => Target::Spectrum,
             _ => return Err(format!("`{}` cannot be textured", param.name)),
         };
         let uplift = match (self.mode, target, param.role) {
-            (ColorMode::Rgb, ..) | (_, Target::Float | Target::Vec3, _) => Uplift::None,
+            (ColorMode::Rgb, ..) => Uplift::None,
+            (_, Target::Float | Target::Luminance(_) | Target::Vec3, _) => Uplift::None,
             (_, _, Role::Illuminant) => Uplift::Illuminant,
             _ => Uplift::Reflectance,
         };
         self.parts.push(texture.clone());
         self.patches.textures.push(TexturePatch {
             offset: param.offset,
-            output: texture.fixed().texture().output(),
+            output,
             texture,
             uplift,
             factor,

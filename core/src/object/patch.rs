@@ -59,10 +59,12 @@ pub(super) struct TexturePatch {
 }
 
 /// What a texture is written into.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Target {
     /// An `f32`: the first lane.
     Float,
+    /// An `f32`: the luminance of linear sRGB, by these weights.
+    Luminance(Vec3),
     /// Three `f32`.
     Vec3,
     /// Four lanes.

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::sync::Arc;
 
-use glam::{DVec3, Vec2};
+use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::abi::{Class, View};
 use luxel_sdk::color::{Palette, Spectrum};
 use luxel_sdk::kind::{
@@ -202,16 +202,22 @@ impl Writer {
 fn fill_texture(write: Writer, patch: &TexturePatch, at: &Site<'_>, scratch: &Scratch) {
     let point = TexturePoint { p: at.p, uv: at.uv, lambda: at.palette.wavelengths };
     let value = patch.texture.resolve(at, scratch).texture().eval(&point);
-    let lanes = match patch.output {
-        Output::Rgb => patch.uplift.lanes(value.rgb(), at.palette),
-        Output::Value => value,
+    let lanes = match (patch.output, patch.target) {
+        (_, Target::Luminance(weights)) => Spectrum::splat(luminance(value.rgb(), weights)),
+        (Output::Rgb, _) => patch.uplift.lanes(value.rgb(), at.palette),
+        (Output::Value, _) => value,
     };
     let lanes: Spectrum = (lanes * patch.factor).clamp(patch.range[0], patch.range[1]);
     match patch.target {
-        Target::Float => write.put(patch.offset, lanes.lane(0)),
+        Target::Float | Target::Luminance(_) => write.put(patch.offset, lanes.lane(0)),
         Target::Vec3 => write.put(patch.offset, lanes.rgb()),
         Target::Spectrum => write.put(patch.offset, lanes),
     }
+}
+
+/// A weighted mean: of three equal numbers exactly that number.
+fn luminance(rgb: Vec3, weights: Vec3) -> f32 {
+    rgb.y + weights.x * (rgb.x - rgb.y) + weights.z * (rgb.z - rgb.y)
 }
 
 impl Object {

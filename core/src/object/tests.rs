@@ -197,7 +197,24 @@ fn a_texture_is_clamped_to_the_range_and_prepared_at_the_hit() {
     let object = world.build(id, ColorMode::Rgb).unwrap();
     let got = echo(&object, Vec2::new(0.25, 0.75), &Palette::rgb());
     assert_eq!(got.f.rgb(), Vec3::new(0.5, 1.0, 1.0));
-    assert_eq!(got.pdf.to_bits(), 1.0f32.to_bits());
+    // A luminance of 1.25, clamped to 1 and doubled.
+    assert_eq!(got.pdf.to_bits(), 2.0f32.to_bits());
+}
+
+#[test]
+fn a_colour_where_a_number_is_wanted_counts_by_its_luminance() {
+    let mut world = World::new();
+    let texture = world.node(Kind::Texture, "coordinates", &[]);
+    let id = world.node(Kind::Material, "echo", &[("roughness", Value::Node(texture))]);
+    for mode in [ColorMode::Rgb, ColorMode::Spectral] {
+        let object = world.build(id, mode).unwrap();
+        let roughness = |uv| echo(&object, uv, &Palette::rgb()).pdf / 2.0;
+        assert_eq!(roughness(Vec2::splat(0.5)).to_bits(), 0.5f32.to_bits());
+        // ITU-R BT.709: 0.2126, 0.7152 and 0.0722, the last of 0.5. A few roundings of f32.
+        for (uv, expected) in [(Vec2::X, 0.2126 + 0.0361), (Vec2::Y, 0.7152 + 0.0361)] {
+            assert!((roughness(uv) - expected).abs() < 5e-5, "{uv}: {}", roughness(uv));
+        }
+    }
 }
 
 #[test]

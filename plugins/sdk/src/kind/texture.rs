@@ -41,7 +41,8 @@ pub trait Texture: Send + Sync {
         Ok(())
     }
 
-    /// The value; finite for every finite point. Where a number is wanted, the first lane counts.
+    /// The value; finite for every finite point. Where a number is wanted, the first lane counts, or
+    /// the luminance if the lanes are RGB.
     fn eval(&self, at: &TexturePoint) -> Spectrum;
 
     /// What the lanes mean.

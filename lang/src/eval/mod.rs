@@ -6,6 +6,7 @@
 
 mod builtins;
 mod call;
+mod elsewhere;
 mod emit;
 mod env;
 mod exec;

@@ -11,6 +11,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Param;
 
+use super::elsewhere::meant;
 use super::env::Env;
 use super::exec::{Body, Place};
 use super::value::{FieldValue, Head, ObjectValue, Value, What};
@@ -68,7 +69,7 @@ impl Evaluator<'_> {
 
     /// Tells of a class that nobody has, and which libraries that are not loaded may have it.
     fn no_class(&mut self, kind: Kind, class: &Name, names: &[&str]) {
-        let near = nearest(&class.text, names.iter().copied());
+        let near = meant(&class.text, names);
         let namesake = self.unloaded.iter().any(|library| *library.stem == *class.text);
         let missing = namesake || (near.is_none() && !self.unloaded.is_empty());
         let code = if missing { "E0414" } else { "E0401" };
@@ -281,7 +282,7 @@ impl Evaluator<'_> {
         let name = &field.name;
         let message = format!("`{what}` has no parameter `{}`", name.text);
         let mut found = Diagnostic::error("E0402", name.span, message);
-        if let Some(near) = nearest(&name.text, known.iter().copied()) {
+        if let Some(near) = meant(&name.text, known) {
             found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }
         self.tell(found.help(format!("known are {}", known.join(", "))));

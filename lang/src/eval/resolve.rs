@@ -311,7 +311,10 @@ impl Resolver<'_> {
         let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
         let mut known: Vec<&str> = builtins::names().collect();
         known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
-        if let Some(near) = nearest(shown, known.iter().copied()) {
+        // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
+        let ending = builtins::names()
+            .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
+        if let Some(near) = ending.or_else(|| nearest(shown, known.iter().copied())) {
             found = found.help(format!("did you mean `{near}`?")).fix(place, near);
         } else if shown == "range" {
             found = found.help("a range is written `0..10`: from 0 up to, but not, 10");

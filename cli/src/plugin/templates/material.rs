@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 use luxel_sdk::Params;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample};
+use luxel_sdk::kind::{Eval, Material, Needs, Sample};
 use luxel_sdk::sampling::cosine_hemisphere;
 use luxel_sdk::scattering::same_side;
 
@@ -24,7 +24,7 @@ pub struct TemplateName {
 
 impl Material for TemplateName {
     /// f·|cos| and the density of `sample`, per steradian. Both directions point away from the
-    /// surface, whose normal is +z.
+    /// surface, whose normal outside is +z: z < 0 is inside.
     fn eval(&self, wo: Vec3, wi: Vec3) -> Eval {
         if same_side(wo, wi) {
             let pdf = wi.z.abs() * FRAC_1_PI;
@@ -37,17 +37,11 @@ impl Material for TemplateName {
     fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Sample> {
         let up = cosine_hemisphere([u[0], u[1]]);
         let wi = Vec3::new(up.x, up.y, up.z.copysign(wo.z));
-        let possible = wo.z != 0.0 && up.z > 0.0 && !wo.z.is_nan();
-        possible.then_some(Sample {
-            weight: self.reflectance,
-            wi,
-            pdf: up.z * FRAC_1_PI,
-            eta: 1.0,
-            lobe: Lobe::NONE,
-        })
+        Sample::of(wi, self.eval(wo, wi))
     }
 
-    /// Neither the third number nor the direction of dp/du is looked at.
+    /// What is looked at. Add `.with(Needs::CHOICE)` if `sample` uses `u[2]`, as to choose between two
+    /// lobes, and `.with(Needs::TANGENT)` if turning both directions about z changes `eval`.
     fn needs(&self) -> Needs {
         Needs::LIGHT
     }

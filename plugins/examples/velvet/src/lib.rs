@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_1_PI, TAU};
 use glam::Vec3;
 use luxel_sdk::Params;
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Eval, Lobe, Material, Needs, Sample};
+use luxel_sdk::kind::{Eval, Material, Needs, Sample};
 use luxel_sdk::sampling::uniform_hemisphere;
 use luxel_sdk::scattering::same_side;
 
@@ -48,9 +48,7 @@ impl Material for Velvet {
     fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Sample> {
         let up = uniform_hemisphere([u[0], u[1]]);
         let wi = Vec3::new(up.x, up.y, up.z.copysign(wo.z));
-        let Eval { f, pdf } = self.eval(wo, wi);
-        let sample = Sample { weight: f * TAU, wi, pdf, eta: 1.0, lobe: Lobe::NONE };
-        (pdf > 0.0).then_some(sample)
+        Sample::of(wi, self.eval(wo, wi))
     }
 
     fn needs(&self) -> Needs {

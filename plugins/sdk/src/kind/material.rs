@@ -74,6 +74,13 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// A direction from a lobe with a density, on the viewer's side: its weight is `f / pdf`. `None`
+    /// where `eval` says that it is never found.
+    pub fn of(wi: Vec3, Eval { f, pdf }: Eval) -> Option<Self> {
+        let found = || Self { weight: f / pdf, wi, pdf, eta: 1.0, lobe: Lobe::NONE };
+        (pdf > 0.0).then(found)
+    }
+
     /// A perfectly specular direction on the viewer's side.
     pub const fn delta(wi: Vec3, weight: Spectrum) -> Self {
         Self { weight, wi, pdf: 1.0, eta: 1.0, lobe: Lobe::DELTA }
@@ -108,8 +115,26 @@ pub trait Material: Send + Sync {
     /// A direction, `u` uniform in [0, 1)³. `None` when nothing is scattered.
     fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Sample>;
 
-    /// What it looks at here; the host leaves out the rest.
+    /// What it looks at here; the host leaves out the rest. All of it, unless you say otherwise: a
+    /// flag too many costs time, one too few is a wrong picture.
     fn needs(&self) -> Needs {
         Needs::ALL
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sample_of_a_density_weighs_its_quotient_and_one_without_is_none() {
+        let f = Spectrum::new(1.0, 0.5, 0.25, 0.0);
+        let found = Sample::of(Vec3::Z, Eval { f, pdf: 0.5 }).unwrap();
+        assert_eq!(found.weight.to_array(), [2.0, 1.0, 0.5, 0.0]);
+        assert_eq!((found.wi, found.pdf.to_bits()), (Vec3::Z, 0.5f32.to_bits()));
+        assert_eq!((found.eta.to_bits(), found.lobe), (1.0f32.to_bits(), Lobe::NONE));
+        for pdf in [0.0, -1.0, f32::NAN] {
+            assert_eq!(Sample::of(Vec3::Z, Eval { f, pdf }), None);
+        }
     }
 }

@@ -349,8 +349,9 @@ impl Draft {
             _ => return Err(format!("`{}` cannot be textured", param.name)),
         };
         let uplift = match (self.mode, target, param.role) {
-            (ColorMode::Rgb, ..) => Uplift::None,
-            (_, Target::Float | Target::Luminance(_) | Target::Vec3, _) => Uplift::None,
+            (ColorMode::Rgb, ..) | (_, Target::Float | Target::Luminance(_) | Target::Vec3, _) => {
+                Uplift::None
+            }
             (_, _, Role::Illuminant) => Uplift::Illuminant,
             _ => Uplift::Reflectance,
         };

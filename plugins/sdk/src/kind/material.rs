@@ -130,7 +130,8 @@ mod tests {
     fn a_sample_of_a_density_weighs_its_quotient_and_one_without_is_none() {
         let f = Spectrum::new(1.0, 0.5, 0.25, 0.0);
         let found = Sample::of(Vec3::Z, Eval { f, pdf: 0.5 }).unwrap();
-        assert_eq!(found.weight.to_array(), [2.0, 1.0, 0.5, 0.0]);
+        let expected = Spectrum::new(2.0, 1.0, 0.5, 0.0);
+        assert_eq!(found.weight, expected);
         assert_eq!((found.wi, found.pdf.to_bits()), (Vec3::Z, 0.5f32.to_bits()));
         assert_eq!((found.eta.to_bits(), found.lobe), (1.0f32.to_bits(), Lobe::NONE));
         for pdf in [0.0, -1.0, f32::NAN] {

@@ -9,7 +9,8 @@ use super::node::{Block, Bounds, Child, Node};
 use super::partition::PART;
 use super::precision::Precision;
 use super::processor::{Processor, prefetch};
-use super::ray::{Direction, Line, Shear, Slabs, cull};
+use super::ray::{Direction, Line, Shear};
+use super::slabs::Slabs;
 use super::stack::{Room, Stack, is_enough_for};
 use super::triangle::Nearest;
 
@@ -147,7 +148,7 @@ impl MeshBvh {
             let steps = self.leaf::<ANY>(root, &probe, &mut best).1;
             return Begun::Over(self.found(&best, precision), steps);
         }
-        let slabs = Slabs::new(o, direction.d, self.reach, precision);
+        let slabs = Slabs::through_mesh(o, direction.d, self.reach, precision);
         Begun::Walk(MeshWalk { tree: self, probe, slabs, best, current: root, steps: 0 })
     }
 
@@ -224,7 +225,7 @@ pub enum Begun<'t> {
 pub struct MeshWalk<'t> {
     tree: &'t MeshBvh,
     probe: Probe,
-    slabs: Slabs,
+    slabs: Slabs<f32>,
     best: Nearest,
     current: Child,
     /// Nodes and triangle blocks looked at so far.
@@ -251,13 +252,13 @@ impl MeshWalk<'_> {
             processor.enter(&self.slabs, node, self.best.t, stack);
             self.steps += 1;
         }
-        while let Some((child, t)) = stack.pop() {
-            if t <= cull(self.best.t) {
+        match stack.pop_within(self.best.t) {
+            Some((child, _)) => {
                 self.current = child;
-                return false;
+                false
             }
+            None => true,
         }
-        true
     }
 
     /// Asks for the memory of the next step.

@@ -12,6 +12,7 @@ mod node;
 mod precision;
 mod processor;
 mod ray;
+mod slabs;
 mod stack;
 mod triangle;
 

@@ -2,6 +2,8 @@
 
 use glam::{Vec3, Vec4};
 
+use super::slabs::Boxes;
+
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
 
@@ -127,14 +129,8 @@ impl Order {
     }
 }
 
-/// Eight boxes by coordinate: `planes[axis][0]` holds their minima, `[1]` their maxima.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Node {
-    pub(super) planes: [[[f32; WIDTH]; 2]; 3],
-    pub(super) children: [Child; WIDTH],
-    pub(super) order: Order,
-}
+/// Eight boxes around triangles.
+pub(super) type Node = Boxes<f32>;
 
 impl Node {
     /// A node over 1..=8 slots; those that are left over have empty boxes, which no ray enters.

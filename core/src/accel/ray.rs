@@ -1,19 +1,11 @@
-//! A ray made ready for a mesh tree: the robust box test.
+//! A ray made ready for a mesh tree.
 //!
-//! Source: PBR4 §6.8.2 (slabs) with the bound of §6.8.3; Woop, Benthin and Wald 2013 (the shear).
+//! Source: Woop, Benthin and Wald 2013 (the shear).
 
 use glam::{DVec3, Vec3};
 
-use super::node::{Node, WIDTH};
 use super::precision::Precision;
-use super::stack::Stack;
-
-/// Unit roundoff of f32.
-const U: f32 = f32::EPSILON / 2.0;
-
-/// 1 + 2γ(3): each slab distance has three roundings (subtraction, reciprocal, product), so a far
-/// plane this much farther is never before a near plane that it touches.
-pub(super) const FAR: f32 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f32::EPSILON;
+use super::slabs::Slabs;
 
 /// A direction in the frame of meshes, made ready for their triangles: once per ray and frame.
 ///
@@ -104,73 +96,20 @@ impl Shear {
     }
 }
 
-/// The same ray, as the box test wants it.
-#[derive(Debug)]
-pub(super) struct Slabs {
-    /// Origins for the near and the far planes: `o` moved apart by the slack of [`Slabs::new`].
-    pub(super) near_o: [f32; 3],
-    pub(super) far_o: [f32; 3],
-    pub(super) rdir: [f32; 3],
-    /// Which plane of each axis is entered first, 0 or 1.
-    pub(super) near: [usize; 3],
-    /// One bit per negative component.
-    pub(super) octant: usize,
-}
-
-impl Slabs {
+impl Slabs<f32> {
     /// A finite origin and a finite, non-zero direction whose largest component is neither tiny nor
     /// huge; `reach` is the largest |coordinate| of the mesh.
     ///
     /// The triangle test shifts each vertex by at most 7u·(|o| + |p|) in the shear plane (u the
     /// unit roundoff: two subtractions, a shear factor of two roundings, a product, and again a
     /// subtraction). Boxes widened by 8u·(|o| + |p|) therefore hold every triangle the test
-    /// accepts; widening is moving the origin, once per ray. Without a promise it is not moved.
+    /// accepts. Without a promise they are not widened.
     #[inline(always)]
-    pub(super) fn new(o: Vec3, d: Vec3, reach: f32, precision: Precision) -> Self {
+    pub(super) fn through_mesh(o: Vec3, d: Vec3, reach: f32, precision: Precision) -> Self {
         let slack = match precision {
             Precision::Fast => 0.0,
-            _ => 8.0 * U * (o.abs().max_element() + reach),
+            _ => 4.0 * f32::EPSILON * (o.abs().max_element() + reach),
         };
-        let rdir = d.recip();
-        let sign = |c: f32| usize::from(c.is_sign_negative());
-        let near = [sign(d.x), sign(d.y), sign(d.z)];
-        let apart = slack * Vec3::ONE.copysign(d);
-        Self {
-            near_o: (o + apart).to_array(),
-            far_o: (o - apart).to_array(),
-            rdir: rdir.to_array(),
-            near,
-            octant: near[0] | near[1] << 1 | near[2] << 2,
-        }
+        Self::new(o.to_array(), d.to_array(), slack)
     }
-
-    /// Puts the children that the ray enters at or before `t_max` on the stack, the nearest last.
-    ///
-    /// A direction component of zero makes infinities, and NaN where the origin lies in a plane: a
-    /// slab with a NaN does not cut.
-    #[inline(always)]
-    pub(super) fn enter(&self, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
-        let mut t_near = [0.0; WIDTH];
-        let mut t_far = [t_max; WIDTH];
-        for axis in 0..3 {
-            let side = self.near[axis] & 1;
-            let (near, far) = (&node.planes[axis][side], &node.planes[axis][side ^ 1]);
-            for lane in 0..WIDTH {
-                let enter = (near[lane] - self.near_o[axis]) * self.rdir[axis];
-                let leave = (far[lane] - self.far_o[axis]) * self.rdir[axis];
-                t_near[lane] = if enter > t_near[lane] { enter } else { t_near[lane] };
-                t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
-            }
-        }
-        for slot in node.order.far_to_near(self.octant) {
-            let entered = t_near[slot] <= t_far[slot] * FAR;
-            stack.push_if(entered, node.children[slot], t_near[slot]);
-        }
-    }
-}
-
-/// The parameter at which a subtree may be skipped when the best hit is at `t`: see [`FAR`].
-#[inline(always)]
-pub(super) fn cull(t: f32) -> f32 {
-    t * FAR
 }

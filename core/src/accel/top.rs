@@ -1,7 +1,6 @@
 //! The boxes of placements, in f64.
 //!
-//! The slab test is that of [`super::ray`] in double precision; boxes are given by the caller, who
-//! makes them hold what they stand for.
+//! Boxes are given by the caller, who makes them hold what they stand for.
 
 use glam::{DVec3, Vec3};
 
@@ -10,13 +9,11 @@ use super::collapse::{Costs, Sink, collapse};
 use super::node::{Bounds, Child, Order, WIDTH, narrow};
 use super::partition::Prim;
 use super::processor::Processor;
+use super::slabs::{Boxes, Slabs};
 use super::stack::{Stack, is_enough_for};
 
 /// Unit roundoff of f64.
 const U: f64 = f64::EPSILON / 2.0;
-
-/// 1 + 2γ(3), see PBR4 §6.8.3.
-pub(super) const FAR: f64 = 1.0 + 2.0 * (3.0 * U / (1.0 - 3.0 * U)) + f64::EPSILON;
 
 /// Visiting one placement costs several box tests.
 const COSTS: Costs = Costs { node: 1.0, block: 2.0, max_leaf: 1 };
@@ -28,13 +25,8 @@ pub struct TopBvh {
     root: Option<Child>,
 }
 
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct TopNode {
-    pub(super) planes: [[[f64; WIDTH]; 2]; 3],
-    pub(super) children: [Child; WIDTH],
-    pub(super) order: Order,
-}
+/// Eight boxes around placements.
+pub(super) type TopNode = Boxes<f64>;
 
 type Box64 = (DVec3, DVec3);
 
@@ -70,8 +62,9 @@ impl TopBvh {
     pub fn walk(&self, o: DVec3, d: DVec3, t_max: f64) -> TopWalk<'_> {
         let is_ray = o.is_finite() && d.is_finite() && d != DVec3::ZERO;
         let current = self.root.filter(|_| is_ray);
-        let (ray, t_max) = (TopRay::new(o, d), t_max.min(f64::MAX));
-        TopWalk { nodes: &self.nodes, ray, current, t_max }
+        // 8u·|o| wider, for the roundings of whoever carries the ray into a placement's frame.
+        let slabs = Slabs::new(o.to_array(), d.to_array(), 8.0 * U * o.abs().max_element());
+        TopWalk { nodes: &self.nodes, slabs, current, t_max: t_max.min(f64::MAX) }
     }
 }
 
@@ -79,7 +72,7 @@ impl TopBvh {
 #[derive(Debug)]
 pub struct TopWalk<'t> {
     nodes: &'t [TopNode],
-    ray: TopRay,
+    slabs: Slabs<f64>,
     /// The root, until it has been looked at.
     current: Option<Child>,
     /// Boxes that are entered farther away are passed. It may be made smaller at any time.
@@ -93,73 +86,13 @@ impl TopWalk<'_> {
     pub fn next(&mut self, processor: Processor, stack: &mut Stack<'_, f64>) -> Option<(u32, f64)> {
         let (mut current, mut t_enter) = match self.current.take() {
             Some(root) => (root, 0.0),
-            None => self.pop(stack)?,
+            None => stack.pop_within(self.t_max)?,
         };
         while !current.is_leaf() {
-            processor.enter_top(&self.ray, &self.nodes[current.index()], self.t_max, stack);
-            (current, t_enter) = self.pop(stack)?;
+            processor.enter_top(&self.slabs, &self.nodes[current.index()], self.t_max, stack);
+            (current, t_enter) = stack.pop_within(self.t_max)?;
         }
         Some((narrow(current.blocks().start), t_enter))
-    }
-
-    #[inline(always)]
-    fn pop(&self, stack: &mut Stack<'_, f64>) -> Option<(Child, f64)> {
-        loop {
-            let top = stack.pop()?;
-            if top.1 <= self.t_max * FAR {
-                return Some(top);
-            }
-        }
-    }
-}
-
-#[derive(Debug)]
-pub(super) struct TopRay {
-    pub(super) near_o: [f64; 3],
-    pub(super) far_o: [f64; 3],
-    pub(super) rdir: [f64; 3],
-    pub(super) near: [usize; 3],
-    pub(super) octant: usize,
-}
-
-impl TopRay {
-    /// Widens every box by 8u·|o|, for the roundings of whoever carries the ray into a placement's
-    /// frame.
-    #[inline(always)]
-    fn new(o: DVec3, d: DVec3) -> Self {
-        let slack = 8.0 * U * o.abs().max_element();
-        let sign = |c: f64| usize::from(c.is_sign_negative());
-        let near = [sign(d.x), sign(d.y), sign(d.z)];
-        let apart = slack * DVec3::ONE.copysign(d);
-        Self {
-            near_o: (o + apart).to_array(),
-            far_o: (o - apart).to_array(),
-            rdir: d.recip().to_array(),
-            near,
-            octant: near[0] | near[1] << 1 | near[2] << 2,
-        }
-    }
-
-    /// Puts the children that the ray enters at or before `t_max` on the stack, the nearest last. A
-    /// slab that gives NaN (a parallel ray within its plane) does not cut.
-    #[inline(always)]
-    pub(super) fn enter(&self, node: &TopNode, t_max: f64, stack: &mut Stack<'_, f64>) {
-        let mut t_near = [0.0; WIDTH];
-        let mut t_far = [t_max; WIDTH];
-        for axis in 0..3 {
-            let side = self.near[axis] & 1;
-            let (near, far) = (&node.planes[axis][side], &node.planes[axis][side ^ 1]);
-            for lane in 0..WIDTH {
-                let enter = (near[lane] - self.near_o[axis]) * self.rdir[axis];
-                let leave = (far[lane] - self.far_o[axis]) * self.rdir[axis];
-                t_near[lane] = if enter > t_near[lane] { enter } else { t_near[lane] };
-                t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
-            }
-        }
-        for slot in node.order.far_to_near(self.octant) {
-            let entered = t_near[slot] <= t_far[slot] * FAR;
-            stack.push_if(entered, node.children[slot], t_near[slot]);
-        }
     }
 }
 
@@ -224,6 +157,7 @@ impl Sink for TopSink<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::slabs::Real;
     use super::super::soup::Rng;
     use super::super::stack::Room;
     use super::*;
@@ -306,7 +240,7 @@ mod tests {
             walk(Processor::widest(), &tree, (o, d), 1e9, |index, t_enter, t_max| {
                 if let Some(t) = slab(boxes[index as usize], o, d, t_max) {
                     // Three roundings on either side, and the slack of the origin.
-                    assert!(t_enter <= t * FAR, "{t_enter} {t}");
+                    assert!(t_enter <= t * <f64 as Real>::FAR, "{t_enter} {t}");
                     found = found.min(t);
                 }
                 Some(found.min(t_max))

@@ -8,7 +8,7 @@ use std::arch::x86_64::{
 };
 
 use crate::accel::node::{Child, Node};
-use crate::accel::ray::{FAR, Slabs};
+use crate::accel::slabs::{Real, Slabs};
 use crate::accel::stack::Stack;
 
 /// Where each slot starts in the bits of an order.
@@ -43,7 +43,7 @@ impl Ordered {
     /// `min` and `max` give their second operand if either is NaN, so that slab does not cut.
     #[inline]
     #[target_feature(enable = "avx2")]
-    pub(super) fn of(ray: &Slabs, node: &Node, t_max: f32) -> Self {
+    pub(super) fn of(ray: &Slabs<f32>, node: &Node, t_max: f32) -> Self {
         let mut t_near = _mm256_setzero_ps();
         let mut t_far = _mm256_set1_ps(t_max);
         for axis in 0..3 {
@@ -54,7 +54,7 @@ impl Ordered {
             t_near = _mm256_max_ps(_mm256_mul_ps(near, rdir), t_near);
             t_far = _mm256_min_ps(_mm256_mul_ps(far, rdir), t_far);
         }
-        t_far = _mm256_mul_ps(t_far, _mm256_set1_ps(FAR));
+        t_far = _mm256_mul_ps(t_far, _mm256_set1_ps(f32::FAR));
         let order = order(node.order.bits(ray.octant));
         Self {
             t_near: _mm256_permutevar8x32_ps(t_near, order),
@@ -67,7 +67,7 @@ impl Ordered {
 /// See [`Processor::enter`](super::Processor::enter).
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
-pub(super) fn enter(ray: &Slabs, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
+pub(super) fn enter(ray: &Slabs<f32>, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
     let Ordered { t_near, t_far, children } = Ordered::of(ray, node, t_max);
     let entered = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(t_near, t_far)) & 0xff;
     let first = &FIRST[entered.cast_unsigned() as usize];

@@ -10,14 +10,14 @@ use std::arch::x86_64::{
 
 use super::avx2::{Ordered, children, order};
 use crate::accel::node::Node;
-use crate::accel::ray::Slabs;
+use crate::accel::slabs::{Real, Slabs};
 use crate::accel::stack::Stack;
-use crate::accel::top::{FAR as FAR_TOP, TopNode, TopRay};
+use crate::accel::top::TopNode;
 
 /// See [`Processor::enter`](super::Processor::enter).
 #[inline]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,popcnt")]
-pub(super) fn enter(ray: &Slabs, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
+pub(super) fn enter(ray: &Slabs<f32>, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
     let Ordered { t_near, t_far, children } = Ordered::of(ray, node, t_max);
     let entered = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(t_near, t_far);
     let top = stack.top();
@@ -34,7 +34,7 @@ pub(super) fn enter(ray: &Slabs, node: &Node, t_max: f32, stack: &mut Stack<'_, 
 /// See [`Processor::enter_top`](super::Processor::enter_top).
 #[inline]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,popcnt")]
-pub(super) fn enter_top(ray: &TopRay, node: &TopNode, t_max: f64, stack: &mut Stack<'_, f64>) {
+pub(super) fn enter_top(ray: &Slabs<f64>, node: &TopNode, t_max: f64, stack: &mut Stack<'_, f64>) {
     let mut t_near = _mm512_setzero_pd();
     let mut t_far = _mm512_set1_pd(t_max);
     for axis in 0..3 {
@@ -45,7 +45,7 @@ pub(super) fn enter_top(ray: &TopRay, node: &TopNode, t_max: f64, stack: &mut St
         t_near = _mm512_max_pd(_mm512_mul_pd(near, rdir), t_near);
         t_far = _mm512_min_pd(_mm512_mul_pd(far, rdir), t_far);
     }
-    t_far = _mm512_mul_pd(t_far, _mm512_set1_pd(FAR_TOP));
+    t_far = _mm512_mul_pd(t_far, _mm512_set1_pd(f64::FAR));
     let order = order(node.order.bits(ray.octant));
     let wide_order = _mm512_cvtepu32_epi64(order);
     let t_near = _mm512_permutexvar_pd(wide_order, t_near);

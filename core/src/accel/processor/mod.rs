@@ -9,9 +9,9 @@ mod avx512;
 mod tests;
 
 use super::node::Node;
-use super::ray::Slabs;
+use super::slabs::Slabs;
 use super::stack::Stack;
-use super::top::{TopNode, TopRay};
+use super::top::TopNode;
 
 /// Work that is compiled for several processors. A closure would not do: the compiler decides
 /// whether that stands in its caller, and its caller is what says for which processor it is.
@@ -95,7 +95,13 @@ impl Processor {
     /// Puts the children of a node that the ray enters at or before `t_max` on the stack, the
     /// nearest last.
     #[inline(always)]
-    pub(super) fn enter(self, ray: &Slabs, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
+    pub(super) fn enter(
+        self,
+        ray: &Slabs<f32>,
+        node: &Node,
+        t_max: f32,
+        stack: &mut Stack<'_, f32>,
+    ) {
         match self.0 {
             Kind::Any => ray.enter(node, t_max, stack),
             #[cfg(target_arch = "x86_64")]
@@ -115,7 +121,7 @@ impl Processor {
     #[inline(always)]
     pub(super) fn enter_top(
         self,
-        ray: &TopRay,
+        ray: &Slabs<f64>,
         node: &TopNode,
         t_max: f64,
         stack: &mut Stack<'_, f64>,

@@ -114,7 +114,7 @@ fn a_watch_shows_a_new_build_and_keeps_the_last_one_that_opened() {
     assert_eq!(folder.read("out.exr"), first);
 
     let source = String::from_utf8(folder.read("reloaded/src/lib.rs")).unwrap();
-    let darker = source.replace("weight: self.reflectance", "weight: self.reflectance * 0.5");
+    let darker = source.replace("f: self.reflectance * pdf", "f: self.reflectance * (0.5 * pdf)");
     assert_ne!(darker, source);
     folder.write("reloaded/src/lib.rs", &darker);
     build(&folder, "reloaded");

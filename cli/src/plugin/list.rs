@@ -15,7 +15,7 @@ use crate::{load, report};
 ///
 /// Libraries are looked for in the folders of --plugin-dir, of `LUXEL_PLUGIN_PATH` and of `plugin_dirs`
 /// in config.toml, and opened only if plugins.lock lists their SHA-256. Those that are trusted but
-/// not found are listed too.
+/// not found are listed too. Both files are in your configuration folder: see luxel plugin trust --help.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Exit codes: 0 fine, 1 a trusted library cannot be used.

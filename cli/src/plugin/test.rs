@@ -17,7 +17,7 @@ use super::{apart, mutants};
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::isolate::{Beat, IsolateArgs, Phase};
-use crate::libraries::{Found, Plugins, Session, Surroundings, is_library, open_file};
+use crate::libraries::{Found, Plugins, Session, State, Surroundings, is_library, open_file};
 use crate::progress::duration;
 use crate::report::{Form, Stream};
 use crate::{list, load, report};
@@ -178,7 +178,11 @@ fn in_a_library(failure: Failure, words: &[String], plugins: &Plugins) -> Failur
         return failure;
     }
     let mut help: Vec<String> = failure.help.into_iter().collect();
-    help.extend(plugins.libraries.iter().filter_map(Found::advice));
+    // Of what is only listed in the lock, that which may have the plugin.
+    let listed = |state: &State| matches!(state, State::Elsewhere | State::Missing);
+    let told =
+        plugins.libraries.iter().filter(|found| found.stem == *name || !listed(&found.state));
+    help.extend(told.filter_map(Found::advice));
     let file = format!("target/release/{DLL_PREFIX}{name}{DLL_SUFFIX}");
     help.push(format!(
         "that of a library: luxel plugin test {file} {kind} {name}, or --plugin-dir with its folder"
@@ -241,7 +245,12 @@ fn summary(found: &Report, args: &Args) -> String {
         reasons.entry((kind, class, why)).or_default().push(check.as_ref());
     }
     for ((kind, class, why), checks) in reasons {
-        let _ = writeln!(text, "not judged: {kind} {class}, {}: {why}", checks.join(", "));
+        let told = if checks.len() <= MOST_CHECKS {
+            checks.join(", ")
+        } else {
+            count(checks.len(), "check", "checks")
+        };
+        let _ = writeln!(text, "not judged: {kind} {class}, {told}: {why}");
     }
     let classes: BTreeSet<_> = found.failed().map(|row| (row.kind, &row.class)).collect();
     for (kind, class) in classes {
@@ -249,6 +258,9 @@ fn summary(found: &Report, args: &Args) -> String {
     }
     text
 }
+
+/// Checks that are named together, at most: their rows name them all.
+const MOST_CHECKS: usize = 4;
 
 /// `1 class`, `2 classes`.
 pub(super) fn count(n: usize, one: &str, many: &str) -> String {

@@ -14,8 +14,9 @@ use crate::{list, report};
 /// Let plugin libraries run as you
 ///
 /// Opens each library, which runs its code, verifies what it offers, and writes its SHA-256 into
-/// plugins.lock in your configuration folder. A library is native code: it can do whatever you can.
-/// Its folder must be searched as well: see luxel plugin list --help.
+/// plugins.lock in your configuration folder: `$XDG_CONFIG_HOME/luxel`, else `~/.config/luxel` (macOS
+/// `~/Library/Application Support/luxel`, Windows `%APPDATA%\luxel`). A library is native code: it can do
+/// whatever you can. Its folder must be searched as well: see luxel plugin list --help.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:

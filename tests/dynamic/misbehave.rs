@@ -78,7 +78,7 @@ fn check_all(template: &str, who: &str, cases: &[(&str, &str)]) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-const FELL: &str = "fell over on purpose";
+const FELL: &str = "panicked: fell over on purpose";
 
 #[test]
 fn a_material_that_fails_ends_the_render() {
@@ -87,7 +87,7 @@ fn a_material_that_fails_ends_the_render() {
         ("prepare", FELL),
         ("other", FELL),
         ("eval", FELL),
-        ("bomb", "no message"),
+        ("bomb", "panicked: no message"),
         ("nan", "gave an eval that is negative or not finite"),
         ("negative", "gave an eval that is negative or not finite"),
         ("infinite", "gave an eval that is negative or not finite"),
@@ -124,7 +124,7 @@ fn a_texture_that_fails_ends_the_render() {
     check_all(&template, "texture", &cases);
     check_all(&template, "texture", &[("prepare", FELL)]);
     // Its table panics once more when it is freed.
-    check_all(&template, "texture", &[("bomb", "no message")]);
+    check_all(&template, "texture", &[("bomb", "panicked: no message")]);
     check(&template, "dangling", "nothing");
 }
 

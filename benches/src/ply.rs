@@ -21,7 +21,7 @@ light area { shape = shape sphere { center = (0, 5, 0) m, radius = 1 m }, radian
 /// # Errors
 /// A program failed; its words.
 pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
-    let ply = write("waves.ply", &grid())?;
+    let ply = write("waves.ply", &grid(SIDE))?;
     let empty = write("empty.scene", SCENE.as_bytes())?;
     let mesh = "shape mesh \"waves\" { file = \"waves.ply\", unit = 1 m }\n";
     let full = write("waves.scene", format!("{SCENE}{mesh}").as_bytes())?;
@@ -46,25 +46,25 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
     status.map(drop).map_err(|e| format!("{}: {e}", python.display()))
 }
 
-/// A wavy square as binary PLY.
-fn grid() -> Vec<u8> {
-    let n = 2 * (SIDE - 1) * (SIDE - 1);
+/// A wavy square of 2 m as binary PLY, with so many vertices along each side.
+pub(crate) fn grid(side: u32) -> Vec<u8> {
+    let n = 2 * (side - 1) * (side - 1);
     let header = format!(
         "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n\
          property float y\nproperty float z\nelement face {n}\n\
          property list uchar int vertex_indices\nend_header\n",
-        SIDE * SIDE
+        side * side
     );
     let mut bytes = header.into_bytes();
-    for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
-        let at = |k: u32| 2.0 * k as f32 / (SIDE - 1) as f32 - 1.0;
+    for (i, j) in (0..side).flat_map(|i| (0..side).map(move |j| (i, j))) {
+        let at = |k: u32| 2.0 * k as f32 / (side - 1) as f32 - 1.0;
         let (x, z) = (at(j), at(i));
         let y = 0.05 * (23.0 * x).sin() * (17.0 * z).cos();
         bytes.extend([x, y, z].into_iter().flat_map(f32::to_le_bytes));
     }
-    for (i, j) in (1..SIDE).flat_map(|i| (1..SIDE).map(move |j| (i, j))) {
-        let corner = i * SIDE + j;
-        let (left, above) = (corner - 1, corner - SIDE);
+    for (i, j) in (1..side).flat_map(|i| (1..side).map(move |j| (i, j))) {
+        let corner = i * side + j;
+        let (left, above) = (corner - 1, corner - side);
         for face in [[above - 1, left, corner], [above - 1, corner, above]] {
             bytes.push(3);
             bytes.extend(face.into_iter().flat_map(u32::to_le_bytes));

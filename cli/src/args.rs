@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::UVec2;
+use luxel_core::accel::Precision;
 use luxel_core::film::Rect;
 use luxel_core::render::Options;
 
@@ -18,6 +19,9 @@ pub(crate) struct LoadArgs {
     /// Let the scene read files below this folder too (its own folder is always allowed)
     #[arg(long, value_name = "DIR")]
     pub(crate) allow_path: Vec<PathBuf>,
+    /// How rays meet the triangles of meshes: fast, standard or exact [default: as the film says]
+    #[arg(long, value_name = "HOW", value_parser = precision)]
+    pub(crate) precision: Option<Precision>,
 }
 
 /// Where plugin libraries come from.
@@ -95,6 +99,10 @@ fn size(text: &str) -> Result<UVec2, String> {
         Some((Ok(w @ 1..=MAX_SIDE), Ok(h @ 1..=MAX_SIDE))) => Ok(UVec2::new(w, h)),
         _ => Err(format!("expected WIDTHxHEIGHT, each from 1 to {MAX_SIDE}, as in 640x480")),
     }
+}
+
+fn precision(text: &str) -> Result<Precision, String> {
+    Precision::of_word(text).ok_or_else(|| "expected fast, standard or exact".to_owned())
 }
 
 fn crop(text: &str) -> Result<Rect, String> {

@@ -83,6 +83,9 @@ pub(crate) fn load(
         if let (Some(scene), Some(size)) = (&mut scene, size) {
             scene.set_resolution(size);
         }
+        if let (Some(scene), Some(precision)) = (&mut scene, args.precision) {
+            scene.set_precision(precision);
+        }
         beat.phase(Phase::Building);
         let built = scene.as_ref().map(|scene| stage::build(scene, registry, &files, before));
         let stage = match built {

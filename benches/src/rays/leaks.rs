@@ -40,9 +40,9 @@ pub(crate) fn run(library: Option<&Library>, n: usize) {
     }
     println!();
     let build = |soup: &Soup| MeshBvh::build(&soup.points, &soup.indices).expect("it is finite");
-    for precision in [Precision::Fast, Precision::Standard, Precision::Exact] {
+    for precision in Precision::ALL {
         for processor in Processor::all() {
-            let name = format!("{precision:?}, {}", processor.name()).to_lowercase();
+            let name = format!("{}, {}", precision.word(), processor.name());
             let tracer = |soup: &Soup| Single { tree: build(soup), processor, precision };
             row(&name, &cases, |soup, shots| Some(count(&tracer(soup), shots)));
         }

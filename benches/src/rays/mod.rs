@@ -106,7 +106,7 @@ fn mesh(name: &str, soup: &Soup, eye: Vec3, library: Option<&libloading::Library
         runners.push(built(name, || single(processor, Precision::Standard)));
     }
     for precision in [Precision::Fast, Precision::Exact] {
-        let name = format!("luxel, {precision:?}").to_lowercase();
+        let name = format!("luxel, {}", precision.word());
         runners.push(built(name, || single(Processor::widest(), precision)));
     }
     let processor = Processor::widest();

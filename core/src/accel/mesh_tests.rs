@@ -122,8 +122,8 @@ fn every_precision_meets_the_same_triangles_away_from_edges() {
     let (mut hits, mut inner) = (0, 0);
     for _ in 0..3000 {
         let (o, d) = (rng.point(), rng.point());
-        let [fast, standard, exact] = [Precision::Fast, Precision::Standard, Precision::Exact]
-            .map(|precision| tree.shoot_with(precision, o, d, FAR).0);
+        let [fast, standard, exact] =
+            Precision::ALL.map(|precision| tree.shoot_with(precision, o, d, FAR).0);
         let Some(hit) = exact else { continue };
         hits += 1;
         // What is further inside than any rounding of single precision moves it.

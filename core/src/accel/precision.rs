@@ -15,3 +15,22 @@ pub enum Precision {
     /// Watertight in double precision, and hits with it.
     Exact,
 }
+
+impl Precision {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Fast, Self::Standard, Self::Exact];
+
+    /// As a scene writes it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Standard => "standard",
+            Self::Exact => "exact",
+        }
+    }
+
+    /// The one that is written so.
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|precision| precision.word() == word)
+    }
+}

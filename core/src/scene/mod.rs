@@ -14,6 +14,7 @@ use std::sync::Arc;
 use glam::{DAffine3, UVec2};
 use luxel_sdk::kind::Kind;
 
+use crate::accel::Precision;
 use crate::diag::{SourceId, Span};
 use crate::registry::common_params;
 
@@ -137,6 +138,15 @@ impl Scene {
 
     /// Gives the film another size, in pixels; a scene without a film gets one.
     pub fn set_resolution(&mut self, size: UVec2) {
+        self.set_film("resolution", Value::Vector(size.as_dvec2().to_array().to_vec()));
+    }
+
+    /// Replaces how rays meet the triangles of meshes.
+    pub fn set_precision(&mut self, precision: Precision) {
+        self.set_film("precision", Value::Text(precision.word().into()));
+    }
+
+    fn set_film(&mut self, name: &'static str, value: Value) {
         let span = Span::new(SourceId(0), 0, 0);
         let old = self.film.map(|id| self.node(id).clone());
         let mut film = old.unwrap_or_else(|| Node {
@@ -148,9 +158,8 @@ impl Scene {
             span,
             hash: [0; 32],
         });
-        film.params.retain(|argument| argument.name != "resolution");
-        let value = Value::Vector(size.as_dvec2().to_array().to_vec());
-        film.params.push(Argument { name: "resolution", value, span });
+        film.params.retain(|argument| argument.name != name);
+        film.params.push(Argument { name, value, span });
         self.film = Some(self.add(film));
     }
 
@@ -223,12 +232,17 @@ mod tests {
     }
 
     #[test]
-    fn a_resolution_that_is_set_replaces_the_films() {
+    fn what_is_set_replaces_the_films() {
         let mut scene = camera("a", 0.05);
         for size in [UVec2::new(3, 4), UVec2::new(5, 6)] {
             scene.set_resolution(size);
             let film = scene.film.map(|id| scene.node(id));
             assert_eq!(crate::stage::Film::of_node(film).resolution, size);
+        }
+        for precision in [Precision::Exact, Precision::Fast] {
+            scene.set_precision(precision);
+            let film = crate::stage::Film::of_node(scene.film.map(|id| scene.node(id)));
+            assert_eq!((film.precision, film.resolution), (precision, UVec2::new(5, 6)));
         }
     }
 }

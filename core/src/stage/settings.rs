@@ -83,11 +83,7 @@ impl Film {
                     };
                 }
                 ("precision", Value::Text(word)) => {
-                    film.precision = match &**word {
-                        "fast" => Precision::Fast,
-                        "exact" => Precision::Exact,
-                        _ => Precision::Standard,
-                    };
+                    film.precision = Precision::of_word(word).unwrap_or_default();
                 }
                 ("file", Value::Text(name)) => film.file = Some(name.to_string()),
                 _ => {}

@@ -37,7 +37,7 @@ fn every_copy_gives_the_same_bits() {
     let (points, indices) = soup(3000, 0.1, &mut rng);
     let tree = MeshBvh::build(&points, &indices).unwrap();
     let rays: Vec<_> = (0..5000).map(|_| (rng.point() * 2.0, rng.point())).collect();
-    for precision in [Precision::Fast, Precision::Standard, Precision::Exact] {
+    for precision in Precision::ALL {
         let found_by = |processor: Processor| {
             let mut found = vec![];
             processor.run(Shots { tree: &tree, rays: &rays, precision, found: &mut found });

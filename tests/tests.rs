@@ -13,6 +13,8 @@ mod dynamic;
 #[cfg(test)]
 mod disk;
 #[cfg(test)]
+mod extremes;
+#[cfg(test)]
 mod house;
 #[cfg(test)]
 mod load;

@@ -183,8 +183,8 @@ fn a_shape_that_fails_ends_the_render() {
         ("sample_zero", "gave a sample whose density is not positive and finite"),
         ("sample_nan", point),
         ("second", FELL),
-        ("greedy", "gave an area that is negative or not finite"),
-        ("foreign", "gave an area that is negative or not finite"),
+        ("greedy", "gave an area that is negative or no number"),
+        ("foreign", "gave an area that is negative or no number"),
     ];
     check_all(&[CAMERA, FILM, FLOOR, &lamp].concat(), "shape", &cases);
 }

@@ -573,7 +573,7 @@ typedef struct {
     luxel_status (*intersect)(const void *at, const luxel_ray *ray, luxel_hit *out);
     /* The point that a hit names. */
     luxel_status (*surface)(const void *at, const luxel_ray *ray, const luxel_hit *hit, luxel_surface *out);
-    /* Area in the frame of the shape, m². */
+    /* Area in the frame of the shape, m²; infinite for one without end. */
     luxel_status (*area)(const void *at, double *out);
     /* A point of the surface; `from` may be null. */
     luxel_status (*sample)(const void *at, const luxel_dvec3 *from, const float (*u)[2], luxel_shape_sample *out);

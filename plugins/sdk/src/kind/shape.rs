@@ -106,7 +106,7 @@ pub trait Shape: Send + Sync {
     /// The point that a hit names.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
 
-    /// Area in the frame of the shape, m².
+    /// Area in the frame of the shape, m²; infinite for one without end, which cannot shine.
     fn area(&self) -> f64;
 
     /// A point, `u` uniform in [0, 1)². With `from`, the shape may prefer what is seen from there.

@@ -46,7 +46,7 @@ table! {
         fn intersect(shape, ray: &Ray) -> Hit { shape.intersect(ray) }
         /// The point that a hit names.
         fn surface(shape, ray: &Ray, hit: &Hit) -> Surface { Some(shape.surface(ray, hit)) }
-        /// Area in the frame of the shape, m².
+        /// Area in the frame of the shape, m²; infinite for one without end.
         fn area(shape) -> f64 { Some(shape.area()) }
         /// A point of the surface; `from` may be null.
         fn sample(shape, from: Option<&DVec3>, u: &[f32; 2]) -> ShapeSample {

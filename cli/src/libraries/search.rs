@@ -171,9 +171,9 @@ mod tests {
             dirs: vec![folder.path("a"), "src".into(), "none".into()],
             ..Default::default()
         };
-        let plugin_path = Some(std::ffi::OsString::from(".:/usr/none::lib:/tmp"));
+        let plugin_path = Some(std::ffi::OsString::from(".:/usr/none::lib:/usr"));
         let surroundings = Surroundings { folder: None, plugin_path };
-        let config = Config { plugin_dirs: vec!["plugins".into(), "/tmp/".into()] };
+        let config = Config { plugin_dirs: vec!["plugins".into(), "/usr/".into()] };
         let mut notes = Notes::default();
         let found = folders(&args, &surroundings, &config, &mut notes);
         assert!(found.iter().all(|folder| folder.is_absolute()), "{found:?}");

@@ -16,7 +16,7 @@ const TURNS: usize = 8;
 
 /// Bytes of trees from which on rays wait for memory so much that taking turns pays: what a core
 /// keeps beside it. Below, one by one is faster by what it costs to turn.
-const NEAR: usize = 1 << 20;
+const CACHE_BYTES: usize = 1 << 20;
 
 /// Room for the rays that take turns, made once.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ impl Stage {
             Geometry::Analytic(_) => 0,
             Geometry::Mesh(mesh) => mesh.bytes(),
         };
-        self.geometries.iter().map(|geometry| bytes(geometry)).sum::<usize>() > NEAR
+        self.geometries.iter().map(|geometry| bytes(geometry)).sum::<usize>() > CACHE_BYTES
     }
 
     /// The nearest surface along each ray and how many nodes and primitives were looked at, given

@@ -202,15 +202,16 @@ impl Mesh {
         // sum of three products and that rounding (PBR4 §6.8.5). The triangle test shears all axes
         // into each other, so each axis takes the error of the largest: a plane through the centre
         // has none of its own, and rays would meet the triangle that they leave. In double precision
-        // the origin is not rounded again, but the test shears what the world's coordinates round.
+        // the point rounds five times and the test shifts corners by 7u·(|o| + |p|) on either side
+        // of it: γ(19). What is far from the frame's origin rounds on the way to the centre and back,
+        // and as the ray is taken up: γ(4).
         let spread =
             a.abs() * weights[0].abs() + b.abs() * weights[1].abs() + c.abs() * weights[2].abs();
         let p = about + mesh.centre;
         let p_err = match precision {
-            Precision::Exact => {
-                let sheared = spread.max_element() + p.abs().max_element();
-                DVec3::splat(sheared * gamma64(10))
-            }
+            Precision::Exact => DVec3::splat(
+                spread.max_element() * gamma64(19) + p.abs().max_element() * gamma64(4),
+            ),
             _ => spread.max_element() * f64::from(gamma32(7)) + p.abs() * f64::EPSILON,
         };
         let (ng, _) = unit_and_length((b - a).cross(c - a));

@@ -37,4 +37,4 @@ pub use precision::Precision;
 pub use processor::{Processor, Work};
 pub use ray::Direction;
 pub use stack::{Room, Stack};
-pub use top::{TopBvh, TopWalk};
+pub use top::{Box64, TopBvh, TopWalk};

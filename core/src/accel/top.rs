@@ -28,7 +28,8 @@ pub struct TopBvh {
 /// Eight boxes around placements.
 pub(super) type TopNode = Boxes<f64>;
 
-type Box64 = (DVec3, DVec3);
+/// A box in the world: its least and its greatest corner.
+pub type Box64 = (DVec3, DVec3);
 
 impl TopBvh {
     /// Builds the tree over boxes given as their corners (minimum, maximum), in metres.

@@ -14,7 +14,7 @@ use luxel_sdk::kind::{
     Texture, TexturePoint,
 };
 
-use luxel_sdk::params::{BuildContext, Fault};
+use luxel_sdk::params::{BuildContext, ComplexIor, Fault, Kind, Param, Role, Type};
 
 use super::Object;
 use super::block::Chunk;
@@ -148,6 +148,62 @@ impl Object {
 
     #[inline(never)]
     fn resolve_varying<'a>(&'a self, at: &Site<'_>, scratch: &'a Scratch) -> Resolved<'a> {
+        let write = self.fill(at, scratch);
+        self.prepared(write)
+    }
+
+    /// Its parameters at a point, where what lies around the shape has the index of refraction
+    /// `around`: its own indices are told relative to that.
+    #[inline(never)]
+    pub fn resolve_within<'a>(
+        &'a self,
+        at: &Site<'_>,
+        scratch: &'a Scratch,
+        around: Spectrum,
+    ) -> Resolved<'a> {
+        let write = self.fill(at, scratch);
+        for param in self.indices() {
+            match param.ty {
+                Type::Spectrum => write.change(param.offset, |ior: Spectrum| ior / around),
+                Type::ComplexIor => write.change(param.offset, |ior: ComplexIor| ComplexIor {
+                    eta: ior.eta / around,
+                    k: ior.k / around,
+                }),
+                _ => write.change(param.offset, |ior: f32| ior / around.lane(0)),
+            }
+        }
+        self.prepared(write)
+    }
+
+    /// Its index of refraction at a point, if it lets light in.
+    pub fn index(&self, at: &Site<'_>, scratch: &Scratch) -> Option<Spectrum> {
+        let param = self.indices().find(|param| param.role == Role::Ior)?;
+        let write = self.fill(at, scratch);
+        Some(match param.ty {
+            Type::Spectrum => write.get(param.offset),
+            _ => Spectrum::splat(write.get(param.offset)),
+        })
+    }
+
+    /// Whether it is a material that lets light in, and bends it.
+    pub fn bends(&self) -> bool {
+        self.indices().any(|param| param.role == Role::Ior)
+    }
+
+    /// Whether it is a material to which it matters what lies around a shape.
+    pub fn has_index(&self) -> bool {
+        self.indices().next().is_some()
+    }
+
+    /// A material's own parameters that count relative to what lies around a shape.
+    fn indices(&self) -> impl Iterator<Item = &Param> {
+        let is_material = self.class.kind == Kind::Material;
+        let is_index = |param: &&Param| matches!(param.role, Role::Ior | Role::ComplexIor);
+        self.class.params.iter().filter(move |_| is_material).filter(is_index)
+    }
+
+    /// A copy of its parameters with those that vary filled in, not prepared yet.
+    fn fill(&self, at: &Site<'_>, scratch: &Scratch) -> Writer {
         let base = scratch.copy(self.template.chunks());
         let write = Writer { base, size: self.class.size };
         self.fill_curves(write, at.palette);
@@ -159,6 +215,11 @@ impl Object {
             let child = patch.child.resolve(at, scratch);
             write.put(patch.offset, child.handle());
         }
+        write
+    }
+
+    /// The filled copy, its derived fields computed.
+    fn prepared(&self, Writer { base, .. }: Writer) -> Resolved<'_> {
         if let Some(prepare) = self.class.prepare {
             // SAFETY: `base` is a valid struct of this class that no one else refers to.
             unsafe { prepare(base) };
@@ -195,6 +256,18 @@ impl Writer {
         let at = unsafe { self.base.add(offset) };
         // SAFETY: the schema says that a `T` stands there; no one else refers to the struct.
         unsafe { at.cast::<T>().write_unaligned(value) }
+    }
+
+    fn get<T: Copy>(self, offset: usize) -> T {
+        assert!(offset + size_of::<T>() <= self.size, "a field outside its struct");
+        // SAFETY: inside the struct, as just asserted.
+        let at = unsafe { self.base.add(offset) };
+        // SAFETY: the schema says that a `T` stands there, and the copy is filled.
+        unsafe { at.cast::<T>().read_unaligned() }
+    }
+
+    fn change<T: Copy>(self, offset: usize, change: impl Fn(T) -> T) {
+        self.put(offset, change(self.get(offset)));
     }
 }
 

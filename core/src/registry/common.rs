@@ -22,7 +22,20 @@ const fn handle(name: &'static str, kind: Kind, doc: &'static str) -> Param {
     }
 }
 
+const PRIORITY: Param = Param {
+    ty: Type::Int,
+    default: Preset::Numbers([0.0; 4]),
+    min: 0.0,
+    max: 1e6,
+    ..handle(
+        "priority",
+        Kind::Shape,
+        "Which counts where refracting shapes or media overlap: the highest; among equals the smaller.",
+    )
+};
+
 const SHAPE: &[Param] = &[
+    PRIORITY,
     handle("material", Kind::Material, "How the surface scatters; a group's material if absent."),
     handle("interior", Kind::Medium, "What fills a closed shape."),
 ];

@@ -11,7 +11,7 @@ use luxel_sdk::num::{Frame, Ray, offset_origin, unit_and_length};
 use super::path::{Path, Standing};
 use crate::cast::narrow;
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Origin, SceneHit, Seen, Skin, Stage};
+use crate::stage::{Crossing, Origin, SceneHit, Seen, Skin, Stage};
 
 /// What is needed to shade: borrowed for one arrival.
 pub(super) struct Shader<'a, 's> {
@@ -75,12 +75,35 @@ impl Shader<'_, '_> {
         }
     }
 
-    /// The ray met a surface.
+    /// The ray met a surface, and paths need not know what they are in.
     #[inline(always)]
-    pub(super) fn surface(mut self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
+    pub(super) fn surface(self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
+        let numbers = Numbers::draw(self.stage, self.wants, self.samples);
+        let surface = self.stage.surface(ray, hit);
+        self.meets((ray, hit, steps), &surface, &numbers, at);
+    }
+
+    /// The ray met a surface beyond which it would be in something else.
+    pub(super) fn boundary(
+        self,
+        (ray, hit, steps): (&Ray, &SceneHit, u32),
+        crossing: &Crossing,
+        at: &mut Arrival,
+    ) {
+        self.path.beyond = crossing.beyond;
+        let numbers = Numbers::draw(self.stage, self.wants, self.samples);
+        self.meets((ray, hit, steps), &crossing.surface, &numbers, at);
+    }
+
+    #[inline(always)]
+    fn meets(
+        mut self,
+        (ray, hit, steps): (&Ray, &SceneHit, u32),
+        surface: &Surface,
+        numbers: &Numbers,
+        at: &mut Arrival,
+    ) {
         let stage = self.stage;
-        let numbers = Numbers::draw(stage, self.wants, self.samples);
-        let surface = stage.surface(ray, hit);
         let placement = &stage.placements[hit.placement as usize];
         let wo = -ray.d;
         begin(at, ArrivalKind::Surface, ray, hit.hit.t, steps);
@@ -92,7 +115,7 @@ impl Shader<'_, '_> {
             let from = self.path.from;
             let palette = &self.path.palette;
             let (le, pdf) =
-                stage.surface_emission(placement, &surface, (from, wo), palette, self.scratch);
+                stage.surface_emission(placement, surface, (from, wo), palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
         self.path.from = surface.p;
@@ -100,7 +123,7 @@ impl Shader<'_, '_> {
         self.path.on = Some(Standing { leaving: hit.into(), ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
-            self.scatter(at, &surface, &numbers);
+            self.scatter(at, hit.placement, surface, numbers);
         } else {
             at.sight.given = false;
         }
@@ -108,16 +131,28 @@ impl Shader<'_, '_> {
 
     /// The light sample and the scattering sample at a surface.
     #[inline(always)]
-    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, numbers: &Numbers) {
+    fn scatter(&mut self, at: &mut Arrival, place: u32, surface: &Surface, numbers: &Numbers) {
         if self.wants.0 & SHADED.0 == 0 {
             return;
         }
-        self.scratch.reset();
         let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette };
+        let around = self.stage.features.nested.then(|| {
+            let (here, beyond) = (&self.path.media, &self.path.beyond);
+            self.stage.index_around((here, beyond), place, &site, self.scratch)
+        });
+        self.scratch.reset();
         let scratch: &Scratch = self.scratch;
         let object = &self.stage.materials[at.material as usize];
-        let material = object.resolve(&site, scratch).material();
-        let needs = object.needs().unwrap_or_else(|| material.needs());
+        let (material, needs) = match around {
+            None => {
+                let material = object.resolve(&site, scratch).material();
+                (material, object.needs().unwrap_or_else(|| material.needs()))
+            }
+            Some(index) => {
+                let material = object.resolve_within(&site, scratch, index).material();
+                (material, material.needs())
+            }
+        };
         let local = Local::new(at.wo, at, surface, needs);
         if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
             let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };

@@ -24,6 +24,8 @@ pub(super) struct Path {
     pub(super) on: Option<Standing>,
     /// The media around it, on the side it came from.
     pub(super) media: MediumStack,
+    /// What it would be in beyond that surface.
+    pub(super) beyond: MediumStack,
 }
 
 /// A surface that a path stands on: enough to know which side a ray leaves to.
@@ -39,7 +41,8 @@ impl Path {
     /// No path yet.
     pub(super) fn new(stage: &Stage) -> Self {
         let (palette, media) = (Palette::rgb(), stage.camera_media);
-        Self { job: 0, weight: 0.0, palette, ended: false, from: DVec3::ZERO, on: None, media }
+        let (from, beyond) = (DVec3::ZERO, media);
+        Self { job: 0, weight: 0.0, palette, ended: false, from, on: None, media, beyond }
     }
 
     /// A path begins at the camera; `u` chooses the wavelengths, if there are any.
@@ -49,7 +52,7 @@ impl Path {
         }
         (self.job, self.weight, self.from) = (job, found.weight, found.ray.o);
         (self.ended, self.on) = (false, None);
-        if stage.features.media {
+        if stage.features.is_tracked() {
             self.media = stage.camera_media;
         }
     }
@@ -57,7 +60,7 @@ impl Path {
     /// A path begins at a light; its wavelengths are chosen already.
     pub(super) fn start_at_light(&mut self, job: u32, found: &Emitted) {
         (self.job, self.weight, self.from) = (job, 1.0, found.ray.o);
-        (self.ended, self.media) = (false, found.media);
+        (self.ended, self.media, self.beyond) = (false, found.media, found.media);
         self.on = found.lamp.map(|lamp| {
             let ng = lamp.surface.ng;
             Standing { leaving: lamp.leaving, ng, outside: found.ray.d.dot(ng) > 0.0 }
@@ -69,16 +72,12 @@ impl Path {
         self.on.map(|on| on.leaving)
     }
 
-    /// The media around a ray that leaves from here.
-    pub(super) fn media_along(&self, ray: &Ray, stage: &Stage) -> MediumStack {
-        let mut media = self.media;
-        if stage.features.media
-            && let Some(on) = self.on
-            && (ray.d.dot(on.ng) > 0.0) != on.outside
-        {
-            stage.cross(&mut media, on.leaving.placement, ray.d, on.ng);
+    /// What a ray that leaves from here is in.
+    pub(super) fn media_along(&self, ray: &Ray) -> MediumStack {
+        match self.on {
+            Some(on) if (ray.d.dot(on.ng) > 0.0) != on.outside => self.beyond,
+            _ => self.media,
         }
-        media
     }
 
     /// What a dispersive refraction leaves of the lanes: the first stands for all four.

@@ -7,10 +7,10 @@ use luxel_sdk::num::{Ray, offset_origin};
 use super::path::Path;
 use crate::accel::Processor;
 use crate::object::{Scratch, Site};
-use crate::stage::{Leaving, Skin, Stage};
+use crate::stage::{Leaving, Stage};
 
 /// The fraction of light that passes along a ray that is not occluded: less through media. Surfaces
-/// that are only the boundary of a medium are passed.
+/// that rays pass are passed. Where shapes may be nested, the ray may be occluded yet.
 pub(super) fn passes(
     processor: Processor,
     stage: &Stage,
@@ -19,15 +19,15 @@ pub(super) fn passes(
     samples: &mut Samples<'_>,
     scratch: &mut Scratch,
 ) -> Spectrum {
-    if !stage.features.media && !stage.features.open_surfaces {
+    if !stage.features.media && !stage.features.is_open() {
         return Spectrum::ONE;
     }
-    let mut media = path.media_along(ray, stage);
+    let mut media = path.media_along(ray);
     let mut from = path.leaving();
     let mut left = Spectrum::ONE;
     let mut ray = *ray;
     loop {
-        let open = stage.features.open_surfaces;
+        let open = stage.features.is_open();
         let hit = if open { stage.intersect(processor, &ray, from, &mut 0) } else { None };
         let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
         if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
@@ -38,13 +38,16 @@ pub(super) fn passes(
             left *= medium.transmittance(&Ray { t_max, ..ray }, samples);
         }
         let Some(hit) = hit else { return left };
-        // The ray is not occluded, so what it meets is open; rounding may disagree at an edge.
-        if left.is_black() || stage.placements[hit.placement as usize].skin != Skin::Open {
+        if left.is_black() {
+            return Spectrum::ZERO;
+        }
+        let crossing = stage.crossing(processor, &media, &ray, &hit);
+        if crossing.met.is_some() {
             return Spectrum::ZERO;
         }
         from = Some(Leaving::from(&hit));
-        let surface = stage.surface(&ray, &hit);
-        stage.cross(&mut media, hit.placement, ray.d, surface.ng);
+        media = crossing.beyond;
+        let surface = &crossing.surface;
         let o = offset_origin(surface.p, surface.p_err, surface.ng, ray.d);
         // The end stays where it was.
         let t_max = ray.t_max - (o - ray.o).dot(ray.d);

@@ -19,7 +19,7 @@ use crate::accel::{Processor, Work};
 use crate::cast;
 use crate::film::{Rect, Tile};
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Leaving, Rooms, SceneHit, Skin, Stage};
+use crate::stage::{Leaving, Rooms, SceneHit, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
 const LANES: usize = 128;
@@ -187,7 +187,9 @@ impl<'s> Worker<'s> {
         let (paths, shadowed) = (&self.paths, &mut self.shadowed);
         let leaving = |lane: u32| paths[lane as usize].leaving();
         let rays = self.now.shadows.iter().map(|asked| (&asked.ray, leaving(asked.lane)));
-        if self.in_turns {
+        if self.stage.features.nested {
+            // What stops a ray depends on what it is in: `shadow::passes` sees.
+        } else if self.in_turns {
             let tell = |i: usize, is_hit| shadowed[i] = is_hit;
             self.stage.occluded_all(processor, rays, &mut self.rooms, tell);
         } else {
@@ -219,7 +221,7 @@ impl<'s> Worker<'s> {
     /// for all: neighbours in time do not wait for each other.
     fn arrivals(&mut self) {
         let stage = self.stage;
-        if stage.features.media || stage.features.open_surfaces {
+        if stage.features.media || stage.features.is_open() {
             self.processor.run(Fly(self));
         } else {
             self.processor.run(Trace(self));
@@ -284,7 +286,7 @@ impl<'s> Worker<'s> {
     #[inline(always)]
     fn fly_one(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) {
         let stage = self.stage;
-        let mut media = self.paths[lane].media_along(&ray, stage);
+        let mut media = self.paths[lane].media_along(&ray);
         let mut from = self.paths[lane].leaving();
         let (mut steps, mut flight) = (0, Spectrum::ONE);
         loop {
@@ -311,12 +313,13 @@ impl<'s> Worker<'s> {
             path.media = media;
             let shader = Shader { stage, wants, path, samples, scratch, flight };
             let Some(hit) = hit else { return shader.escaped(&ray, steps, arrival) };
-            if stage.placements[hit.placement as usize].skin != Skin::Open {
-                return shader.surface(&ray, &hit, steps, arrival);
+            let crossing = stage.crossing(self.processor, &media, &ray, &hit);
+            if let Some(met) = crossing.met {
+                return shader.boundary((&ray, &met, steps), &crossing, arrival);
             }
             from = Some(Leaving::from(&hit));
-            let surface = stage.surface(&ray, &hit);
-            stage.cross(&mut media, hit.placement, ray.d, surface.ng);
+            media = crossing.beyond;
+            let surface = &crossing.surface;
             let o = offset_origin(surface.p, surface.p_err, surface.ng, ray.d);
             ray = Ray { o, t_max: ray.t_max - hit.hit.t, ..ray };
         }

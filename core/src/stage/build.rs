@@ -13,9 +13,9 @@ use super::lights::LightSource;
 use super::{
     Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage,
 };
-use super::{failures, features, import};
+use super::{failures, features, import, nesting};
 use crate::accel::{BuildError, MeshBvh, TopBvh};
-use crate::cast::index;
+use crate::cast::{index, whole};
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Object, Objects};
@@ -48,8 +48,7 @@ pub fn build(
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
     let builder = Builder::new(registry, &scene, files, mode, &cache.objects);
-    let has_media = scene.nodes.iter().any(|node| node.kind == Kind::Medium);
-    let mut maker = Maker { scene: &scene, builder, cache, has_media, made: Made::default() };
+    let mut maker = Maker { scene: &scene, builder, cache, made: Made::default() };
     match flatten(&scene) {
         Ok(flats) => flats.iter().for_each(|flat| maker.place(flat)),
         Err(diagnostic) => diagnostics.push(*diagnostic),
@@ -104,8 +103,6 @@ struct Maker<'a> {
     scene: &'a Scene,
     builder: Builder<'a>,
     cache: &'a Cache,
-    /// Whether it matters which shapes are closed.
-    has_media: bool,
     made: Made,
 }
 
@@ -171,14 +168,16 @@ impl Maker<'_> {
         let interior = self.interior(shape, flat.material);
         let skin = self.skin(shape, flat.material, light.is_some(), interior.is_some());
         let Some(skin) = skin else { return };
-        let closed = self.has_media && self.made.geometries[geometry as usize].is_closed();
         let placement = Placement {
             geometry,
             transform,
             skin,
             light: light.is_some().then_some(index(self.made.lights.len())),
             interior,
-            closed,
+            closed: false,
+            bends: false,
+            priority: self.priority(shape),
+            rank: 0,
             node: shape,
         };
         if let Some(object) = light {
@@ -250,6 +249,13 @@ impl Maker<'_> {
                 self.builder.diagnostics.push(mesh_error(error, span));
                 None
             }
+        }
+    }
+
+    fn priority(&self, shape: NodeId) -> u32 {
+        match self.scene.node(shape).get("priority").map(|it| &it.value) {
+            Some(Value::Number(priority, _)) => whole(*priority),
+            _ => 0,
         }
     }
 
@@ -377,7 +383,7 @@ fn mesh_error(error: BuildError, span: Span) -> Diagnostic {
 }
 
 fn finish(
-    made: Made,
+    mut made: Made,
     settings: Settings,
     objects: Objects,
     (scene, film, mode): (Scene, Film, ColorMode),
@@ -403,10 +409,11 @@ fn finish(
     } else {
         (all.centre(), (all.diagonal().length() / 2.0).max(f64::MIN_POSITIVE))
     };
-    let features = Features {
-        media: !made.media.is_empty(),
-        open_surfaces: made.placements.iter().any(|placement| placement.skin == Skin::Open),
-    };
+    let media = !made.media.is_empty();
+    let (places, shapes) = (&mut made.placements, &made.geometries);
+    let nested = nesting::settle(places, shapes, &boxes, &made.materials, media);
+    let open_surfaces = places.iter().any(|placement| placement.skin == Skin::Open);
+    let features = Features { media, open_surfaces, nested };
     let mut stage = Stage {
         lights: Lights::new(made.lights, sphere.1, mode),
         top: TopBvh::build(&boxes),
@@ -433,7 +440,7 @@ fn finish(
     stage.eye = Eye::of(stage.camera.fixed().camera(), stage.film.resolution);
     if let Some(eye) = eye(&stage) {
         stage.reach = FOG_REACH * sphere.1.max(eye.distance(sphere.0));
-        if stage.features.media {
+        if stage.features.is_tracked() {
             stage.camera_media = stage.media_at(eye);
         }
     }

@@ -12,6 +12,22 @@ pub struct Features {
     pub media: bool,
     /// Some surfaces are only the boundary of a medium.
     pub open_surfaces: bool,
+    /// Refracting shapes may lie within each other.
+    pub nested: bool,
+}
+
+impl Features {
+    /// Whether paths have to know what they are inside of.
+    #[inline(always)]
+    pub fn is_tracked(&self) -> bool {
+        self.media || self.nested
+    }
+
+    /// Whether rays may pass surfaces on their way.
+    #[inline(always)]
+    pub fn is_open(&self) -> bool {
+        self.open_surfaces || self.nested
+    }
 }
 
 /// How colour is carried: as asked, or RGB only where every colour of the scene is given as RGB and

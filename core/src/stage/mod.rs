@@ -13,6 +13,7 @@ mod geometry;
 mod import;
 mod lights;
 mod media;
+mod nesting;
 mod placement;
 mod settings;
 mod trace;
@@ -37,7 +38,7 @@ pub use geometry::{Geometry, Mesh};
 pub use lights::{
     EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights, Origin,
 };
-pub use media::MediumStack;
+pub use media::{Crossing, MediumStack};
 pub use placement::{Leaving, Placement, SceneHit, Skin};
 pub use settings::{ColorChoice, Film};
 

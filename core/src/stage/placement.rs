@@ -30,8 +30,15 @@ pub struct Placement {
     pub light: Option<u32>,
     /// Which medium of the stage fills it.
     pub interior: Option<u32>,
-    /// Whether it encloses a volume, so that rays that pass it change medium.
+    /// Whether it encloses a volume, so that rays that pass it change what they are in: found only
+    /// where that matters.
     pub closed: bool,
+    /// Whether its material has an index of refraction, so that light bends on its way in.
+    pub bends: bool,
+    /// Its `priority`, as the scene gives it.
+    pub priority: u32,
+    /// Which counts where closed placements overlap: the highest. All differ where it matters.
+    pub rank: u32,
     /// The node of the shape.
     pub node: NodeId,
 }

@@ -1,13 +1,13 @@
 //! Rays through the whole stage.
 
 use luxel_sdk::kind::Surface;
-use luxel_sdk::num::{Ray, sphere_roots};
+use luxel_sdk::num::Ray;
 
 use crate::accel::{Direction, Processor, Room};
 
 use super::geometry::Approach;
 use super::placement::carried;
-use super::{Leaving, MediumStack, Placement, SceneHit, Skin, Stage};
+use super::{Leaving, Placement, SceneHit, Skin, Stage};
 
 impl Stage {
     /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
@@ -62,6 +62,23 @@ impl Stage {
         false
     }
 
+    /// The nearest hit of every placement along a ray, in no order.
+    pub(super) fn along(&self, processor: Processor, ray: &Ray, mut see: impl FnMut(&SceneHit)) {
+        let world = Direction::new(ray.d);
+        let mut room = Room::default();
+        let mut stack = room.stack();
+        let mut walk = self.top.walk(ray.o, ray.d, ray.t_max);
+        while let Some((placement, t_enter)) = walk.next(processor, &mut stack) {
+            let place = &self.placements[placement as usize];
+            let geometry = &self.geometries[place.geometry as usize];
+            let local = Local::of(place, ray, world);
+            let approach = self.approach(processor, &local, t_enter, None);
+            if let Some(hit) = geometry.intersect(&local.ray, approach, &mut 0) {
+                see(&SceneHit { placement, hit });
+            }
+        }
+    }
+
     /// How a ray comes to a placement that it enters at `t_enter`.
     #[inline(always)]
     pub(super) fn approach<'a>(
@@ -88,61 +105,6 @@ impl Stage {
                 carried(transform, &local)
             }
         }
-    }
-
-    /// The medium that a ray is in at its origin, and how far along the ray it may reach: what fills
-    /// the outside ends at `reach`.
-    pub fn medium_along(&self, media: &MediumStack, ray: &Ray) -> Option<(u32, f64)> {
-        let medium = media.current(self.outside)?;
-        if !media.is_outside() {
-            return Some((medium, ray.t_max));
-        }
-        let (_, exit) = sphere_roots(ray.o - self.sphere.0, ray.d, self.reach)?;
-        (exit > 0.0).then(|| (medium, ray.t_max.min(exit)))
-    }
-
-    /// Changes the media that a ray is in as it passes a surface along `d`.
-    pub fn cross(&self, media: &mut MediumStack, placement: u32, d: glam::DVec3, ng: glam::DVec3) {
-        let place = &self.placements[placement as usize];
-        if !place.closed {
-            return;
-        }
-        if d.dot(ng) < 0.0 {
-            media.enter(placement, place.interior);
-        } else {
-            media.leave(placement);
-        }
-    }
-
-    /// The media that a point is in: found by following a ray out of the scene and counting which
-    /// closed shapes it leaves without having entered them.
-    pub fn media_at(&self, p: glam::DVec3) -> MediumStack {
-        let d = glam::DVec3::new(0.267, 0.535, 0.802).normalize();
-        let mut ray = Ray { o: p, d, t_max: f64::INFINITY };
-        let mut entered: Vec<u32> = vec![];
-        let mut left: Vec<u32> = vec![];
-        let mut from = None;
-        while let Some(hit) = self.intersect(Processor::ANY, &ray, from, &mut 0) {
-            from = Some(Leaving::from(&hit));
-            let surface = self.surface(&ray, &hit);
-            if self.placements[hit.placement as usize].closed {
-                let known = entered.iter().rposition(|inside| *inside == hit.placement);
-                match (d.dot(surface.ng) < 0.0, known) {
-                    (true, _) => entered.push(hit.placement),
-                    (false, Some(at)) => drop(entered.remove(at)),
-                    (false, None) => left.push(hit.placement),
-                }
-            }
-            ray.o = luxel_sdk::num::offset_origin(surface.p, surface.p_err, surface.ng, d);
-            if entered.len() + left.len() > self.placements.len() {
-                break;
-            }
-        }
-        let mut media = MediumStack::default();
-        for placement in left.into_iter().rev() {
-            media.enter(placement, self.placements[placement as usize].interior);
-        }
-        media
     }
 }
 

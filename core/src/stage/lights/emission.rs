@@ -162,7 +162,8 @@ impl Stage {
         let d = (frame.to_world(local).as_dvec3() * f64::from(side)).normalize();
         let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
         let beta = le(side * local.z) * narrow(PI / (pdf * chance));
-        let media = if self.features.media { self.media_at(o) } else { MediumStack::default() };
+        let media =
+            if self.features.is_tracked() { self.media_at(o) } else { MediumStack::default() };
         let leaving = Leaving { placement: *place, face };
         let lamp = Some(Lamp { surface, leaving, light, per_pdf: 1.0 / pdf });
         Some(Emitted { ray: Ray { o, d, t_max: f64::INFINITY }, beta, lamp, media })
@@ -296,7 +297,8 @@ impl Stage {
         if !p.is_finite() {
             return None;
         }
-        let media = if self.features.media { self.media_at(p) } else { MediumStack::default() };
+        let media =
+            if self.features.is_tracked() { self.media_at(p) } else { MediumStack::default() };
         Some(Beacon { p, media, directions: self.directions(source, p, &mut scratch)? })
     }
 

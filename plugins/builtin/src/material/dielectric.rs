@@ -9,7 +9,8 @@ use luxel_sdk::scattering::{Ggx, SMOOTH_ALPHA, dielectric_reflectance, refract};
 use super::conductor::upright;
 
 /// Glass, water, crystal: reflects and refracts by Fresnel's equations. The shape's inside has this
-/// index, its outside that of a vacuum. Rough, it is frosted glass (Walter et al. 2007).
+/// index, its outside that of the shape it lies in, or of a vacuum. Rough, it is frosted glass
+/// (Walter et al. 2007).
 ///
 /// ```scene
 /// let bk7     = material dielectric { ior = glass("N-BK7") }
@@ -21,7 +22,7 @@ use super::conductor::upright;
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
 pub(crate) struct Dielectric {
-    /// Index of refraction of the inside: a number, or measured as `glass("N-BK7")`. 1 is invisible.
+    /// Index of refraction: a number, or measured as `glass("N-BK7")`. 1 is invisible.
     #[param(default = 1.5, role = ior, min = 0.1, max = 10, textured)]
     pub(crate) ior: Spectrum,
     /// GGX roughness alpha; below 1e-4, and where the index is so near 1 that it hardly bends light,

@@ -51,9 +51,10 @@ pub enum Role {
     Reflectance,
     /// A source of light: colours are uplifted relative to D65.
     Illuminant,
-    /// An index of refraction; in `rgb` mode one number, at 587.6 nm.
+    /// An index of refraction; in `rgb` mode one number, at 587.6 nm. A material is told it relative
+    /// to what lies around the shape.
     Ior,
-    /// The real part of a metal's index of refraction, kept per channel.
+    /// A metal's index of refraction, kept per channel, and relative as `Ior` is.
     ComplexIor,
     /// A medium's coefficient, m⁻¹, not negative.
     Coefficient,

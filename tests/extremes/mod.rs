@@ -7,7 +7,7 @@
 //! | T4 slivers | `rooms_of_slivers_lose_no_light`, open in single precision beyond its 4e-7 |
 //! | T5 zero-area triangles | `core/src/accel/mesh_tests.rs`, `bad_input` |
 //! | T6 coincident faces | `core/src/accel/mesh_tests.rs` |
-//! | T7 nested dielectrics | open: shapes have no priorities |
+//! | T7 nested dielectrics | `nested` |
 //! | T8 grazing light | `glass_reflects_by_fresnel_down_to_a_ten_thousandth_of_a_degree` |
 //! | T9 nearly smooth | `metal_that_is_hardly_rough_is_a_mirror` |
 //! | T10 index of nearly one | `an_index_of_one_is_invisible_and_one_beside_it_hardly_reflects` |
@@ -27,6 +27,8 @@
 //! | T23 empty scene, one pixel, no samples | `bad_input::a_scene_without_anything_is_black` |
 //! | T24 a shutter without duration | does not arise: nothing moves |
 //! | T25 dense fog | `fog_of_a_hundred_free_paths_that_absorbs_nothing_is_unseen` |
+
+mod nested;
 
 use std::f64::consts::{PI, SQRT_2};
 use std::fmt::Write;

@@ -1,0 +1,87 @@
+//! Which shapes lie within each other, and which of them counts where they overlap.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::{Geometry, Placement, Skin};
+use crate::accel::Box64;
+use crate::cast::index;
+use crate::object::Object;
+
+/// Pairs of placements that are looked at before they are taken to be nested unseen.
+const MOST_PAIRS: usize = 1 << 20;
+
+/// Finds which placements are closed and which counts where they overlap, as far as that matters:
+/// where there are media, and where refracting shapes lie within each other, which is told.
+pub(super) fn settle(
+    placements: &mut [Placement],
+    geometries: &[Arc<Geometry>],
+    boxes: &[Box64],
+    materials: &[Arc<Object>],
+    has_media: bool,
+) -> bool {
+    for placement in placements.iter_mut() {
+        placement.bends = material(placement, materials).is_some_and(Object::bends);
+    }
+    let is_closed = |placement: &Placement| geometries[placement.geometry as usize].is_closed();
+    let nested = may_be_nested(placements, boxes, materials, is_closed);
+    if !has_media && !nested {
+        return false;
+    }
+    for placement in placements.iter_mut() {
+        placement.closed = (has_media || placement.bends) && is_closed(placement);
+    }
+    rank(placements, boxes);
+    nested
+}
+
+fn material<'a>(placement: &Placement, materials: &'a [Arc<Object>]) -> Option<&'a Object> {
+    let Skin::Material(material) = placement.skin else { return None };
+    Some(&materials[material as usize])
+}
+
+/// Whether a closed refracting shape overlaps another one, or something else to which it matters
+/// what lies around it, as far as boxes tell.
+fn may_be_nested(
+    placements: &[Placement],
+    boxes: &[Box64],
+    materials: &[Arc<Object>],
+    is_closed: impl Fn(&Placement) -> bool,
+) -> bool {
+    let minds = |i: &usize| material(&placements[*i], materials).is_some_and(Object::has_index);
+    let mut order: Vec<usize> = (0..placements.len()).filter(minds).collect();
+    order.sort_by(|a, b| boxes[*a].0.x.total_cmp(&boxes[*b].0.x));
+    let mut pairs = 0;
+    for (at, &a) in order.iter().enumerate() {
+        for &b in order[at + 1..].iter().take_while(|b| boxes[**b].0.x <= boxes[a].1.x) {
+            pairs += 1;
+            if pairs > MOST_PAIRS {
+                return true;
+            }
+            let fills = |i: usize| placements[i].bends && is_closed(&placements[i]);
+            if overlap(boxes[a], boxes[b]) && (fills(a) || fills(b)) {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+fn overlap(a: Box64, b: Box64) -> bool {
+    a.0.cmple(b.1).all() && b.0.cmple(a.1).all()
+}
+
+/// Ranks placements by priority; among equals the smaller box counts more, so that what lies within
+/// another shape counts there, from whichever side a ray comes; then the one placed later.
+fn rank(placements: &mut [Placement], boxes: &[Box64]) {
+    let size = |i: usize| (boxes[i].1 - boxes[i].0).max(DVec3::ZERO).element_product();
+    let mut order: Vec<usize> = (0..placements.len()).collect();
+    order.sort_by(|&a, &b| {
+        let by_priority = placements[a].priority.cmp(&placements[b].priority);
+        by_priority.then_with(|| size(b).total_cmp(&size(a)))
+    });
+    for (rank, place) in order.into_iter().enumerate() {
+        placements[place].rank = index(rank);
+    }
+}

@@ -14,7 +14,7 @@
 //! | T11 1e30 and 1e-30 | `lamps_sixty_orders_apart_stay_finite` |
 //! | T12 denormal values | `values_below_the_normal_numbers_stay_finite` |
 //! | T13 no numbers | `numbers_beyond_all_numbers_are_told_with_their_place`, `bad_input` |
-//! | T14 shadow terminator | open: facets with the light behind them are black |
+//! | T14 shadow terminator | `terminator` |
 //! | T15 thin layers | `both_faces_of_a_layer_of_forty_millionths_are_met` |
 //! | T16 depth 1e4 | `truths`: `furnace.closed` with `rho=0.999` |
 //! | T17 many samples | `a_pixel_keeps_its_mean_through_ten_million_samples` |
@@ -29,6 +29,7 @@
 //! | T25 dense fog | `fog_of_a_hundred_free_paths_that_absorbs_nothing_is_unseen` |
 
 mod nested;
+mod terminator;
 
 use std::f64::consts::{PI, SQRT_2};
 use std::fmt::Write;

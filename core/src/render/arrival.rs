@@ -6,12 +6,12 @@ use luxel_sdk::kind::{
     Arrival, ArrivalKind, Direct, Lobe, Material, Needs, Phase, Sample, Samples, Scatter, Sight,
     Surface, Wants,
 };
-use luxel_sdk::num::{Frame, Ray, offset_origin, unit_and_length};
+use luxel_sdk::num::{Frame, Ray, unit_and_length};
 
 use super::path::{Path, Standing};
 use crate::cast::narrow;
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Crossing, Origin, SceneHit, Seen, Skin, Stage};
+use crate::stage::{Crossing, Leaving, SceneHit, Seen, Skin, Stage};
 
 /// What is needed to shade: borrowed for one arrival.
 pub(super) struct Shader<'a, 's> {
@@ -47,9 +47,7 @@ impl Shader<'_, '_> {
         let scratch: &Scratch = self.scratch;
         let numbers = Numbers::draw(self.stage, self.wants, self.samples);
         if self.wants.has(Wants::DIRECT) {
-            let origin = Origin { p, p_err: DVec3::ZERO, ng: DVec3::ZERO };
-            let found =
-                self.stage.sample_light(&origin, &self.path.palette, numbers.light, scratch);
+            let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
             at.direct.set(found.map(|found| {
                 let eval = phase.eval(wo.as_vec3(), found.ray.d.as_vec3());
                 let f_le = eval.f * found.le_over_pdf * self.flight;
@@ -118,9 +116,17 @@ impl Shader<'_, '_> {
                 stage.surface_emission(placement, surface, (from, wo), palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
-        self.path.from = surface.p;
         let outside = wo.dot(surface.ng) > 0.0;
-        self.path.on = Some(Standing { leaving: hit.into(), ng: surface.ng, outside });
+        let mut leaving = Leaving::from(hit);
+        if surface.ns != surface.ng {
+            // A ray that dips below the facet may have to meet it again.
+            leaving.face = Leaving::NO_FACE;
+            if (wo.dot(surface.ns) > 0.0) == outside {
+                at.lift = stage.lift(hit, outside);
+            }
+        }
+        self.path.from = surface.p + at.lift;
+        self.path.on = Some(Standing { leaving, p: surface.p, ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
             self.scatter(at, hit.placement, surface, numbers);
@@ -155,9 +161,7 @@ impl Shader<'_, '_> {
         };
         let local = Local::new(at.wo, at, surface, needs);
         if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
-            let origin = Origin { p: at.p, p_err: at.p_err, ng: at.ng };
-            let found =
-                self.stage.sample_light(&origin, &self.path.palette, numbers.light, scratch);
+            let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
             at.direct.set(found.and_then(|found| {
                 let wi = local.of_world(found.ray.d)?;
                 let eval = material.eval(local.wo, wi);
@@ -212,7 +216,7 @@ pub(super) fn sight(stage: &Stage, at: &Arrival, seen: &Seen, f: Spectrum) -> Op
     if f_we.is_black() || !f_we.is_finite() {
         return None;
     }
-    let o = offset_origin(at.p, at.p_err, at.ng, seen.d);
+    let o = at.origin(seen.d);
     let (d, t_max) = unit_and_length(stage.eye?.p - o);
     Some(Sight { ray: Ray { o, d, t_max }, pixel: seen.pixel, f_we })
 }
@@ -232,6 +236,7 @@ fn begin(at: &mut Arrival, kind: ArrivalKind, ray: &Ray, t: f64, steps: u32) {
     (at.kind, at.t, at.wo, at.steps) = (kind, t, -ray.d, steps);
     (at.p, at.p_err) = (DVec3::ZERO, DVec3::ZERO);
     (at.ng, at.ns, at.uv) = (DVec3::ZERO, DVec3::ZERO, glam::Vec2::ZERO);
+    at.lift = DVec3::ZERO;
     (at.le, at.le_pdf, at.material) = (Spectrum::ZERO, 0.0, u32::MAX);
     (at.direct.given, at.scatter.given) = (false, false);
 }
@@ -277,6 +282,8 @@ struct Local {
     ng: DVec3,
     /// Whether `wo` is on the outside of the geometry.
     outside: bool,
+    /// Whether the shading normal is another than the geometric one.
+    smooth: bool,
 }
 
 impl Local {
@@ -286,7 +293,7 @@ impl Local {
         // Where the viewer is above one normal and below the other, the shading normal shows a side
         // that the surface does not have: the geometric one counts.
         let agree = (wo.dot(at.ns) > 0.0) == outside;
-        let normal = if agree { at.ns } else { at.ng };
+        let (normal, smooth) = if agree { (at.ns, at.ns != at.ng) } else { (at.ng, false) };
         let frame = if needs.has(Needs::TANGENT) {
             // Of any length, but in the range of single precision.
             let tangent = (surface.dp_du / surface.dp_du.abs().max_element()).as_vec3();
@@ -294,7 +301,7 @@ impl Local {
         } else {
             Frame::from_z(normal.as_vec3())
         };
-        Self { wo: frame.to_local(wo.as_vec3()), frame, ng: at.ng, outside }
+        Self { wo: frame.to_local(wo.as_vec3()), frame, ng: at.ng, outside, smooth }
     }
 
     /// A direction of the world; `None` where the normals disagree on its side, so that no light
@@ -311,10 +318,11 @@ impl Local {
         (!wi.is_nan() && self.sides_agree(wi, local)).then_some(wi)
     }
 
+    /// What is reflected off a facet that stands for a smooth surface may dip below the facet.
     #[inline(always)]
     fn sides_agree(&self, wi: DVec3, local: Vec3) -> bool {
         let same_side = (wi.dot(self.ng) > 0.0) == self.outside;
         let same_local = local.z * self.wo.z > 0.0;
-        same_side == same_local
+        same_side == same_local || (self.smooth && same_local)
     }
 }

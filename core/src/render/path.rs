@@ -32,9 +32,19 @@ pub(super) struct Path {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
     pub(super) leaving: Leaving,
+    pub(super) p: DVec3,
     pub(super) ng: DVec3,
     /// Whether the path came from the outside.
     pub(super) outside: bool,
+}
+
+impl Standing {
+    /// Whether a ray that leaves from here is outside: its origin tells, for its direction may dip
+    /// below a facet that stands for a smooth surface.
+    fn is_outside(&self, ray: &Ray) -> bool {
+        let height = (ray.o - self.p).dot(self.ng);
+        if height == 0.0 { ray.d.dot(self.ng) > 0.0 } else { height > 0.0 }
+    }
 }
 
 impl Path {
@@ -62,8 +72,8 @@ impl Path {
         (self.job, self.weight, self.from) = (job, 1.0, found.ray.o);
         (self.ended, self.media, self.beyond) = (false, found.media, found.media);
         self.on = found.lamp.map(|lamp| {
-            let ng = lamp.surface.ng;
-            Standing { leaving: lamp.leaving, ng, outside: found.ray.d.dot(ng) > 0.0 }
+            let (p, ng) = (lamp.surface.p, lamp.surface.ng);
+            Standing { leaving: lamp.leaving, p, ng, outside: found.ray.d.dot(ng) > 0.0 }
         });
     }
 
@@ -75,7 +85,7 @@ impl Path {
     /// What a ray that leaves from here is in.
     pub(super) fn media_along(&self, ray: &Ray) -> MediumStack {
         match self.on {
-            Some(on) if (ray.d.dot(on.ng) > 0.0) != on.outside => self.beyond,
+            Some(on) if on.is_outside(ray) != on.outside => self.beyond,
             _ => self.media,
         }
     }

@@ -222,6 +222,33 @@ impl Mesh {
     }
 }
 
+impl Mesh {
+    /// From a point of a triangle to the smooth surface that its normals speak of: the mean of the
+    /// point's projections onto the planes at the corners, as far as they lie beyond the triangle on
+    /// the side that is looked at.
+    ///
+    /// # Source
+    /// Hanika 2021, Hacking the Shadow Terminator (Ray Tracing Gems II, ch. 4).
+    pub fn lift(&self, triangle: u32, at: DVec2, outside: bool) -> DVec3 {
+        let mesh = self.triangles();
+        if mesh.normals.is_empty() {
+            return DVec3::ZERO;
+        }
+        let corners = mesh.indices[triangle as usize].map(|i| i as usize);
+        let [a, b, c] = corners.map(|i| mesh.points[i].as_dvec3());
+        let weights = [1.0 - at.x - at.y, at.x, at.y];
+        let p = a * weights[0] + b * weights[1] + c * weights[2];
+        let ng = (b - a).cross(c - a);
+        let mut lift = DVec3::ZERO;
+        for ((corner, i), weight) in [a, b, c].into_iter().zip(corners).zip(weights) {
+            let n = mesh.normals[i].as_dvec3();
+            let n = if n.dot(ng) * f64::from(outside as i8 * 2 - 1) < 0.0 { -n } else { n };
+            lift -= n * (weight * (p - corner).dot(n).min(0.0));
+        }
+        lift
+    }
+}
+
 #[inline(always)]
 fn shading_normal(mesh: &TriangleMesh, corners: [usize; 3], w: [f64; 3], ng: DVec3) -> DVec3 {
     if mesh.normals.is_empty() {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
-use luxel_sdk::kind::{Light, LightQuery, Output, ShapeSample, Surface};
+use luxel_sdk::kind::{Arrival, Light, LightQuery, Output, ShapeSample, Surface};
 use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
@@ -67,17 +67,6 @@ pub struct FoundLight {
     pub le_over_pdf: Spectrum,
     /// Solid-angle density; infinite for a delta light.
     pub pdf: f32,
-}
-
-/// The point from which light is looked for.
-#[derive(Clone, Copy, Debug)]
-pub struct Origin {
-    /// World space.
-    pub p: DVec3,
-    /// Bound of its error.
-    pub p_err: DVec3,
-    /// Geometric normal; zero in a medium.
-    pub ng: DVec3,
 }
 
 impl Lights {
@@ -167,11 +156,12 @@ fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palett
 }
 
 impl Stage {
-    /// Chooses a light and light from it. `u` uniform in [0, 1).
+    /// Chooses a light and light from it, as `from` sees it: its place, normals and `wo` count. `u`
+    /// uniform in [0, 1).
     #[inline(always)]
     pub fn sample_light(
         &self,
-        from: &Origin,
+        from: &Arrival,
         palette: &Palette,
         u: [f32; 3],
         scratch: &Scratch,
@@ -186,7 +176,7 @@ impl Stage {
                 self.sample_surface(&light, from, palette, u, scratch)
             }
             LightSource::Free { object, transform } => {
-                let at = Site { p: from.p, uv: Vec2::ZERO, palette };
+                let at = Site { p: from.p + from.lift, uv: Vec2::ZERO, palette };
                 let light = object.resolve(&at, scratch).light();
                 self.sample_free(light, transform.as_deref(), from, palette, u)
             }
@@ -198,11 +188,12 @@ impl Stage {
         &self,
         light: &dyn Light,
         transform: Option<&Transform>,
-        from: &Origin,
+        from: &Arrival,
         palette: &Palette,
         u: [f32; 2],
     ) -> Option<FoundLight> {
-        let p = transform.map_or(from.p, |transform| transform.inverse_point(from.p));
+        let p = from.p + from.lift;
+        let p = transform.map_or(p, |transform| transform.inverse_point(p));
         let found = light.sample(&LightQuery { p, u })?;
         let mut le = emitted(light, found.le, self.mode, palette);
         let (mut wi, mut distance) = (found.wi, found.distance);
@@ -219,7 +210,7 @@ impl Stage {
         let pdf = if found.delta { f32::INFINITY } else { found.pdf };
         let usable = found.pdf > 0.0 && !le.is_black();
         usable.then(|| FoundLight {
-            ray: Ray { o: offset_origin(from.p, from.p_err, from.ng, wi), d: wi, t_max: distance },
+            ray: from.ray_to(wi, distance),
             le_over_pdf: le / found.pdf,
             pdf,
         })
@@ -229,7 +220,7 @@ impl Stage {
     fn sample_surface(
         &self,
         light: &SurfaceLight<'_>,
-        from: &Origin,
+        from: &Arrival,
         palette: &Palette,
         u: [f32; 2],
         scratch: &Scratch,
@@ -246,7 +237,7 @@ impl Stage {
                 Some(ShapeSample { surface, pdf })
             }
             (Geometry::Analytic(shape), _) => {
-                let local = placement.point_to_local(from.p);
+                let local = placement.point_to_local(from.p + from.lift);
                 shape.fixed().shape().sample(Some(local), u)
             }
             (Geometry::Mesh(_), None) => None,
@@ -259,7 +250,7 @@ impl Stage {
         }
         let surface = &sample.surface;
         let ray = ray_between(from, surface);
-        let to = surface.p - from.p;
+        let to = surface.p - (from.p + from.lift);
         let distance2 = to.length_squared();
         let cos_o = -surface.ng.dot(ray.d);
         let pdf = sample.pdf * distance2 / cos_o.abs();
@@ -366,9 +357,9 @@ const SHORT: f64 = 1.0 / (1u64 << 45) as f64;
 
 /// The ray from a point to a point of a surface, both moved beyond their errors towards each other.
 #[inline(always)]
-fn ray_between(from: &Origin, to: &Surface) -> Ray {
+fn ray_between(from: &Arrival, to: &Surface) -> Ray {
     let d = to.p - from.p;
-    let o = offset_origin(from.p, from.p_err, from.ng, d);
+    let o = from.origin(d);
     let end = offset_origin(to.p, to.p_err, to.ng, -d);
     let d = end - o;
     let (d, distance) = unit_and_length(d);

@@ -83,6 +83,9 @@ pub struct Leaving {
 }
 
 impl Leaving {
+    /// A face that no geometry has: a ray that leaves it may meet any.
+    pub const NO_FACE: u32 = u32::MAX;
+
     /// The face that is passed where it is on this placement.
     pub fn face_on(from: Option<Self>, placement: u32) -> Option<u32> {
         from.filter(|from| from.placement == placement).map(|from| from.face)

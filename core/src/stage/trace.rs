@@ -1,5 +1,6 @@
 //! Rays through the whole stage.
 
+use glam::DVec3;
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::Ray;
 
@@ -7,7 +8,7 @@ use crate::accel::{Direction, Processor, Room};
 
 use super::geometry::Approach;
 use super::placement::carried;
-use super::{Leaving, Placement, SceneHit, Skin, Stage};
+use super::{Geometry, Leaving, Placement, SceneHit, Skin, Stage};
 
 impl Stage {
     /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
@@ -105,6 +106,19 @@ impl Stage {
                 carried(transform, &local)
             }
         }
+    }
+}
+
+impl Stage {
+    /// From a point of a mesh to the smooth surface that its normals speak of, seen from one side;
+    /// zero elsewhere.
+    pub fn lift(&self, hit: &SceneHit, outside: bool) -> DVec3 {
+        let placement = &self.placements[hit.placement as usize];
+        let Geometry::Mesh(mesh) = &*self.geometries[placement.geometry as usize] else {
+            return DVec3::ZERO;
+        };
+        let lift = mesh.lift(hit.hit.face, hit.hit.at, outside);
+        placement.transform.as_ref().map_or(lift, |transform| transform.vector(lift))
     }
 }
 

@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0x071365a79ec0cd15ull
+#define LUXEL_LAYOUT_HASH 0xa5dd2b1a96f230b9ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -270,6 +270,7 @@ typedef struct {
     luxel_dvec3 p_err;
     luxel_dvec3 ng;
     luxel_dvec3 ns;
+    luxel_dvec3 lift;
     luxel_vec2 uv;
     double t;
     luxel_dvec3 wo;
@@ -895,28 +896,29 @@ LUXEL_CHECK(sizeof(luxel_maybe_scatter) == 64, "size of luxel_maybe_scatter");
 LUXEL_CHECK(_Alignof(luxel_maybe_scatter) == 16, "alignment of luxel_maybe_scatter");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, given) == 0, "luxel_maybe_scatter.given");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, value) == 16, "luxel_maybe_scatter.value");
-LUXEL_CHECK(sizeof(luxel_arrival) == 464, "size of luxel_arrival");
+LUXEL_CHECK(sizeof(luxel_arrival) == 480, "size of luxel_arrival");
 LUXEL_CHECK(_Alignof(luxel_arrival) == 16, "alignment of luxel_arrival");
 LUXEL_CHECK(offsetof(luxel_arrival, kind) == 0, "luxel_arrival.kind");
 LUXEL_CHECK(offsetof(luxel_arrival, p) == 8, "luxel_arrival.p");
 LUXEL_CHECK(offsetof(luxel_arrival, p_err) == 32, "luxel_arrival.p_err");
 LUXEL_CHECK(offsetof(luxel_arrival, ng) == 56, "luxel_arrival.ng");
 LUXEL_CHECK(offsetof(luxel_arrival, ns) == 80, "luxel_arrival.ns");
-LUXEL_CHECK(offsetof(luxel_arrival, uv) == 104, "luxel_arrival.uv");
-LUXEL_CHECK(offsetof(luxel_arrival, t) == 112, "luxel_arrival.t");
-LUXEL_CHECK(offsetof(luxel_arrival, wo) == 120, "luxel_arrival.wo");
-LUXEL_CHECK(offsetof(luxel_arrival, material) == 144, "luxel_arrival.material");
-LUXEL_CHECK(offsetof(luxel_arrival, steps) == 148, "luxel_arrival.steps");
-LUXEL_CHECK(offsetof(luxel_arrival, le) == 160, "luxel_arrival.le");
-LUXEL_CHECK(offsetof(luxel_arrival, le_pdf) == 176, "luxel_arrival.le_pdf");
-LUXEL_CHECK(offsetof(luxel_arrival, direct) == 192, "luxel_arrival.direct");
-LUXEL_CHECK(offsetof(luxel_arrival, scatter) == 304, "luxel_arrival.scatter");
-LUXEL_CHECK(offsetof(luxel_arrival, sight) == 368, "luxel_arrival.sight");
-LUXEL_CHECK(sizeof(luxel_lane) == 496, "size of luxel_lane");
+LUXEL_CHECK(offsetof(luxel_arrival, lift) == 104, "luxel_arrival.lift");
+LUXEL_CHECK(offsetof(luxel_arrival, uv) == 128, "luxel_arrival.uv");
+LUXEL_CHECK(offsetof(luxel_arrival, t) == 136, "luxel_arrival.t");
+LUXEL_CHECK(offsetof(luxel_arrival, wo) == 144, "luxel_arrival.wo");
+LUXEL_CHECK(offsetof(luxel_arrival, material) == 168, "luxel_arrival.material");
+LUXEL_CHECK(offsetof(luxel_arrival, steps) == 172, "luxel_arrival.steps");
+LUXEL_CHECK(offsetof(luxel_arrival, le) == 176, "luxel_arrival.le");
+LUXEL_CHECK(offsetof(luxel_arrival, le_pdf) == 192, "luxel_arrival.le_pdf");
+LUXEL_CHECK(offsetof(luxel_arrival, direct) == 208, "luxel_arrival.direct");
+LUXEL_CHECK(offsetof(luxel_arrival, scatter) == 320, "luxel_arrival.scatter");
+LUXEL_CHECK(offsetof(luxel_arrival, sight) == 384, "luxel_arrival.sight");
+LUXEL_CHECK(sizeof(luxel_lane) == 512, "size of luxel_lane");
 LUXEL_CHECK(_Alignof(luxel_lane) == 16, "alignment of luxel_lane");
 LUXEL_CHECK(offsetof(luxel_lane, at) == 0, "luxel_lane.at");
-LUXEL_CHECK(offsetof(luxel_lane, l) == 464, "luxel_lane.l");
-LUXEL_CHECK(offsetof(luxel_lane, numbers) == 480, "luxel_lane.numbers");
+LUXEL_CHECK(offsetof(luxel_lane, l) == 480, "luxel_lane.l");
+LUXEL_CHECK(offsetof(luxel_lane, numbers) == 496, "luxel_lane.numbers");
 LUXEL_CHECK(sizeof(luxel_onward) == 64, "size of luxel_onward");
 LUXEL_CHECK(_Alignof(luxel_onward) == 8, "alignment of luxel_onward");
 LUXEL_CHECK(offsetof(luxel_onward, ray) == 0, "luxel_onward.ray");

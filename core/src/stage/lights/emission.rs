@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
-use luxel_sdk::kind::{LightForm, Surface};
+use luxel_sdk::kind::{Arrival, LightForm, Surface};
 use luxel_sdk::num::{Frame, Ray, offset_origin};
 use luxel_sdk::sampling::{
     Piecewise2, cosine_hemisphere, disk_concentric, sobol_owen_2d, uniform_sphere, uniform_triangle,
@@ -12,7 +12,7 @@ use luxel_sdk::sampling::{
 
 use super::super::placement::carried;
 use super::super::{Geometry, Leaving, MediumStack, Stage};
-use super::{LightSource, Origin, emitted};
+use super::{LightSource, emitted};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 
@@ -243,7 +243,7 @@ impl Stage {
         scratch: &Scratch,
     ) -> Option<(Ray, Spectrum)> {
         let LightSource::Free { object, transform } = source else { return None };
-        let from = Origin { p, p_err: DVec3::ZERO, ng: DVec3::ZERO };
+        let from = Arrival { p, ..Arrival::default() };
         let light = object.resolve(&Site { p, uv: Vec2::ZERO, palette }, scratch).light();
         let found = self.sample_free(light, transform.as_deref(), &from, palette, u)?;
         Some((found.ray, found.le_over_pdf))

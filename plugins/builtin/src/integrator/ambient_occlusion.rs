@@ -48,7 +48,7 @@ impl PathIntegrator for AmbientOcclusion {
         let frame = Frame::from_z((at.ns * facing).as_vec3());
         let wi = frame.to_world(up).as_dvec3().normalize();
         // A shading normal may point into the surface, which hides the sky.
-        if wi.dot(at.ng) * facing > 0.0 {
+        if wi.dot(at.ns) * facing > 0.0 {
             let distance = self.distance.get().map_or(f64::INFINITY, f64::from);
             ask.add_if_visible(at.ray_to(wi, distance), Spectrum::ONE);
         }

@@ -114,6 +114,9 @@ pub struct Arrival {
     pub ng: DVec3,
     /// Shading normal, unit; zero unless at a surface.
     pub ns: DVec3,
+    /// From `p` to where the smooth surface would be that the normals of a mesh speak of: what is
+    /// reflected leaves from there.
+    pub lift: DVec3,
     /// Surface coordinates.
     pub uv: Vec2,
     /// Distance flown by the last ray, metres.
@@ -137,6 +140,22 @@ pub struct Arrival {
 }
 
 impl Arrival {
+    /// Where a ray that leaves along `wi` begins, beyond the error of the point. What leaves to the
+    /// side of the shading normal that `wo` is on begins on that side of the surface even if `wi`
+    /// dips below it: from the smooth surface if that lies above, else to meet this one again.
+    ///
+    /// # Source
+    /// Hanika 2021, Hacking the Shadow Terminator (Ray Tracing Gems II, ch. 4).
+    #[inline(always)]
+    pub fn origin(&self, wi: DVec3) -> DVec3 {
+        let side = self.wo.dot(self.ns);
+        if wi.dot(self.ns) * side > 0.0 && side * self.wo.dot(self.ng) > 0.0 {
+            offset_origin(self.p + self.lift, self.p_err, self.ng, self.wo)
+        } else {
+            offset_origin(self.p, self.p_err, self.ng, wi)
+        }
+    }
+
     /// A ray that leaves this point along the unit direction `wi`, its origin beyond the error of
     /// the point.
     pub fn ray(&self, wi: DVec3) -> Ray {
@@ -145,7 +164,7 @@ impl Arrival {
 
     /// The same, up to a distance in metres.
     pub fn ray_to(&self, wi: DVec3, distance: f64) -> Ray {
-        Ray { o: offset_origin(self.p, self.p_err, self.ng, wi), d: wi, t_max: distance }
+        Ray { o: self.origin(wi), d: wi, t_max: distance }
     }
 }
 

@@ -9,15 +9,15 @@ use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
+use super::analytic::Analytic;
 use super::closed::is_closed;
 use crate::accel::{Begun, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
-use crate::object::Object;
 
 /// What a placement places. Shared by every placement of the same shape.
 #[derive(Debug)]
 pub enum Geometry {
     /// A shape that intersects itself, in double precision.
-    Analytic(Arc<Object>),
+    Analytic(Analytic),
     /// Triangles and their tree.
     Mesh(Arc<Mesh>),
 }
@@ -261,7 +261,7 @@ impl Geometry {
     /// A box that holds every point, in the geometry's frame.
     pub fn bounds(&self) -> Bounds3 {
         match self {
-            Self::Analytic(object) => object.fixed().shape().bounds(),
+            Self::Analytic(shape) => shape.object().fixed().shape().bounds(),
             Self::Mesh(mesh) => match mesh.bvh.bounds() {
                 Some((min, max)) => {
                     let centre = mesh.centre;
@@ -278,7 +278,7 @@ impl Geometry {
     /// Whether it encloses a volume.
     pub fn is_closed(&self) -> bool {
         match self {
-            Self::Analytic(object) => object.fixed().shape().is_closed(),
+            Self::Analytic(shape) => shape.object().fixed().shape().is_closed(),
             Self::Mesh(mesh) => *mesh.closed.get_or_init(|| is_closed(mesh.triangles())),
         }
     }
@@ -287,7 +287,7 @@ impl Geometry {
     #[inline(always)]
     pub fn intersect(&self, ray: &Ray, approach: Approach<'_>, steps: &mut u32) -> Option<Hit> {
         match self {
-            Self::Analytic(object) => object.fixed().shape().intersect(ray),
+            Self::Analytic(shape) => shape.intersect(ray, approach.processor, steps),
             Self::Mesh(mesh) => mesh.intersect(ray, approach, steps),
         }
     }
@@ -296,7 +296,7 @@ impl Geometry {
     #[inline(always)]
     pub fn occluded(&self, ray: &Ray, approach: Approach<'_>) -> bool {
         match self {
-            Self::Analytic(object) => object.fixed().shape().intersect(ray).is_some(),
+            Self::Analytic(shape) => shape.occluded(ray, approach.processor),
             Self::Mesh(mesh) => mesh.occluded(ray, approach),
         }
     }
@@ -305,7 +305,7 @@ impl Geometry {
     #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit, precision: Precision) -> Surface {
         match self {
-            Self::Analytic(object) => object.fixed().shape().surface(ray, hit),
+            Self::Analytic(shape) => shape.object().fixed().shape().surface(ray, hit),
             Self::Mesh(mesh) => mesh.surface(hit.face, hit.at, precision),
         }
     }

@@ -1,0 +1,1 @@
+//! What curves promise.

@@ -1,7 +1,7 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
 //! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|plugins|
-//! rays|leaks|leaks-long|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]`. The program under test is `target/release/luxel` beside this one unless given.
+//! rays|leaks|leaks-long|strands|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]`. The program under test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
@@ -14,6 +14,7 @@ mod process;
 mod rays;
 mod reload;
 mod series;
+mod strands;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -28,7 +29,7 @@ struct Plan {
     embree: Option<PathBuf>,
 }
 
-const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|rays|leaks|leaks-long|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]";
+const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|rays|leaks|leaks-long|strands|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]";
 
 fn plan() -> Result<Plan, String> {
     let mut what = "all".to_owned();
@@ -39,7 +40,7 @@ fn plan() -> Result<Plan, String> {
     while let Some(word) = words.next() {
         match word.as_str() {
             "all" | "parse" | "cold" | "memory" | "ply" | "plugins" | "rays" | "leaks"
-            | "leaks-long" | "reload" | "cornell" => {
+            | "leaks-long" | "strands" | "reload" | "cornell" => {
                 what = word;
             }
             "--luxel" => luxel = words.next().map(PathBuf::from),
@@ -49,7 +50,9 @@ fn plan() -> Result<Plan, String> {
         }
     }
     let program = luxel.filter(|path| path.exists());
-    if !matches!(what.as_str(), "parse" | "rays" | "leaks" | "leaks-long") && program.is_none() {
+    if !matches!(what.as_str(), "parse" | "rays" | "leaks" | "leaks-long" | "strands")
+        && program.is_none()
+    {
         return Err("no `luxel`: run `cargo build --release -p luxel`, or give --luxel".to_owned());
     }
     Ok(Plan { what, luxel: Luxel { program: program.unwrap_or_default() }, python, embree })
@@ -74,6 +77,9 @@ fn run(plan: &Plan) -> Result<(), String> {
     }
     if wanted("rays") {
         rays::run(plan.embree.as_deref(), plan.python.as_deref());
+    }
+    if wanted("strands") {
+        strands::run()?;
     }
     if wanted("leaks") {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 40_000);

@@ -54,12 +54,23 @@ const MOST_PARTS: u32 = 4096;
 impl Part {
     /// Whether the strip, in its hull, is beside the line.
     fn is_missed(&self) -> bool {
-        let edges = (0..4).flat_map(|i| {
-            let (c, w) = (self.curve[i].xy(), self.across[i].xy());
-            [c - w, c + w]
-        });
-        let (low, high) = edges.fold((DVec2::MAX, DVec2::MIN), |(a, b), p| (a.min(p), b.max(p)));
-        low.cmpgt(DVec2::splat(ROUNDING)).any() || high.cmplt(DVec2::splat(-ROUNDING)).any()
+        let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
+        for (c, w) in self.curve.iter().zip(&self.across) {
+            let w = w.xy().abs();
+            (low, high) = (low.min(c.xy() - w), high.max(c.xy() + w));
+        }
+        if low.cmpgt(DVec2::splat(ROUNDING)).any() || high.cmplt(DVec2::splat(-ROUNDING)).any() {
+            return true;
+        }
+        // Beside the plane through the ends and along the line.
+        let beside = (self.curve[3].xy() - self.curve[0].xy()).perp();
+        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        for (c, w) in self.curve.iter().zip(&self.across) {
+            let (c, w) = (c.xy().dot(beside), w.xy().dot(beside).abs());
+            (low, high) = (low.min(c - w), high.max(c + w));
+        }
+        let room = ROUNDING * beside.length();
+        low > room || high < -room
     }
 
     /// Bernstein coefficients of c × w.
@@ -88,31 +99,33 @@ impl Piece {
     /// Tells the places where c × w changes its sign. Where it is 0 but for rounding all along, the
     /// line runs within the strip, which has no thickness.
     fn roots(&self, mut tell: impl FnMut(f64)) {
-        let widest = self.across.iter().map(|w| w.length()).fold(0.0, f64::max);
         let whole = Part { curve: self.curve, across: self.across, start: 0.0, end: 1.0 };
-        let mut stack = [whole; 64];
-        let (mut n, mut looked) = (1, 0);
-        while n > 0 && looked < MOST_PARTS {
-            n -= 1;
-            looked += 1;
-            let part = stack[n];
-            if part.is_missed() {
-                continue;
-            }
-            let product = part.product();
-            if product.iter().all(|x| x.abs() <= ROUNDING * widest) {
-                continue;
-            }
-            let changes = product.windows(2).filter(|x| (x[0] >= 0.0) != (x[1] >= 0.0)).count();
-            let last = part.end - part.start <= ROUNDING || n + 2 > stack.len();
-            if changes == 1 || (last && changes % 2 == 1) {
-                tell(self.root(&part, product[0] >= 0.0));
-            } else if changes > 1 && !last {
-                let middle = 0.5 * (part.start + part.end);
-                let (c, w) = (halves(&part.curve), halves(&part.across));
-                stack[n] = Part { curve: c.1, across: w.1, start: middle, end: part.end };
-                stack[n + 1] = Part { curve: c.0, across: w.0, start: part.start, end: middle };
-                n += 2;
+        if !whole.is_missed() {
+            self.roots_of(&whole, &mut 0, &mut tell);
+        }
+    }
+
+    fn roots_of(&self, part: &Part, looked: &mut u32, tell: &mut dyn FnMut(f64)) {
+        *looked += 1;
+        let product = part.product();
+        let widest = part.across.iter().map(|w| w.length_squared()).fold(0.0, f64::max).sqrt();
+        if *looked > MOST_PARTS || product.iter().all(|x| x.abs() <= ROUNDING * widest) {
+            return;
+        }
+        let changes = product.windows(2).filter(|x| (x[0] >= 0.0) != (x[1] >= 0.0)).count();
+        let last = part.end - part.start <= ROUNDING;
+        if changes == 1 || (last && changes % 2 == 1) {
+            tell(self.root(part, product[0] >= 0.0));
+        } else if changes > 1 && !last {
+            let middle = 0.5 * (part.start + part.end);
+            let (c, w) = (halves(&part.curve), halves(&part.across));
+            for half in [
+                Part { curve: c.0, across: w.0, start: part.start, end: middle },
+                Part { curve: c.1, across: w.1, start: middle, end: part.end },
+            ] {
+                if !half.is_missed() {
+                    self.roots_of(&half, looked, tell);
+                }
             }
         }
     }

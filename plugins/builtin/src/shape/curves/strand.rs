@@ -294,33 +294,49 @@ impl Strand {
     /// Shows the segments whose boxes the line enters to `see`, in order; it gives how far on the
     /// line there is something to see.
     pub(super) fn along(&self, line: &Line, mut see: impl FnMut(u32, &Segment, f64) -> f64) {
-        let mut far = line.to;
-        let recip = line.d.recip();
-        // Half a tree of at most 2³² segments is deep.
-        let mut stack = [(0usize, 0usize, 0usize); 34];
-        let mut n = 1;
-        stack[0] = (0, 0, self.segments.len());
-        while n > 0 {
-            n -= 1;
-            let (node, start, end) = stack[n];
-            // All of it is within a ball of radius 2 about the line's origin.
-            let back = line.o - line.d * 4.0;
-            let Some((enter, leave)) = self.boxes[node].intersect_ray(back, recip, 8.0) else {
-                continue;
-            };
-            if enter - 4.0 > far + ROUNDING || leave - 4.0 < line.from - ROUNDING {
-                continue;
-            }
-            if end - start == 1 {
-                let number = u32::try_from(start).expect("tables of a scene are shorter");
-                far = see(number, &self.segments[start], far);
-                continue;
-            }
-            let half = (end - start) / 2;
-            stack[n] = (node + 2 * half, start + half, end);
-            stack[n + 1] = (node + 1, start, start + half);
-            n += 2;
+        // Of a single segment the box is that of the strand, which the ray has entered.
+        if let [segment] = &self.segments[..] {
+            see(0, segment, line.to);
+            return;
         }
+        let walk = Walk { strand: self, line, recip: line.d.recip() };
+        walk.below(0, 0..self.segments.len(), line.to, &mut see);
+    }
+}
+
+/// A line on its way through the boxes of a strand.
+struct Walk<'a> {
+    strand: &'a Strand,
+    line: &'a Line,
+    recip: DVec3,
+}
+
+impl Walk<'_> {
+    /// What is below a box, and how far there is something to see after it.
+    fn below(
+        &self,
+        node: usize,
+        segments: std::ops::Range<usize>,
+        far: f64,
+        see: &mut dyn FnMut(u32, &Segment, f64) -> f64,
+    ) -> f64 {
+        // All of it is within a ball of radius 2 about the line's origin.
+        let back = self.line.o - self.line.d * 4.0;
+        let Some((enter, leave)) = self.strand.boxes[node].intersect_ray(back, self.recip, 8.0)
+        else {
+            return far;
+        };
+        if enter - 4.0 > far + ROUNDING || leave - 4.0 < self.line.from - ROUNDING {
+            return far;
+        }
+        let n = segments.len();
+        if n == 1 {
+            let number = u32::try_from(segments.start).expect("tables of a scene are shorter");
+            return see(number, &self.strand.segments[segments.start], far);
+        }
+        let middle = segments.start + n / 2;
+        let far = self.below(node + 1, segments.start..middle, far, see);
+        self.below(node + 2 * (n / 2), middle..segments.end, far, see)
     }
 }
 

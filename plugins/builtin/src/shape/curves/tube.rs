@@ -132,32 +132,29 @@ const MOST_PARTS: u32 = 4096;
 
 impl Piece<'_> {
     fn chords(&self, chords: &mut Chords) {
-        let mut stack = [Part { curve: *self.whole, start: 0.0, end: 1.0 }; 64];
-        let (mut n, mut looked) = (1, 0);
-        while n > 0 {
-            n -= 1;
-            let part = stack[n];
-            let hull = Hull::of(&part.curve);
-            if hull.is_missed(&part.curve, (self.from, self.to)) {
-                continue;
-            }
-            looked += 1;
-            let settled =
-                if looked > MOST_PARTS || n + 2 > stack.len() || hull.is_still(&part.curve) {
-                    Some([Extreme::Outside; 2])
-                } else {
-                    hull.settled(&part.curve)
-                };
-            if let Some(extremes) = settled {
-                self.part(&part, extremes, chords);
-                continue;
-            }
-            let middle = 0.5 * (part.start + part.end);
-            let (low, high) = halves(&part.curve);
-            stack[n] = Part { curve: high, start: middle, end: part.end };
-            stack[n + 1] = Part { curve: low, start: part.start, end: middle };
-            n += 2;
+        let whole = Part { curve: *self.whole, start: 0.0, end: 1.0 };
+        self.chords_of(&whole, &mut 0, chords);
+    }
+
+    fn chords_of(&self, part: &Part, looked: &mut u32, chords: &mut Chords) {
+        let hull = Hull::of(&part.curve);
+        if hull.is_missed(&part.curve, (self.from, self.to)) {
+            return;
         }
+        *looked += 1;
+        let settled = if *looked > MOST_PARTS || hull.is_still(&part.curve) {
+            Some([Extreme::Outside; 2])
+        } else {
+            hull.settled(&part.curve)
+        };
+        if let Some(extremes) = settled {
+            self.part(part, extremes, chords);
+            return;
+        }
+        let middle = 0.5 * (part.start + part.end);
+        let (low, high) = halves(&part.curve);
+        self.chords_of(&Part { curve: low, start: part.start, end: middle }, looked, chords);
+        self.chords_of(&Part { curve: high, start: middle, end: part.end }, looked, chords);
     }
 
     /// The chord of a part that bounds have settled.

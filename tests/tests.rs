@@ -7,6 +7,7 @@ mod bad_input;
 #[cfg(test)]
 mod cli;
 #[cfg(test)]
+mod curves;
 mod determinism;
 #[cfg(test)]
 mod dynamic;

@@ -101,7 +101,11 @@ fn scene(mode: &str, material: &str) -> String {
     )
 }
 
-fn stage_of(registry: &Registry, text: &str) -> Result<Stage, String> {
+/// The stage of a scene.
+///
+/// # Errors
+/// What is wrong with it.
+pub(crate) fn stage_of(registry: &Registry, text: &str) -> Result<Stage, String> {
     let files = MemoryFiles::default().with("a.scene", text.as_bytes());
     let settings = luxel_lang::Settings::default();
     let loaded = luxel_lang::load(Path::new("a.scene"), &files, registry, &settings);
@@ -110,7 +114,8 @@ fn stage_of(registry: &Registry, text: &str) -> Result<Stage, String> {
     built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
 }
 
-fn linked() -> Registry {
+/// The built-ins.
+pub(crate) fn linked() -> Registry {
     let mut registry = Registry::new();
     for classes in luxel_builtin::CLASSES {
         registry.add("builtin", classes).expect("built-ins have names of their own");

@@ -1,7 +1,7 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
 //! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|plugins|
-//! rays|leaks|leaks-long|errors|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]`. The program under test is `target/release/luxel` beside this one unless given.
+//! rays|leaks|leaks-long|errors|strands|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]`. The program under test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
@@ -15,6 +15,7 @@ mod process;
 mod rays;
 mod reload;
 mod series;
+mod strands;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -29,7 +30,7 @@ struct Plan {
     embree: Option<PathBuf>,
 }
 
-const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|rays|leaks|leaks-long|errors|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]";
+const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|rays|leaks|leaks-long|errors|strands|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]";
 
 fn plan() -> Result<Plan, String> {
     let mut what = "all".to_owned();
@@ -40,7 +41,7 @@ fn plan() -> Result<Plan, String> {
     while let Some(word) = words.next() {
         match word.as_str() {
             "all" | "parse" | "cold" | "memory" | "ply" | "plugins" | "rays" | "leaks"
-            | "leaks-long" | "errors" | "reload" | "cornell" => {
+            | "leaks-long" | "errors" | "strands" | "reload" | "cornell" => {
                 what = word;
             }
             "--luxel" => luxel = words.next().map(PathBuf::from),
@@ -50,7 +51,7 @@ fn plan() -> Result<Plan, String> {
         }
     }
     let program = luxel.filter(|path| path.exists());
-    if !matches!(what.as_str(), "parse" | "rays" | "leaks" | "leaks-long" | "errors")
+    if !matches!(what.as_str(), "parse" | "rays" | "leaks" | "leaks-long" | "errors" | "strands")
         && program.is_none()
     {
         return Err("no `luxel`: run `cargo build --release -p luxel`, or give --luxel".to_owned());
@@ -80,6 +81,9 @@ fn run(plan: &Plan) -> Result<(), String> {
     }
     if wanted("errors") {
         errors::run()?;
+    }
+    if wanted("strands") {
+        strands::run()?;
     }
     if wanted("leaks") {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 40_000);

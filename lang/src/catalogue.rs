@@ -81,7 +81,7 @@ pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0420", "an object that is seen nowhere (warning)"),
     ("E0421", "a plugin that failed while it was asked"),
     ("E0422", "a camera that the integrator cannot work with"),
-    ("E0423", "a light on a surface without end"),
+    ("E0423", "a light on a surface without end, or whose points cannot be chosen"),
     ("E0501", "too many nodes or placements"),
     ("E0502", "too many steps of evaluation"),
     ("E0503", "a list that is too long"),

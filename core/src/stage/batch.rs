@@ -180,8 +180,14 @@ impl<'s> Flight<'s> {
         }
         let local = Local::of(placement, &Ray { t_max: self.walk.t_max, ..self.ray }, self.world);
         let mesh = match &*stage.geometries[placement.geometry as usize] {
-            Geometry::Analytic(object) => {
-                let hit = object.fixed().shape().intersect(&local.ray);
+            Geometry::Analytic(shape) => {
+                let hit = if ANY && shape.occluded(&local.ray, processor) {
+                    Some(Hit { t: 0.0, at: DVec2::ZERO, face: 0 })
+                } else if ANY {
+                    None
+                } else {
+                    shape.intersect(&local.ray, processor, &mut self.steps)
+                };
                 return self.take(index, hit);
             }
             Geometry::Mesh(mesh) => mesh,

@@ -8,6 +8,7 @@ use luxel_sdk::kind::{Kind, LightForm, Wants};
 use luxel_sdk::num::{Bounds3, Transform};
 use luxel_sdk::sampling::Alias;
 
+use super::analytic::Analytic;
 use super::flatten::{Flat, flatten};
 use super::lights::LightSource;
 use super::{
@@ -206,10 +207,11 @@ impl Maker<'_> {
                 let areas: Vec<f64> = (0..index(mesh.indices.len())).map(area).collect();
                 (areas.iter().sum(), Alias::new(&areas).ok())
             }
-            Geometry::Analytic(shape) => (world_area(shape, placement), None),
+            Geometry::Analytic(shape) => (world_area(shape.object(), placement), None),
         };
         if !area.is_finite() {
-            self.builder.diagnostics.push(endless(span, self.scene, placement.node));
+            let found = endless(span, self.scene, placement.node, geometry.bounds());
+            self.builder.diagnostics.push(found);
         }
         self.made.lights.push(LightSource::Surface { object, placement: place, area, triangles });
     }
@@ -235,7 +237,9 @@ impl Maker<'_> {
 
     fn new_geometry(&mut self, id: NodeId, object: &Arc<Object>) -> Option<Geometry> {
         let shape = object.fixed().shape();
-        let Some(triangles) = shape.mesh() else { return Some(Geometry::Analytic(object.clone())) };
+        let Some(triangles) = shape.mesh() else {
+            return Some(Geometry::Analytic(Analytic::new(object.clone())));
+        };
         let span = self.scene.node(id).span;
         match MeshBvh::build(&triangles.points, &triangles.indices) {
             Ok(bvh) => {
@@ -369,9 +373,15 @@ fn world_area(shape: &Object, placement: &Placement) -> f64 {
     shape.area() * scales.sum::<f64>() / f64::from(AREA_POINTS)
 }
 
-/// A surface without end that is to shine.
-fn endless(span: Span, scene: &Scene, shape: NodeId) -> Diagnostic {
+/// A surface that is to shine and has no end, or whose points nobody can choose.
+fn endless(span: Span, scene: &Scene, shape: NodeId, bounds: Bounds3) -> Diagnostic {
     let class = &scene.node(shape).class;
+    if bounds.diagonal().is_finite() {
+        let message = format!("a light on `{class}`: points of it cannot be chosen at random");
+        return Diagnostic::error("E0423", span, message)
+            .label(scene.node(shape).span, "cannot shine")
+            .help("use a shape that can: `cylinder`, `capsule`, `torus`, a `mesh`");
+    }
     let message = format!("a light on a `{class}` without end: its area is infinite");
     Diagnostic::error("E0423", span, message)
         .label(scene.node(shape).span, "has no end")

@@ -9,15 +9,15 @@ use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
+use super::analytic::Analytic;
 use super::closed::is_closed;
 use crate::accel::{Begun, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
-use crate::object::Object;
 
 /// What a placement places. Shared by every placement of the same shape.
 #[derive(Debug)]
 pub enum Geometry {
     /// A shape that intersects itself, in double precision.
-    Analytic(Arc<Object>),
+    Analytic(Analytic),
     /// Triangles and their tree.
     Mesh(Arc<Mesh>),
 }
@@ -242,7 +242,7 @@ impl Mesh {
         let mut lift = DVec3::ZERO;
         for ((corner, i), weight) in [a, b, c].into_iter().zip(corners).zip(weights) {
             let n = mesh.normals[i].as_dvec3();
-            let n = if n.dot(ng) * f64::from(outside as i8 * 2 - 1) < 0.0 { -n } else { n };
+            let n = if (n.dot(ng) > 0.0) == outside { n } else { -n };
             lift -= n * (weight * (p - corner).dot(n).min(0.0));
         }
         lift
@@ -288,7 +288,7 @@ impl Geometry {
     /// A box that holds every point, in the geometry's frame.
     pub fn bounds(&self) -> Bounds3 {
         match self {
-            Self::Analytic(object) => object.fixed().shape().bounds(),
+            Self::Analytic(shape) => shape.object().fixed().shape().bounds(),
             Self::Mesh(mesh) => match mesh.bvh.bounds() {
                 Some((min, max)) => {
                     let centre = mesh.centre;
@@ -305,7 +305,7 @@ impl Geometry {
     /// Whether it encloses a volume.
     pub fn is_closed(&self) -> bool {
         match self {
-            Self::Analytic(object) => object.fixed().shape().is_closed(),
+            Self::Analytic(shape) => shape.object().fixed().shape().is_closed(),
             Self::Mesh(mesh) => *mesh.closed.get_or_init(|| is_closed(mesh.triangles())),
         }
     }
@@ -314,7 +314,7 @@ impl Geometry {
     #[inline(always)]
     pub fn intersect(&self, ray: &Ray, approach: Approach<'_>, steps: &mut u32) -> Option<Hit> {
         match self {
-            Self::Analytic(object) => object.fixed().shape().intersect(ray),
+            Self::Analytic(shape) => shape.intersect(ray, approach.processor, steps),
             Self::Mesh(mesh) => mesh.intersect(ray, approach, steps),
         }
     }
@@ -323,7 +323,7 @@ impl Geometry {
     #[inline(always)]
     pub fn occluded(&self, ray: &Ray, approach: Approach<'_>) -> bool {
         match self {
-            Self::Analytic(object) => object.fixed().shape().intersect(ray).is_some(),
+            Self::Analytic(shape) => shape.occluded(ray, approach.processor),
             Self::Mesh(mesh) => mesh.occluded(ray, approach),
         }
     }
@@ -332,7 +332,7 @@ impl Geometry {
     #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit, precision: Precision) -> Surface {
         match self {
-            Self::Analytic(object) => object.fixed().shape().surface(ray, hit),
+            Self::Analytic(shape) => shape.object().fixed().shape().surface(ray, hit),
             Self::Mesh(mesh) => mesh.surface(hit.face, hit.at, precision),
         }
     }

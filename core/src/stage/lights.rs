@@ -238,7 +238,7 @@ impl Stage {
             }
             (Geometry::Analytic(shape), _) => {
                 let local = placement.point_to_local(from.p + from.lift);
-                shape.fixed().shape().sample(Some(local), u)
+                shape.object().fixed().shape().sample(Some(local), u)
             }
             (Geometry::Mesh(_), None) => None,
         };
@@ -306,7 +306,8 @@ impl Stage {
                     local.p = transform.inverse_point(surface.p);
                     local.ng = transform.inverse_normal(surface.ng).normalize();
                 }
-                let pdf = shape.fixed().shape().pdf(Some(place.point_to_local(from)), &local);
+                let pdf =
+                    shape.object().fixed().shape().pdf(Some(place.point_to_local(from)), &local);
                 pdf / place.area_scale(local.ng)
             }
         }

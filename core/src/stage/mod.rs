@@ -3,6 +3,7 @@
 //! Immutable. A new edit makes a new stage that shares what did not change with the last one, by
 //! content hash.
 
+mod analytic;
 mod batch;
 mod build;
 mod closed;
@@ -30,6 +31,7 @@ use crate::object::{ColorMode, Object, Objects};
 use crate::registry::dynamic::{Alarm, FAILED};
 use crate::scene::{Hash, NodeId, Scene};
 
+pub use analytic::Analytic;
 pub use batch::{Asked, Rooms};
 pub use build::{Built, build};
 pub use eye::{Eye, Seen};

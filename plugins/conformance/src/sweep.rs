@@ -167,7 +167,7 @@ impl Bench {
         let (mut why, mut failed) = (String::new(), false);
         for member in 0..4 {
             for optional in [false, true] {
-                for file in files::NAMES {
+                for file in files::NAMES.into_iter().chain([""]) {
                     let given = least(class, member, optional, file);
                     match self.build(class, &given, ColorMode::Rgb) {
                         Ok(_) => return Ok(given),

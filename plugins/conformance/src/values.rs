@@ -28,6 +28,9 @@ const OPEN: f64 = 1e9;
 /// Rows and columns of the table that is given where one is wanted.
 const SIDE: usize = 3;
 
+/// The table that is given where that is refused: four places, which make a bow.
+const BOW: [f64; 12] = [-2.0, -0.5, 0.3, -0.9, 1.0, -0.6, 1.1, 0.9, 0.8, 2.1, -0.7, -0.2];
+
 /// The dimension of a parameter's first unit.
 pub(crate) fn dimension(param: &Param) -> Dimension {
     let unit = param.unit.split('|').next().unwrap_or_default();
@@ -93,7 +96,7 @@ fn lanes(ty: Type) -> Option<usize> {
 }
 
 /// A value that is likely to be good; `index` tells vectors of a class from each other, `file` is
-/// the one to be read.
+/// the one to be read; without one, tables are of places.
 pub(crate) fn sensible(
     param: &Param,
     index: usize,
@@ -116,6 +119,7 @@ pub(crate) fn sensible(
         Type::Choice => Some(Value::Text(param.words().next()?.into())),
         Type::Text => Some(Value::Text("text".into())),
         Type::File => Some(Value::Path(PathBuf::from(file))),
+        Type::Table if file.is_empty() => Some(Value::Table(Arc::from(BOW))),
         Type::Table => Some(Value::Table(Arc::from([0.0; SIDE * SIDE]))),
         Type::Look => Some(Value::Look(LOOK)),
         Type::Object(kind) => prop(kind, index),

@@ -574,7 +574,7 @@ typedef struct {
     luxel_status (*intersect)(const void *at, const luxel_ray *ray, luxel_hit *out);
     /* The point that a hit names. */
     luxel_status (*surface)(const void *at, const luxel_ray *ray, const luxel_hit *hit, luxel_surface *out);
-    /* Area in the frame of the shape, m²; infinite for one without end. */
+    /* Area in the frame of the shape, m²; infinite for one that cannot shine. */
     luxel_status (*area)(const void *at, double *out);
     /* A point of the surface; `from` may be null. */
     luxel_status (*sample)(const void *at, const luxel_dvec3 *from, const float (*u)[2], luxel_shape_sample *out);
@@ -584,6 +584,12 @@ typedef struct {
     luxel_status (*is_closed)(const void *at, uint32_t *out);
     /* Hands triangles over, and says how many; nothing for shapes that intersect themselves. */
     luxel_status (*mesh)(const void *at, luxel_mesh_sink *sink, uint64_t *out);
+    /* How many parts it consists of, over which the host builds a tree; 0 for one all in one. */
+    luxel_status (*parts)(const void *at, uint32_t *out);
+    /* A box that holds every point of a part, counted from 0. */
+    luxel_status (*part_bounds)(const void *at, uint32_t part, luxel_bounds *out);
+    /* The nearest hit of one part. */
+    luxel_status (*intersect_part)(const void *at, uint32_t part, const luxel_ray *ray, luxel_hit *out);
 } luxel_shape_table;
 
 /* A value that varies over a surface or through space. */

@@ -41,7 +41,9 @@ pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, Stri
     }
     match kind {
         Kind::Shape => {
-            table!(ShapeTable, Some((ShapeTable::of::<Without>(), &["is_closed", "mesh"])))
+            const OPTIONAL: [&str; 5] =
+                ["is_closed", "mesh", "parts", "part_bounds", "intersect_part"];
+            table!(ShapeTable, Some((ShapeTable::of::<Without>(), &OPTIONAL)))
         }
         Kind::Material => table!(MaterialTable, Some((MaterialTable::of::<Without>(), &["needs"]))),
         Kind::Texture => table!(TextureTable, Some((TextureTable::of::<Without>(), &["output"]))),

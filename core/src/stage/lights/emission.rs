@@ -137,7 +137,7 @@ impl Stage {
                 (surface, triangle, placement.area_scale(surface.ng) / area)
             }
             Geometry::Analytic(shape) => {
-                let sample = shape.fixed().shape().sample(None, u.point)?;
+                let sample = shape.object().fixed().shape().sample(None, u.point)?;
                 (sample.surface, 0, sample.pdf)
             }
         };

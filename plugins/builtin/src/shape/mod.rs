@@ -4,6 +4,7 @@ mod axial;
 mod r#box;
 mod capsule;
 mod cone;
+mod curves;
 mod cylinder;
 mod disk;
 mod heightfield;
@@ -32,6 +33,7 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::shape::<cone::Cone>("cone"),
     Class::shape::<capsule::Capsule>("capsule"),
     Class::shape::<torus::Torus>("torus"),
+    Class::shape::<curves::Curves<'_>>("curves"),
     Class::shape::<plane::Plane>("plane"),
     Class::shape::<heightfield::Heightfield<'_>>("heightfield"),
     Class::shape::<mesh::Mesh<'_>>("mesh"),

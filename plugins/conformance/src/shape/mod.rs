@@ -53,8 +53,14 @@ fn look_at(subject: &Subject<'_>, set: &Set, rng: &mut Rng, judge: &mut Judge) {
         };
         look.rays(rng, judge);
         look.scales(rng, judge);
-        if !look.endless {
+        if !shape.area().is_finite() {
+            let none = shape.sample(None, [0.5; 2]).is_none();
+            judge.holds("what cannot shine has no samples", none, || set.label.clone());
+        } else if !look.endless {
             look.samples(rng, subject.options.samples, judge);
+        }
+        if shape.parts() > 0 {
+            look.parts(rng, judge);
         }
     });
 }
@@ -266,6 +272,26 @@ impl<'a> Look<'a> {
         // Half a length of the box: an error bound that large would tell nothing.
         let loose = s.p_err.max_element() / (self.reach * 1e-9);
         judge.within("error bounds are small", loose, 1.0, at);
+    }
+
+    /// What the parts are hit at is what the shape is, and they lie in their boxes.
+    fn parts(&self, rng: &mut Rng, judge: &mut Judge) {
+        let n = self.shape.parts();
+        for _ in 0..200 {
+            let ray = self.chord(rng);
+            let hits =
+                (0..n).filter_map(|part| Some((part, self.shape.intersect_part(part, &ray)?)));
+            let nearest = hits.min_by(|a, b| a.1.t.total_cmp(&b.1.t));
+            let (whole, part) = (self.shape.intersect(&ray), nearest.map(|(_, hit)| hit));
+            let same = whole.map(|hit| hit.t.to_bits()) == part.map(|hit| hit.t.to_bits());
+            let at = || format!("{}: {whole:?} and of parts {nearest:?}", self.at(&ray));
+            judge.holds("its parts are hit where it is", same, at);
+            if let Some((part, hit)) = nearest {
+                let p = self.shape.surface(&ray, &hit).p;
+                let held = self.shape.part_bounds(part).contains(p);
+                judge.holds("hits inside bounds", held, at);
+            }
+        }
     }
 
     /// The normal against neighbouring hits, and whether a closed shape is entered and left in turn.

@@ -24,7 +24,8 @@ pub(super) fn sets(subject: &Subject<'_>) -> Vec<(Set, Rng)> {
         (format!("scaled by {scale:e}"), changed(subject, usual, change))
     };
     let moved = changed(subject, usual, |param, x| {
-        if is_place(param) { (DVec3::from_slice(x) + FAR).to_array().to_vec() } else { x.to_vec() }
+        let far = |i: usize| if is_place(param) { FAR[i % 3] } else { 0.0 };
+        x.iter().enumerate().map(|(i, x)| x + far(i)).collect()
     });
     let all = SCALES.map(scaled).into_iter().chain([(format!("moved by {FAR}"), moved)]);
     let sets = all.zip(0u64..).filter_map(|((label, given), i)| {
@@ -35,8 +36,11 @@ pub(super) fn sets(subject: &Subject<'_>) -> Vec<(Set, Rng)> {
     sets.collect()
 }
 
-/// A place and not an extent: the origin unless given.
+/// A place and not an extent: the origin unless given; or a table of places, by its name.
 fn is_place(param: &Param) -> bool {
+    if param.ty == Type::Table {
+        return param.name == "points";
+    }
     let origin =
         matches!(param.default, Preset::Numbers(n) if n[..3].iter().all(|x| x.abs() <= 0.0));
     param.ty == Type::DVec3 && param.min < 0.0 && origin
@@ -55,6 +59,7 @@ fn changed(
         let old = match (at.map(|at| &given[at].1), &param.default) {
             (Some(Value::Number(x, _)), _) => vec![*x],
             (Some(Value::Vector(x)), _) => x.clone(),
+            (Some(Value::Table(x)), _) => x.to_vec(),
             (None, Preset::Numbers(numbers)) if numbers.len() >= lanes => numbers[..lanes].to_vec(),
             _ => continue,
         };
@@ -64,6 +69,7 @@ fn changed(
         }
         any = true;
         let new = match *new {
+            _ if param.ty == Type::Table => Value::Table(new.into()),
             [x] => Value::Number(x, dimension(param)),
             _ => Value::Vector(new),
         };

@@ -106,7 +106,8 @@ pub trait Shape: Send + Sync {
     /// The point that a hit names.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
 
-    /// Area in the frame of the shape, m²; infinite for one without end, which cannot shine.
+    /// Area in the frame of the shape, m²; infinite for one that cannot shine: it has no end, or
+    /// points of it cannot be chosen at random.
     fn area(&self) -> f64;
 
     /// A point, `u` uniform in [0, 1)². With `from`, the shape may prefer what is seen from there.
@@ -122,6 +123,26 @@ pub trait Shape: Send + Sync {
 
     /// Triangles for the host to take over. Then no other method but `bounds` is called.
     fn mesh(&self) -> Option<Arc<TriangleMesh>> {
+        None
+    }
+
+    /// How many parts it consists of: the host builds a tree over their boxes and asks only for those
+    /// that a ray enters, so that a shape of thousands of strands costs what one does. 0 for a shape
+    /// that is all in one; `intersect` meets all of them in either case.
+    fn parts(&self) -> u32 {
+        0
+    }
+
+    /// A box that holds every point of a part, counted from 0.
+    fn part_bounds(&self, part: u32) -> Bounds3 {
+        let _ = part;
+        Bounds3::EMPTY
+    }
+
+    /// The nearest hit of one part, as `intersect` finds that of all. `surface` is to find the point
+    /// by the hit alone, which may be of any part.
+    fn intersect_part(&self, part: u32, ray: &Ray) -> Option<Hit> {
+        let _ = (part, ray);
         None
     }
 }

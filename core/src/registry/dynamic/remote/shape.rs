@@ -35,6 +35,26 @@ impl RemoteShape {
         self.0.wrong("gave a point of its surface that is not finite or has no unit normal");
         false
     }
+
+    /// A box of numbers, or one of nothing.
+    fn boxed(&self, found: Option<Bounds3>) -> Bounds3 {
+        let bounds = found.unwrap_or(Bounds3::EMPTY);
+        if !(bounds.min.is_nan() || bounds.max.is_nan()) {
+            return bounds;
+        }
+        self.0.wrong("gave bounds that are no numbers");
+        Bounds3::EMPTY
+    }
+
+    /// A hit within the limits of its ray.
+    #[inline(always)]
+    fn within(&self, ray: &Ray, Hit { t, at, face }: Hit) -> Option<Hit> {
+        if t > 0.0 && t <= ray.t_max && at.is_finite() {
+            return Some(Hit { t, at, face });
+        }
+        self.0.wrong("gave a hit beyond the ray's limits");
+        None
+    }
 }
 
 /// What a shape that has failed is left with.
@@ -51,13 +71,7 @@ pub(in super::super) const NOWHERE: Surface = Surface {
 impl Shape for RemoteShape {
     fn bounds(&self) -> Bounds3 {
         // SAFETY: the struct behind the head is of the class that the table belongs to.
-        let found = self.0.found(unsafe { self.table().bounds(self.0.at()) });
-        let bounds = found.unwrap_or(Bounds3::EMPTY);
-        if !(bounds.min.is_nan() || bounds.max.is_nan()) {
-            return bounds;
-        }
-        self.0.wrong("gave bounds that are no numbers");
-        Bounds3::EMPTY
+        self.boxed(self.0.found(unsafe { self.table().bounds(self.0.at()) }))
     }
 
     #[inline(always)]
@@ -72,12 +86,7 @@ impl Shape for RemoteShape {
             return None;
         }
         // SAFETY: the library has written a result.
-        let Hit { t, at, face } = *unsafe { out.assume_init_ref() };
-        if t > 0.0 && t <= ray.t_max && at.is_finite() {
-            return Some(Hit { t, at, face });
-        }
-        self.0.wrong("gave a hit beyond the ray's limits");
-        None
+        self.within(ray, *unsafe { out.assume_init_ref() })
     }
 
     #[inline(always)]
@@ -162,6 +171,34 @@ impl Shape for RemoteShape {
             return None;
         }
         mesh.map(Arc::new)
+    }
+
+    fn parts(&self) -> u32 {
+        // SAFETY: as above.
+        self.0.found(unsafe { self.table().parts(self.0.at()) }).unwrap_or(0)
+    }
+
+    fn part_bounds(&self, part: u32) -> Bounds3 {
+        if self.0.is_poisoned() {
+            return Bounds3::EMPTY;
+        }
+        // SAFETY: as above.
+        self.boxed(self.0.found(unsafe { self.table().part_bounds(self.0.at(), part) }))
+    }
+
+    #[inline(always)]
+    fn intersect_part(&self, part: u32, ray: &Ray) -> Option<Hit> {
+        if self.0.is_poisoned() {
+            return None;
+        }
+        let mut out = MaybeUninit::uninit();
+        // SAFETY: as above.
+        let status = unsafe { (self.table().intersect_part)(self.0.at(), part, ray, &mut out) };
+        if !self.0.is_ok(status) {
+            return None;
+        }
+        // SAFETY: the library has written a result.
+        self.within(ray, *unsafe { out.assume_init_ref() })
     }
 }
 

@@ -46,7 +46,7 @@ table! {
         fn intersect(shape, ray: &Ray) -> Hit { shape.intersect(ray) }
         /// The point that a hit names.
         fn surface(shape, ray: &Ray, hit: &Hit) -> Surface { Some(shape.surface(ray, hit)) }
-        /// Area in the frame of the shape, m²; infinite for one without end.
+        /// Area in the frame of the shape, m²; infinite for one that cannot shine.
         fn area(shape) -> f64 { Some(shape.area()) }
         /// A point of the surface; `from` may be null.
         fn sample(shape, from: Option<&DVec3>, u: &[f32; 2]) -> ShapeSample {
@@ -70,5 +70,11 @@ table! {
             });
             Some(mesh.indices.len() as u64)
         }
+        /// How many parts it consists of, over which the host builds a tree; 0 for one all in one.
+        fn parts(shape) -> u32 { Some(shape.parts()) }
+        /// A box that holds every point of a part, counted from 0.
+        fn part_bounds(shape, part: u32) -> Bounds3 { Some(shape.part_bounds(part)) }
+        /// The nearest hit of one part.
+        fn intersect_part(shape, part: u32, ray: &Ray) -> Hit { shape.intersect_part(part, ray) }
     }
 }

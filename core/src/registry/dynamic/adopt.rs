@@ -41,7 +41,10 @@ pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, Stri
     }
     match kind {
         Kind::Shape => {
-            table!(ShapeTable, Some((ShapeTable::of::<Without>(), &["is_closed", "mesh"])))
+            table!(
+                ShapeTable,
+                Some((ShapeTable::of::<Without>(), &["is_closed", "mesh", "distance"]))
+            )
         }
         Kind::Material => table!(MaterialTable, Some((MaterialTable::of::<Without>(), &["needs"]))),
         Kind::Texture => table!(TextureTable, Some((TextureTable::of::<Without>(), &["output"]))),

@@ -9,6 +9,8 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look, Param, Preset, Role, Type, Unit};
 use luxel_sdk::sampling::Rng;
 
+use crate::sweep::part;
+
 /// How far a set is from what people render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Level {
@@ -119,6 +121,7 @@ pub(crate) fn sensible(
         Type::Table => Some(Value::Table(Arc::from([0.0; SIDE * SIDE]))),
         Type::Look => Some(Value::Look(LOOK)),
         Type::Object(kind) => prop(kind, index),
+        Type::Part => Some(part(index, 0)),
         _ => None,
     }
 }
@@ -248,7 +251,7 @@ pub(crate) fn show(value: &Value) -> String {
         Value::Text(text) => format!("\"{text}\""),
         Value::Bool(b) => b.to_string(),
         Value::Path(path) => path.display().to_string(),
-        Value::Node(_) => "a reference".to_owned(),
+        Value::Node(_) | Value::Moved(..) => "a reference".to_owned(),
         other => format!("{other:?}"),
     }
 }

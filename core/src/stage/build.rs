@@ -211,6 +211,10 @@ impl Maker<'_> {
         };
         if !area.is_finite() {
             self.builder.diagnostics.push(endless(span, self.scene, placement.node));
+        } else if let Geometry::Analytic(shape) = &**geometry
+            && !can_be_sampled(shape)
+        {
+            self.builder.diagnostics.push(unsampled(span, self.scene, placement.node));
         }
         self.made.lights.push(LightSource::Surface { object, placement: place, area, triangles });
     }
@@ -361,6 +365,22 @@ fn world_area(shape: &Object, placement: &Placement) -> f64 {
         Some(transform.area_scale(shape.sample(None, u)?.surface.ng))
     });
     shape.area() * scales.sum::<f64>() / f64::from(AREA_POINTS)
+}
+
+/// Whether a shape finds points of its surface.
+fn can_be_sampled(shape: &Object) -> bool {
+    let shape = shape.fixed().shape();
+    let found = |i| shape.sample(None, luxel_sdk::sampling::sobol_owen_2d(i, 0x5eed));
+    (0..AREA_POINTS).any(|i| found(i).is_some())
+}
+
+/// A lamp whose surface no one can choose points of.
+fn unsampled(span: Span, scene: &Scene, shape: NodeId) -> Diagnostic {
+    let class = &scene.node(shape).class;
+    let message = format!("a light on a `{class}` is found by chance alone: expect noise");
+    Diagnostic::warning("E0417", span, message)
+        .label(scene.node(shape).span, "has no points to be chosen")
+        .help("a lamp of spheres, boxes, rectangles or a mesh is found by its light")
 }
 
 /// A surface without end that is to shine.

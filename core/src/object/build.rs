@@ -15,7 +15,7 @@ use super::Object;
 use super::block::Block;
 use super::colour::{self, Amount, Lanes};
 use super::context::{self, Embedded, Reader};
-use super::part::OWN_BITS;
+use super::part::{MeshParts, OWN_BITS};
 use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
 use super::resolve::SCRATCH;
 use crate::cast::{self, narrow, whole};
@@ -61,6 +61,8 @@ pub struct Builder<'a> {
     mode: ColorMode,
     embedded: Embedded,
     before: &'a Objects,
+    /// How triangles become a part of another shape; without it they cannot.
+    pub mesh_parts: Option<MeshParts>,
     /// What this build made or kept.
     pub objects: Objects,
     /// What was found wrong.
@@ -78,8 +80,8 @@ impl<'a> Builder<'a> {
     ) -> Self {
         let embedded = embedded_files(scene);
         let objects = Objects { alarm: before.alarm.clone(), ..Objects::default() };
-        let diagnostics = vec![];
-        Self { registry, scene, files, mode, embedded, before, objects, diagnostics }
+        let (mesh_parts, diagnostics) = (None, vec![]);
+        Self { registry, scene, files, mode, embedded, before, mesh_parts, objects, diagnostics }
     }
 
     /// The object of a node. `None` when something is wrong with it, which has then been said.
@@ -219,6 +221,11 @@ impl<'a> Builder<'a> {
             (Type::Object(Kind::Shape), _) => {}
             (Type::Part, Some(Value::Node(id))) => self.part(draft, param, *id, None)?,
             (Type::Part, Some(Value::Moved(id, to))) => self.part(draft, param, *id, Some(to))?,
+            (Type::Object(_), Some(Value::Node(id))) => {
+                if let Some(child) = self.build(*id) {
+                    draft.child(param.offset, &child);
+                }
+            }
             (Type::Part, None) => return Err(format!("`{}` is missing: a shape", param.name)),
             (Type::Object(Kind::Phase), None) => {
                 let child = self.preset(Kind::Phase, "isotropic");

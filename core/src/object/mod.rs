@@ -29,6 +29,7 @@ use patch::Patches;
 pub use build::{Builder, ColorMode, Objects};
 pub use colour::white;
 pub use context::{Embedded, Reader};
+pub use part::MeshParts;
 pub use resolve::{Resolved, Scratch, Site};
 
 /// A built object. Immutable; shared by everything that uses it.

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use luxel_sdk::kind::{Hit, Kind, Shape, ShapeRef, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, Kind, Shape, ShapeRef, ShapeSample, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, Transform};
 use luxel_sdk::params::Param;
 use luxel_sdk::sampling::sobol_owen_2d;
 
 use super::Object;
 use super::build::{Builder, Draft};
+use crate::cast;
 use crate::diag::Diagnostic;
 use crate::registry::common_params;
 use crate::scene::NodeId;
@@ -46,11 +47,18 @@ impl Builder<'_> {
             })
             .transpose()?;
         let Some(child) = self.build(id) else { return Ok(()) };
-        if child.fixed().shape().mesh().is_some() {
-            let class = child.class.name;
-            return Err(format!("`{name}`: a `{class}` is triangles, which cannot be a part yet"));
-        }
-        draft.part(param.offset, &child, transform);
+        let (body, bits) = match child.fixed().shape().mesh() {
+            None => (Body::Object(child.clone()), child.face_bits),
+            Some(triangles) => {
+                let bits = u32::BITS - cast::index(triangles.indices.len()).leading_zeros();
+                let make = self.mesh_parts.ok_or("triangles cannot be a part here")?;
+                let tree = make(triangles).map_err(|why| format!("`{name}`: {why}"))?;
+                (Body::Triangles(tree), bits)
+            }
+        };
+        draft.face_bits = draft.face_bits.max(bits + 1);
+        draft.part(param.offset, body, transform);
+        draft.parts.push(child);
         if draft.face_bits > FACE_BITS {
             let deepest = FACE_BITS - OWN_BITS;
             return Err(format!("`{name}`: shapes stand in one another more than {deepest} deep"));
@@ -60,19 +68,28 @@ impl Builder<'_> {
 }
 
 impl Draft {
-    fn part(&mut self, offset: usize, child: &Arc<Object>, transform: Option<Transform>) {
-        match transform {
-            None => self.block.write_raw(offset, child.fixed().handle()),
-            Some(transform) => {
-                let moved = Arc::new(Moved::new(child.clone(), transform));
-                // It stays where it is for as long as the object owns it.
-                self.block.write_raw(offset, ShapeRef::new(&*moved));
-                self.owned.push(moved);
-            }
+    /// Analytic shapes that stand in the frame of the whole are their own handles.
+    fn part(&mut self, offset: usize, body: Body, transform: Option<Transform>) {
+        if let (Body::Object(child), None) = (&body, transform) {
+            return self.block.write_raw(offset, child.fixed().handle());
         }
-        self.face_bits = self.face_bits.max(child.face_bits + 1);
-        self.parts.push(child.clone());
+        let moved = Arc::new(Moved::new(body, transform.unwrap_or(Transform::IDENTITY)));
+        // It stays where it is for as long as the object owns it.
+        self.block.write_raw(offset, ShapeRef::new(&*moved));
+        self.owned.push(moved);
     }
+}
+
+/// How triangles become a shape that intersects itself.
+///
+/// # Errors
+/// Why they cannot.
+pub type MeshParts = fn(Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String>;
+
+/// What a part is.
+enum Body {
+    Object(Arc<Object>),
+    Triangles(Arc<dyn Shape>),
 }
 
 /// Points at which the area scale of a transform that is no similarity is averaged.
@@ -80,14 +97,14 @@ const AREA_POINTS: u32 = 1024;
 
 /// A shape with a transform of its own.
 struct Moved {
-    shape: Arc<Object>,
+    body: Body,
     transform: Transform,
     /// The least by which the transform stretches: distances grow by no less.
     least: f64,
 }
 
 impl Moved {
-    fn new(shape: Arc<Object>, transform: Transform) -> Self {
+    fn new(body: Body, transform: Transform) -> Self {
         // The inverse stretches by no more than the root of the sum of its squares.
         let inverse = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| transform.inverse_vector(axis));
         let most = if transform.is_rigid_or_uniform() {
@@ -97,11 +114,14 @@ impl Moved {
         };
         // Rounding must not make distances too long.
         let least = (1.0 - 64.0 * f64::EPSILON) / most;
-        Self { shape, transform, least }
+        Self { body, transform, least }
     }
 
     fn shape(&self) -> &dyn Shape {
-        self.shape.fixed().shape()
+        match &self.body {
+            Body::Object(object) => object.fixed().shape(),
+            Body::Triangles(tree) => &**tree,
+        }
     }
 
     /// A point of the shape in the outer frame.

@@ -9,6 +9,7 @@ use luxel_sdk::num::{Bounds3, Transform};
 use luxel_sdk::sampling::Alias;
 
 use super::flatten::{Flat, flatten};
+use super::geometry::mesh_part;
 use super::lights::LightSource;
 use super::{
     Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage,
@@ -47,7 +48,8 @@ pub fn build(
     let mode = features::color_mode(&scene, film.color);
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
-    let builder = Builder::new(registry, &scene, files, mode, &cache.objects);
+    let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
+    builder.mesh_parts = Some(mesh_part);
     let has_media = scene.nodes.iter().any(|node| node.kind == Kind::Medium);
     let mut maker = Maker { scene: &scene, builder, cache, has_media, made: Made::default() };
     match flatten(&scene) {

@@ -220,8 +220,13 @@ pub(crate) fn part(index: usize, place: usize) -> Value {
     Value::Node(NodeId(u32::try_from(at).expect("there are few props")))
 }
 
-/// The prop of a kind; where there are several, `index` tells which, so that two children differ.
-fn prop(kind: Kind, index: usize) -> Option<Value> {
+/// The prop of a type: the node that such a handle may be; where there are several, `index` tells which, so that two children differ.
+fn prop(ty: Type, index: usize) -> Option<Value> {
+    let kind = match ty {
+        Type::Part => return Some(part(index, 0)),
+        Type::Object(kind) => kind,
+        _ => return None,
+    };
     let props: Vec<u32> = (0..).zip(PROPS).filter(|(_, p)| p.0 == kind).map(|(i, _)| i).collect();
     let id = props.get(index % props.len().max(1))?;
     Some(Value::Node(NodeId(*id)))
@@ -340,7 +345,7 @@ impl Sweep<'_> {
         let mut any = false;
         for param in own(self.class).filter(|param| param.textured && param.group.is_empty()) {
             given.retain(|(name, _)| *name != param.name);
-            given.extend(prop(Kind::Texture, 0).map(|value| (param.name, value)));
+            given.extend(prop(Type::Object(Kind::Texture), 0).map(|value| (param.name, value)));
             any = true;
         }
         if any && let Err(why) = self.push("textured", Level::Usual, given) {

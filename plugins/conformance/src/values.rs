@@ -5,11 +5,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use luxel_core::scene::{Color, Value};
-use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look, Param, Preset, Role, Type, Unit};
 use luxel_sdk::sampling::Rng;
-
-use crate::sweep::part;
 
 /// How far a set is from what people render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +97,7 @@ pub(crate) fn sensible(
     param: &Param,
     index: usize,
     file: &str,
-    prop: impl Fn(Kind, usize) -> Option<Value>,
+    prop: impl Fn(Type, usize) -> Option<Value>,
 ) -> Option<Value> {
     if is_number(param) {
         return Some(number(param, typical(param)));
@@ -120,8 +117,7 @@ pub(crate) fn sensible(
         Type::File => Some(Value::Path(PathBuf::from(file))),
         Type::Table => Some(Value::Table(Arc::from([0.0; SIDE * SIDE]))),
         Type::Look => Some(Value::Look(LOOK)),
-        Type::Object(kind) => prop(kind, index),
-        Type::Part => Some(part(index, 0)),
+        Type::Object(_) | Type::Part => prop(param.ty, index),
         _ => None,
     }
 }

@@ -24,6 +24,8 @@ mod manual;
 #[cfg(test)]
 mod scenes;
 #[cfg(test)]
+mod solids;
+#[cfg(test)]
 mod truths;
 #[cfg(test)]
 mod turns;

@@ -146,6 +146,7 @@ fn what(param: &Param) -> String {
         Type::Table => "list of numbers".into(),
         Type::Look => "look_at(from, to, up)".into(),
         Type::Object(kind) => kind.word().into(),
+        Type::Part => "shape".into(),
     }
 }
 

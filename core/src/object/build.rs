@@ -15,6 +15,7 @@ use super::Object;
 use super::block::Block;
 use super::colour::{self, Amount, Lanes};
 use super::context::{self, Embedded, Reader};
+use super::part::{MeshParts, OWN_BITS};
 use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
 use super::resolve::SCRATCH;
 use crate::cast::{self, narrow, whole};
@@ -55,11 +56,13 @@ impl Objects {
 /// Makes objects of the nodes of one scene.
 pub struct Builder<'a> {
     registry: &'a Registry,
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     files: &'a dyn Files,
     mode: ColorMode,
     embedded: Embedded,
     before: &'a Objects,
+    /// How triangles become a part of another shape; without it they cannot.
+    pub mesh_parts: Option<MeshParts>,
     /// What this build made or kept.
     pub objects: Objects,
     /// What was found wrong.
@@ -77,8 +80,8 @@ impl<'a> Builder<'a> {
     ) -> Self {
         let embedded = embedded_files(scene);
         let objects = Objects { alarm: before.alarm.clone(), ..Objects::default() };
-        let diagnostics = vec![];
-        Self { registry, scene, files, mode, embedded, before, objects, diagnostics }
+        let (mesh_parts, diagnostics) = (None, vec![]);
+        Self { registry, scene, files, mode, embedded, before, mesh_parts, objects, diagnostics }
     }
 
     /// The object of a node. `None` when something is wrong with it, which has then been said.
@@ -123,6 +126,7 @@ impl<'a> Builder<'a> {
             patches: Patches::default(),
             owned: vec![],
             parts: vec![],
+            face_bits: OWN_BITS,
             mode: self.mode,
         };
         let watch = remote(class).map(|remote| {
@@ -145,6 +149,7 @@ impl<'a> Builder<'a> {
             patches: draft.patches,
             owned: draft.owned,
             parts: draft.parts,
+            face_bits: draft.face_bits,
             watch,
             needs: None,
             reads: vec![],
@@ -214,11 +219,14 @@ impl<'a> Builder<'a> {
         match (param.ty, value) {
             (Type::Emission, _) => return self.emission(draft, param, value, node),
             (Type::Object(Kind::Shape), _) => {}
+            (Type::Part, Some(Value::Node(id))) => self.part(draft, param, *id, None)?,
+            (Type::Part, Some(Value::Moved(id, to))) => self.part(draft, param, *id, Some(to))?,
             (Type::Object(_), Some(Value::Node(id))) => {
                 if let Some(child) = self.build(*id) {
                     draft.child(param.offset, &child);
                 }
             }
+            (Type::Part, None) => return Err(format!("`{}` is missing: a shape", param.name)),
             (Type::Object(Kind::Phase), None) => {
                 let child = self.preset(Kind::Phase, "isotropic");
                 draft.child(param.offset, &child);
@@ -302,11 +310,12 @@ fn embedded_files(scene: &Scene) -> Embedded {
 }
 
 /// A template in the making.
-struct Draft {
-    block: Block,
+pub(super) struct Draft {
+    pub(super) block: Block,
     patches: Patches,
-    owned: Vec<Arc<dyn std::any::Any + Send + Sync>>,
-    parts: Vec<Arc<Object>>,
+    pub(super) owned: Vec<Arc<dyn std::any::Any + Send + Sync>>,
+    pub(super) parts: Vec<Arc<Object>>,
+    pub(super) face_bits: u32,
     mode: ColorMode,
 }
 

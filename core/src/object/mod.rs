@@ -8,6 +8,7 @@ mod block;
 mod build;
 mod colour;
 mod context;
+mod part;
 mod patch;
 mod resolve;
 
@@ -28,6 +29,7 @@ use patch::Patches;
 pub use build::{Builder, ColorMode, Objects};
 pub use colour::white;
 pub use context::{Embedded, Reader};
+pub use part::MeshParts;
 pub use resolve::{Resolved, Scratch, Site};
 
 /// A built object. Immutable; shared by everything that uses it.
@@ -41,6 +43,8 @@ pub struct Object {
     owned: Vec<Arc<dyn Any + Send + Sync>>,
     /// Objects that this one is made of.
     parts: Vec<Arc<Object>>,
+    /// Bits that its hits' faces may take, where it is a shape.
+    face_bits: u32,
     /// What a material looks at, where that is the same everywhere.
     needs: Option<Needs>,
     /// What becomes of it, if its class came from a library.

@@ -77,7 +77,8 @@ pub struct Resolved<'a> {
     class: &'a Class,
 }
 
-/// What a parameter that takes another object holds: a `MaterialRef` or a `PhaseRef`.
+/// What a parameter that takes another object holds: a `MaterialRef`, a `PhaseRef` or a
+/// `ShapeRef`.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub(super) struct Handle {

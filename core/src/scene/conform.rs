@@ -78,6 +78,7 @@ pub type DefaultUnits<'a> = &'a dyn Fn(Dimension) -> Option<f64>;
 pub fn conform(param: &Param, given: Given, units: DefaultUnits<'_>) -> Result<Value, Misfit> {
     match (param.ty, given) {
         (Type::Object(wanted), Given::Node(id, kind)) if wanted == kind => Ok(Value::Node(id)),
+        (Type::Part, Given::Node(id, Kind::Shape)) => Ok(Value::Node(id)),
         (_, Given::Node(id, Kind::Texture)) if param.textured => Ok(Value::Node(id)),
         (_, Given::Node(_, kind)) => Err(wrong_node(param, kind)),
         (Type::Bool, Given::Bool(value)) => Ok(Value::Bool(value)),
@@ -143,6 +144,7 @@ pub fn wanted(param: &Param) -> String {
         Type::Table => with_unit("a list of numbers"),
         Type::Look => "look_at(from, to, up)".to_owned(),
         Type::Object(kind) => format!("a {kind}"),
+        Type::Part => "a shape".to_owned(),
     }
 }
 

@@ -75,9 +75,17 @@ fn print_placed(out: &mut String, item: &Placed) {
         Target::Node(id) => write!(out, "  n{}", id.0),
         Target::Group(id) => write!(out, "  g{}", id.0),
     };
-    if item.transform != DAffine3::IDENTITY {
-        let rows = item.transform.matrix3.transpose().to_cols_array();
-        let t = item.transform.translation;
+    print_transform(out, &item.transform);
+    if let Some(material) = item.material {
+        let _ = write!(out, " material n{}", material.0);
+    }
+    out.push('\n');
+}
+
+fn print_transform(out: &mut String, transform: &DAffine3) {
+    if *transform != DAffine3::IDENTITY {
+        let rows = transform.matrix3.transpose().to_cols_array();
+        let t = transform.translation;
         out.push_str(" at [");
         for row in 0..3 {
             let r = &rows[3 * row..3 * row + 3];
@@ -85,10 +93,6 @@ fn print_placed(out: &mut String, item: &Placed) {
             let _ = write!(out, "{} {} {} {}{end}", r[0], r[1], r[2], t[row]);
         }
     }
-    if let Some(material) = item.material {
-        let _ = write!(out, " material n{}", material.0);
-    }
-    out.push('\n');
 }
 
 fn print_value(out: &mut String, value: &Value) {
@@ -114,6 +118,11 @@ fn print_value(out: &mut String, value: &Value) {
             write!(out, "look_at(from = {}, to = {}, up = {})", look.from, look.to, look.up)
         }
         Value::Node(id) => write!(out, "n{}", id.0),
+        Value::Moved(id, transform) => {
+            let _ = write!(out, "n{}", id.0);
+            print_transform(out, transform);
+            Ok(())
+        }
     };
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use glam::DAffine3;
 use luxel_sdk::params::{Dimension, Look};
 
 use super::{Color, Group, Node, NodeId, Scene, Target};
@@ -33,6 +34,8 @@ pub enum Value {
     Look(Look),
     /// Another node.
     Node(NodeId),
+    /// A shape that is a part of another, moved in the frame of that one.
+    Moved(NodeId, Arc<DAffine3>),
 }
 
 /// The hash of a node, its children by theirs. Label and place in the file do not count.
@@ -140,6 +143,11 @@ fn hash_value(hasher: &mut blake3::Hasher, value: &Value, child: &impl Fn(NodeId
         Value::Node(id) => {
             hasher.update(&[9]);
             hasher.update(&child(*id));
+        }
+        Value::Moved(id, transform) => {
+            hasher.update(&[10]);
+            hasher.update(&child(*id));
+            numbers(hasher, &transform.to_cols_array());
         }
     }
 }

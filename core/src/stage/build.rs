@@ -6,15 +6,15 @@ use std::sync::Arc;
 use glam::DVec3;
 use luxel_sdk::kind::{Kind, LightForm, Wants};
 use luxel_sdk::num::{Bounds3, Transform};
-use luxel_sdk::sampling::Alias;
 
 use super::analytic::Analytic;
 use super::flatten::{Flat, flatten};
+use super::geometry::mesh_part;
 use super::lights::LightSource;
 use super::{
     Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage,
 };
-use super::{failures, features, import, nesting};
+use super::{failures, features, import, nesting, shining};
 use crate::accel::{BuildError, MeshBvh, TopBvh};
 use crate::cast::{index, whole};
 use crate::diag::{Diagnostic, Span};
@@ -48,7 +48,8 @@ pub fn build(
     let mode = features::color_mode(&scene, film.color);
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
-    let builder = Builder::new(registry, &scene, files, mode, &cache.objects);
+    let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
+    builder.mesh_parts = Some(mesh_part);
     let mut maker = Maker { scene: &scene, builder, cache, made: Made::default() };
     match flatten(&scene) {
         Ok(flats) => flats.iter().for_each(|flat| maker.place(flat)),
@@ -191,28 +192,9 @@ impl Maker<'_> {
     fn shining(&mut self, object: Arc<Object>, placement: &Placement, span: Span) {
         let place = index(self.made.placements.len());
         let geometry = &self.made.geometries[placement.geometry as usize];
-        let (area, triangles): (f64, _) = match &**geometry {
-            Geometry::Mesh(mesh) => {
-                let mesh = mesh.triangles();
-                let area = |i: u32| {
-                    let [a, b, c] = mesh.corners(i);
-                    let normal = (b - a).cross(c - a);
-                    let area = normal.length() / 2.0;
-                    if area > 0.0 {
-                        area * placement.area_scale(normal / (2.0 * area))
-                    } else {
-                        0.0
-                    }
-                };
-                let areas: Vec<f64> = (0..index(mesh.indices.len())).map(area).collect();
-                (areas.iter().sum(), Alias::new(&areas).ok())
-            }
-            Geometry::Analytic(shape) => (world_area(shape.object(), placement), None),
-        };
-        if !area.is_finite() {
-            let found = endless(span, self.scene, placement.node, geometry.bounds());
-            self.builder.diagnostics.push(found);
-        }
+        let (area, triangles) = shining::measured(geometry, placement);
+        let shape = (self.scene, placement.node);
+        self.builder.diagnostics.extend(shining::doubts(geometry, area, shape, span));
         self.made.lights.push(LightSource::Surface { object, placement: place, area, triangles });
     }
 
@@ -353,39 +335,6 @@ impl Maker<'_> {
             outside,
         })
     }
-}
-
-/// Points at which the area scale of a transform that is no similarity is averaged.
-const AREA_POINTS: u32 = 1024;
-
-/// Area of an analytic shape in the world. Exact for similarities; else the mean scale over points
-/// that the shape samples uniformly.
-fn world_area(shape: &Object, placement: &Placement) -> f64 {
-    let shape = shape.fixed().shape();
-    let Some(transform) = &placement.transform else { return shape.area() };
-    if transform.is_rigid_or_uniform() {
-        return shape.area() * transform.area_scale(DVec3::Z);
-    }
-    let scales = (0..AREA_POINTS).filter_map(|i| {
-        let u = luxel_sdk::sampling::sobol_owen_2d(i, 0x5eed);
-        Some(transform.area_scale(shape.sample(None, u)?.surface.ng))
-    });
-    shape.area() * scales.sum::<f64>() / f64::from(AREA_POINTS)
-}
-
-/// A surface that is to shine and has no end, or whose points nobody can choose.
-fn endless(span: Span, scene: &Scene, shape: NodeId, bounds: Bounds3) -> Diagnostic {
-    let class = &scene.node(shape).class;
-    if bounds.diagonal().is_finite() {
-        let message = format!("a light on `{class}`: points of it cannot be chosen at random");
-        return Diagnostic::error("E0423", span, message)
-            .label(scene.node(shape).span, "cannot shine")
-            .help("use a shape that can: `cylinder`, `capsule`, `torus`, a `mesh`");
-    }
-    let message = format!("a light on a `{class}` without end: its area is infinite");
-    Diagnostic::error("E0423", span, message)
-        .label(scene.node(shape).span, "has no end")
-        .help("use a `rectangle` or a `disk`, or `light constant` for light from everywhere")
 }
 
 fn mesh_error(error: BuildError, span: Span) -> Diagnostic {

@@ -1,5 +1,6 @@
 //! Geometry in its own frame: analytic shapes, and meshes with their tree.
 
+mod part;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,8 @@ use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 use super::analytic::Analytic;
 use super::closed::is_closed;
 use crate::accel::{Begun, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
+
+pub(super) use part::mesh_part;
 
 /// What a placement places. Shared by every placement of the same shape.
 #[derive(Debug)]

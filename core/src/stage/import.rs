@@ -233,7 +233,7 @@ impl Import<'_> {
             Value::Bytes(name, bytes) => Given::Bytes(name, bytes),
             Value::Color(color, dimension) => Given::Color(color, dimension),
             Value::Look(look) => Given::Look(look),
-            Value::Node(id) => Given::Node(id, self.out.node(id).kind),
+            Value::Node(id) | Value::Moved(id, _) => Given::Node(id, self.out.node(id).kind),
         };
         match conform(param, given, &|_| None) {
             Err(misfit) if !["E0405", "E0210"].contains(&misfit.code) => Err(misfit.message),

@@ -17,6 +17,7 @@ mod media;
 mod nesting;
 mod placement;
 mod settings;
+mod shining;
 mod trace;
 
 use std::collections::BTreeMap;

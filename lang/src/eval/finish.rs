@@ -35,7 +35,7 @@ impl Evaluator<'_> {
 /// The nodes that a node refers to.
 pub(super) fn children(node: &Node) -> impl Iterator<Item = NodeId> {
     let params = node.params.iter().filter_map(|argument| match argument.value {
-        Value::Node(id) => Some(id),
+        Value::Node(id) | Value::Moved(id, _) => Some(id),
         _ => None,
     });
     params.chain(node.overrides.iter().map(|(_, id)| *id))
@@ -73,7 +73,7 @@ impl Compactor<'_> {
         }
         let mut node = self.old.node(id).clone();
         for argument in &mut node.params {
-            if let Value::Node(child) = &mut argument.value {
+            if let Value::Node(child) | Value::Moved(child, _) = &mut argument.value {
                 *child = self.node(*child);
             }
         }

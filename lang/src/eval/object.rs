@@ -9,7 +9,7 @@ use luxel_core::registry::Registry;
 use luxel_core::scene::{Argument, GroupId, Node, NodeId};
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::Param;
+use luxel_sdk::params::{Param, Type};
 
 use super::elsewhere::meant;
 use super::env::Env;
@@ -178,10 +178,13 @@ impl Evaluator<'_> {
             self.deprecated(param, field);
             if let Value::Object(inner) = &field.value {
                 depth = depth.max(inner.depth);
-                transform = self.lifted(&class, inner, field.span, transform);
+                if param.ty != Type::Part {
+                    transform = self.lifted(&class, inner, field.span, transform);
+                }
             }
             match self.conform(param, field) {
                 Some(value) => {
+                    let value = in_its_place(value, param, &field.value);
                     params.push(Argument { name: param.name, value, span: field.span });
                 }
                 None => poisoned = true,
@@ -337,6 +340,23 @@ impl Evaluator<'_> {
                 self.tell(Diagnostic::error("E0403", head.class.span, message));
             }
         }
+    }
+}
+
+/// A shape that is a part of another keeps its transform.
+fn in_its_place(
+    value: luxel_core::scene::Value,
+    param: &Param,
+    given: &Value,
+) -> luxel_core::scene::Value {
+    use luxel_core::scene::Value as Kept;
+    match (value, given) {
+        (Kept::Node(id), Value::Object(part))
+            if param.ty == Type::Part && part.transform != DAffine3::IDENTITY =>
+        {
+            Kept::Moved(id, Arc::new(part.transform))
+        }
+        (value, _) => value,
     }
 }
 

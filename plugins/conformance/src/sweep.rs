@@ -14,7 +14,7 @@ use luxel_core::scene::{Argument, Color, Node, NodeId, Scene, Value};
 use luxel_sdk::abi::Class;
 use luxel_sdk::color::{Palette, Wavelengths};
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::{Param, Type};
+use luxel_sdk::params::{Dimension, Param, Type};
 use luxel_sdk::sampling::Rng;
 
 use crate::values::Level;
@@ -102,6 +102,16 @@ impl Bench {
         let mut props = Scene::default();
         for (kind, class) in PROPS {
             node(&mut props, kind, class, &[]);
+        }
+        for (scale, place) in PLACES {
+            for (center, radius) in ORBS {
+                let center = (center * scale + place).to_array().to_vec();
+                let given = [
+                    ("center", Value::Vector(center)),
+                    ("radius", Value::Number(radius * scale, Dimension::LENGTH)),
+                ];
+                node(&mut props, Kind::Shape, "reference_orb", &given);
+            }
         }
         Self { registry, files: files::memory(), props }
     }
@@ -196,8 +206,27 @@ const PROPS: [(Kind, &str); 5] = [
     (Kind::Shape, "reference_ball"),
 ];
 
-/// The prop of a kind; where there are several, `index` tells which, so that two children differ.
-fn prop(kind: Kind, index: usize) -> Option<Value> {
+/// Added to a place to have it far away, metres.
+pub(crate) const FAR: DVec3 = DVec3::new(1e6, -1e6, 1e6);
+/// How large, and where, parts of shapes are: as usual, and as `shape::placed` wants the whole.
+const PLACES: [(f64, DVec3); 4] =
+    [(1.0, DVec3::ZERO), (1e-6, DVec3::ZERO), (1e6, DVec3::ZERO), (1.0, FAR)];
+/// Middles and radii of the parts: neither holds the other, and they meet.
+const ORBS: [(DVec3, f64); 2] = [(DVec3::ZERO, 1.0), (DVec3::new(0.7, 0.3, -0.2), 0.8)];
+
+/// A part of a shape, for the parameter of that number: `place` as in `PLACES`.
+pub(crate) fn part(index: usize, place: usize) -> Value {
+    let at = PROPS.len() + place * ORBS.len() + index % ORBS.len();
+    Value::Node(NodeId(u32::try_from(at).expect("there are few props")))
+}
+
+/// The prop of a type: the node that such a handle may be; where there are several, `index` tells which, so that two children differ.
+fn prop(ty: Type, index: usize) -> Option<Value> {
+    let kind = match ty {
+        Type::Part => return Some(part(index, 0)),
+        Type::Object(kind) => kind,
+        _ => return None,
+    };
     let props: Vec<u32> = (0..).zip(PROPS).filter(|(_, p)| p.0 == kind).map(|(i, _)| i).collect();
     let id = props.get(index % props.len().max(1))?;
     Some(Value::Node(NodeId(*id)))
@@ -316,7 +345,7 @@ impl Sweep<'_> {
         let mut any = false;
         for param in own(self.class).filter(|param| param.textured && param.group.is_empty()) {
             given.retain(|(name, _)| *name != param.name);
-            given.extend(prop(Kind::Texture, 0).map(|value| (param.name, value)));
+            given.extend(prop(Type::Object(Kind::Texture), 0).map(|value| (param.name, value)));
             any = true;
         }
         if any && let Err(why) = self.push("textured", Level::Usual, given) {

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use luxel_core::scene::{Color, Value};
-use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look, Param, Preset, Role, Type, Unit};
 use luxel_sdk::sampling::Rng;
 
@@ -101,7 +100,7 @@ pub(crate) fn sensible(
     param: &Param,
     index: usize,
     file: &str,
-    prop: impl Fn(Kind, usize) -> Option<Value>,
+    prop: impl Fn(Type, usize) -> Option<Value>,
 ) -> Option<Value> {
     if is_number(param) {
         return Some(number(param, typical(param)));
@@ -122,7 +121,7 @@ pub(crate) fn sensible(
         Type::Table if file.is_empty() => Some(Value::Table(Arc::from(BOW))),
         Type::Table => Some(Value::Table(Arc::from([0.0; SIDE * SIDE]))),
         Type::Look => Some(Value::Look(LOOK)),
-        Type::Object(kind) => prop(kind, index),
+        Type::Object(_) | Type::Part => prop(param.ty, index),
         _ => None,
     }
 }
@@ -252,7 +251,7 @@ pub(crate) fn show(value: &Value) -> String {
         Value::Text(text) => format!("\"{text}\""),
         Value::Bool(b) => b.to_string(),
         Value::Path(path) => path.display().to_string(),
-        Value::Node(_) => "a reference".to_owned(),
+        Value::Node(_) | Value::Moved(..) => "a reference".to_owned(),
         other => format!("{other:?}"),
     }
 }

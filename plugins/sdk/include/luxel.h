@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0xa5dd2b1a96f230b9ull
+#define LUXEL_LAYOUT_HASH 0xa8097e94f7d847d8ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -81,6 +81,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_TYPE_LOOK 13
 #define LUXEL_TYPE_MAYBEFLOAT 14
 #define LUXEL_TYPE_EMISSION 15
+#define LUXEL_TYPE_PART 16
 #define LUXEL_TYPE_HANDLE 32 /* and the kind */
 
 /* A ray: origin, direction, and where it ends in lengths of the direction. */
@@ -590,7 +591,15 @@ typedef struct {
     luxel_status (*part_bounds)(const void *at, uint32_t part, luxel_bounds *out);
     /* The nearest hit of one part. */
     luxel_status (*intersect_part)(const void *at, uint32_t part, const luxel_ray *ray, luxel_hit *out);
+    /* At least how far away the surface is, negative inside; nothing where that is not known. */
+    luxel_status (*distance)(const void *at, const luxel_dvec3 *p, double *out);
 } luxel_shape_table;
+
+/* A shape of which another one is made. */
+typedef struct {
+    const luxel_shape_table *table;
+    const void *at;
+} luxel_shape_ref;
 
 /* A value that varies over a surface or through space. */
 typedef struct {
@@ -1000,6 +1009,10 @@ LUXEL_CHECK(sizeof(luxel_samples_ref) == 32, "size of luxel_samples_ref");
 LUXEL_CHECK(_Alignof(luxel_samples_ref) == 8, "alignment of luxel_samples_ref");
 LUXEL_CHECK(offsetof(luxel_samples_ref, source) == 0, "luxel_samples_ref.source");
 LUXEL_CHECK(offsetof(luxel_samples_ref, next) == 16, "luxel_samples_ref.next");
+LUXEL_CHECK(sizeof(luxel_shape_ref) == 16, "size of luxel_shape_ref");
+LUXEL_CHECK(_Alignof(luxel_shape_ref) == 8, "alignment of luxel_shape_ref");
+LUXEL_CHECK(offsetof(luxel_shape_ref, table) == 0, "luxel_shape_ref.table");
+LUXEL_CHECK(offsetof(luxel_shape_ref, at) == 8, "luxel_shape_ref.at");
 LUXEL_CHECK(sizeof(luxel_host_ref) == 16, "size of luxel_host_ref");
 LUXEL_CHECK(_Alignof(luxel_host_ref) == 8, "alignment of luxel_host_ref");
 LUXEL_CHECK(offsetof(luxel_host_ref, table) == 0, "luxel_host_ref.table");

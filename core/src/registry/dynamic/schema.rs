@@ -212,7 +212,9 @@ fn judge(param: &Param) -> Result<(), String> {
         "is a choice without words, or has words and is none".to_owned()
     } else if param.textured && !textured {
         "is of a type that a texture cannot drive".to_owned()
-    } else if param.ty == Type::Object(Kind::Material) && !is_always_given(param) {
+    } else if matches!(param.ty, Type::Object(Kind::Material) | Type::Part)
+        && !is_always_given(param)
+    {
         "is a handle that a scene may leave out: handles are required".to_owned()
     } else {
         return Ok(());
@@ -232,7 +234,13 @@ fn default_is_of_type(param: &Param) -> bool {
         Preset::Text(_) => param.ty == Type::Text,
         Preset::Numbers(_) => !matches!(
             param.ty,
-            Type::Choice | Type::Text | Type::File | Type::Table | Type::Look | Type::Object(_)
+            Type::Choice
+                | Type::Text
+                | Type::File
+                | Type::Table
+                | Type::Look
+                | Type::Object(_)
+                | Type::Part
         ),
     }
 }
@@ -275,6 +283,6 @@ fn layout(ty: Type) -> (usize, usize) {
         Type::Look => of::<Look>(),
         Type::MaybeFloat => of::<Maybe<f32>>(),
         Type::Emission => of::<Emission>(),
-        Type::Object(_) => (2 * size_of::<usize>(), align_of::<usize>()),
+        Type::Object(_) | Type::Part => (2 * size_of::<usize>(), align_of::<usize>()),
     }
 }

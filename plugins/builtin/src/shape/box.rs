@@ -123,6 +123,11 @@ impl Shape for Box {
     fn is_closed(&self) -> bool {
         true
     }
+
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        let out = (p - self.center).abs() - 0.5 * self.size;
+        Some(out.max(DVec3::ZERO).length() + out.max_element().min(0.0))
+    }
 }
 
 /// The face as the smallest integer that widens without loss.

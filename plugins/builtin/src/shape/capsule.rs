@@ -121,6 +121,11 @@ impl Shape for Capsule {
     fn is_closed(&self) -> bool {
         true
     }
+
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        let q = local(&self.frame, p - self.base);
+        Some((q - DVec3::Z * q.z.clamp(0.0, self.height)).length() - self.radius)
+    }
 }
 
 impl Capsule {

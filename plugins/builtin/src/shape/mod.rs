@@ -4,10 +4,13 @@ mod axial;
 mod r#box;
 mod capsule;
 mod cone;
+mod csg;
 mod curves;
 mod cylinder;
 mod disk;
+mod gyroid_wall;
 mod heightfield;
+mod implicit;
 mod mesh;
 mod plane;
 mod rectangle;
@@ -37,6 +40,10 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::shape::<plane::Plane>("plane"),
     Class::shape::<heightfield::Heightfield<'_>>("heightfield"),
     Class::shape::<mesh::Mesh<'_>>("mesh"),
+    Class::shape::<gyroid_wall::GyroidWall<'_>>("gyroid_wall"),
+    Class::shape::<csg::Union<'_>>("union"),
+    Class::shape::<csg::Intersection<'_>>("intersection"),
+    Class::shape::<csg::Difference<'_>>("difference"),
 ];
 
 /// The box of half size `half` (≥ 0) about `centre`, with room for eight roundings of either.

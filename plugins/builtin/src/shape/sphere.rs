@@ -99,6 +99,10 @@ impl Shape for Sphere {
     fn is_closed(&self) -> bool {
         true
     }
+
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        Some((p - self.center).length() - self.radius)
+    }
 }
 
 impl Sphere {

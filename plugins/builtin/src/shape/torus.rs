@@ -107,6 +107,11 @@ impl Shape for Torus {
     fn is_closed(&self) -> bool {
         true
     }
+
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        let q = local(&self.frame, p - self.center);
+        Some((q.xy().length() - self.radius).hypot(q.z) - self.minor)
+    }
 }
 
 impl Torus {

@@ -14,13 +14,14 @@ use luxel_sdk::abi::Class;
 pub(crate) use field::{Even, Fog, Gradient};
 pub(crate) use light::{Lamp, Sky};
 pub(crate) use settings::{Block, Numbers, Pinhole, Walk, Way};
-pub(crate) use shape::Ball;
+pub(crate) use shape::{Ball, Orb};
 pub(crate) use surface::{Matt, Veil};
 
 /// All of them. A medium without a phase function asks the registry for `isotropic`, so that one
 /// has the name that the host expects.
 pub const CLASSES: &[Class] = &[
     Class::shape::<Ball>("reference_ball"),
+    Class::shape::<Orb>("reference_orb"),
     Class::material::<Matt>("reference_matt"),
     Class::material::<Veil>("reference_veil"),
     Class::texture::<Gradient>("reference_gradient"),

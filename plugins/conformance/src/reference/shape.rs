@@ -76,3 +76,72 @@ impl Shape for Ball {
         true
     }
 }
+
+/// A sphere about any point, which knows its distance: what solids of parts are made of.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+pub(crate) struct Orb {
+    /// The middle.
+    #[param(default = [0.0, 0.0, 0.0], unit = "m")]
+    center: DVec3,
+    /// From the middle to the surface.
+    #[param(default = 1.0, unit = "m", min = 1e-9, max = 1e9)]
+    radius: f64,
+}
+
+impl Orb {
+    fn ball(self) -> Ball {
+        Ball { radius: self.radius }
+    }
+
+    /// From the middle to where the ball is.
+    fn moved(&self, s: Surface) -> Surface {
+        let p = s.p + self.center;
+        Surface { p, p_err: s.p_err + (s.p.abs() + self.center.abs()) * gamma64(2), ..s }
+    }
+
+    fn about_middle(&self, ray: &Ray) -> Ray {
+        Ray { o: ray.o - self.center, ..*ray }
+    }
+}
+
+impl Shape for Orb {
+    fn check(&self) -> Result<(), Fault> {
+        self.ball().check()
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        let Bounds3 { min, max } = self.ball().bounds();
+        let room = (self.center.abs() + self.radius) * gamma64(8);
+        Bounds3 { min: min + self.center - room, max: max + self.center + room }
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.ball().intersect(&self.about_middle(ray))
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.moved(self.ball().surface(&self.about_middle(ray), hit))
+    }
+
+    fn area(&self) -> f64 {
+        self.ball().area()
+    }
+
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let sample = self.ball().sample(from, u)?;
+        Some(ShapeSample { surface: self.moved(sample.surface), ..sample })
+    }
+
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        self.ball().pdf(from, at)
+    }
+
+    fn is_closed(&self) -> bool {
+        true
+    }
+
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        Some((p - self.center).length() - self.radius)
+    }
+}

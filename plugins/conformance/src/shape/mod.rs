@@ -53,6 +53,7 @@ fn look_at(subject: &Subject<'_>, set: &Set, rng: &mut Rng, judge: &mut Judge) {
         };
         look.rays(rng, judge);
         look.scales(rng, judge);
+        look.distances(rng, judge);
         if !shape.area().is_finite() {
             let none = shape.sample(None, [0.5; 2]).is_none();
             judge.holds("what cannot shine has no samples", none, || set.label.clone());
@@ -164,6 +165,41 @@ impl<'a> Look<'a> {
             }
         }
         found
+    }
+
+    /// What a shape says of its distance, where it says anything.
+    fn distances(&self, rng: &mut Rng, judge: &mut Judge) {
+        if self.shape.distance(self.centre).is_none() {
+            return;
+        }
+        let f = |p: DVec3| self.shape.distance(p).unwrap_or(f64::NAN);
+        let rounds = 256.0 * f64::EPSILON * (self.reach + 2.0 * self.radius);
+        let mut any = |reach: f64| uniform_sphere(rng.pair()).as_dvec3() * (reach * rng.f64());
+        for i in 0..1000 {
+            let p = self.centre + any(1.5 * self.radius);
+            let q = p + any(self.radius * 0.1f64.powi(i % 7));
+            let change = (f(p) - f(q)).abs();
+            let at = || format!("{}: from {p} to {q}", self.set.label);
+            let most = p.distance(q) + rounds;
+            judge.within("distance: no more than the way", change / most, 1.0, at);
+        }
+        for _ in 0..200 {
+            let ray = self.chord(rng);
+            let found = self.crossings(&ray);
+            let at = || self.at(&ray);
+            for (_, s) in &found {
+                let off = f(s.p).abs() / (rounds + s.p_err.length());
+                judge.within("distance: 0 on the surface", off, 1.0, at);
+            }
+            for (k, ends) in found.windows(2).enumerate() {
+                let (a, b) = (ends[0].1.p, ends[1].1.p);
+                let grazing = ends.iter().any(|(_, s)| s.ng.dot(ray.d).abs() < 1e-3);
+                if !grazing && a.distance(b) > 1e-3 * self.radius {
+                    let inside = f(0.5 * (a + b)) < 0.0;
+                    judge.holds("distance: negative inside", inside == (k % 2 == 0), at);
+                }
+            }
+        }
     }
 
     fn rays(&self, rng: &mut Rng, judge: &mut Judge) {

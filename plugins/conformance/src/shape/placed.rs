@@ -1,33 +1,30 @@
 //! A shape a millionth as large, a million times as large, and a thousand kilometres away.
 
-use glam::DVec3;
 use luxel_core::scene::Value;
 use luxel_sdk::params::{Param, Preset, Type};
 use luxel_sdk::sampling::Rng;
 
 use crate::subject::Subject;
-use crate::sweep::{Given, Set, own};
+use crate::sweep::{FAR, Given, Set, own, part};
 use crate::values::{Level, dimension};
 
 /// Factors of every length.
 const SCALES: [f64; 2] = [1e-6, 1e6];
 
-/// Added to every place, metres.
-const FAR: DVec3 = DVec3::new(1e6, -1e6, 1e6);
-
 /// The usual shape with all lengths scaled, and moved. Without such parameters, or where they are
 /// refused, there is none.
 pub(super) fn sets(subject: &Subject<'_>) -> Vec<(Set, Rng)> {
     let Some(usual) = subject.sets.first() else { return vec![] };
-    let scaled = |scale: f64| {
+    let scaled = |i: usize| {
+        let scale = SCALES[i];
         let change = move |_: &Param, x: &[f64]| x.iter().map(|x| x * scale).collect();
-        (format!("scaled by {scale:e}"), changed(subject, usual, change))
+        (format!("scaled by {scale:e}"), changed(subject, usual, 1 + i, change))
     };
-    let moved = changed(subject, usual, |param, x| {
+    let moved = changed(subject, usual, 1 + SCALES.len(), |param, x| {
         let far = |i: usize| if is_place(param) { FAR[i % 3] } else { 0.0 };
         x.iter().enumerate().map(|(i, x)| x + far(i)).collect()
     });
-    let all = SCALES.map(scaled).into_iter().chain([(format!("moved by {FAR}"), moved)]);
+    let all = [scaled(0), scaled(1)].into_iter().chain([(format!("moved by {FAR}"), moved)]);
     let sets = all.zip(0u64..).filter_map(|((label, given), i)| {
         let object = subject.bench.build(&subject.class, &given?, usual.mode).ok()?;
         let set = Set { label, given: vec![], object, level: Level::Usual, mode: usual.mode };
@@ -46,13 +43,19 @@ fn is_place(param: &Param) -> bool {
     param.ty == Type::DVec3 && param.min < 0.0 && origin
 }
 
-/// What is given, with all lengths changed; `None` if nothing changes.
+/// What is given, with all lengths changed, parts to those of that place; `None` if nothing changes.
 fn changed(
     subject: &Subject<'_>,
     usual: &Set,
+    place: usize,
     change: impl Fn(&Param, &[f64]) -> Vec<f64>,
 ) -> Option<Given> {
     let (mut given, mut any) = (usual.given.clone(), false);
+    for (i, param) in own(&subject.class).enumerate().filter(|(_, param)| param.ty == Type::Part) {
+        if let Some((_, value)) = given.iter_mut().find(|(name, _)| *name == param.name) {
+            (*value, any) = (part(i, place), true);
+        }
+    }
     for param in own(&subject.class).filter(|param| param.unit == "m") {
         let at = given.iter().position(|(name, _)| *name == param.name);
         let lanes = if param.ty == Type::DVec3 { 3 } else { 1 };

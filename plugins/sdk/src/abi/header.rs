@@ -11,7 +11,7 @@ use super::{
     CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
     MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
     PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
-    ShapeTable, TextureTable, Triangles,
+    ShapeRef, ShapeTable, TextureTable, Triangles,
 };
 use crate::color::{Spectrum, Wavelengths};
 use crate::kind::{
@@ -141,6 +141,11 @@ describe! { HANDLES, HANDLES_C {
     SamplesRef<'static> => "luxel_samples_ref" { source, next }
 } }
 
+describe! { PARTS, PARTS_C {
+    /// A shape of which another one is made.
+    ShapeRef<'static> => "luxel_shape_ref" { table, at }
+} }
+
 describe! { ROUND, ROUND_C {
     /// The host.
     HostRef<'static> => "luxel_host_ref" { table, at }
@@ -165,7 +170,8 @@ describe! { LIBRARY, LIBRARY_C {
     ContextRef<'static> => "luxel_context_ref" { table, at }
 } }
 
-const ALL: &[&[Layout]] = &[WRITTEN, PLAIN, REQUESTS, HANDLES, ROUND, PATHS, JOBS, LIBRARY, TABLES];
+const ALL: &[&[Layout]] =
+    &[WRITTEN, PLAIN, REQUESTS, HANDLES, PARTS, ROUND, PATHS, JOBS, LIBRARY, TABLES];
 
 layouts! { TABLES {
     MeshSink => "luxel_mesh_sink" { take, owner }
@@ -207,6 +213,7 @@ pub fn header() -> String {
     each(JOBS_C, &mut out);
     each(LIBRARY_C, &mut out);
     ShapeTable::describe(&mut out);
+    each(PARTS_C, &mut out);
     TextureTable::describe(&mut out);
     LightTable::describe(&mut out);
     MediumTable::describe(&mut out);

@@ -15,7 +15,8 @@ pub struct Hit {
     pub t: f64,
     /// The shape's own coordinates of the point: what `surface` needs to find it again.
     pub at: DVec2,
-    /// Which face, for shapes with several.
+    /// Which face, for shapes with several. Shapes that are made of others keep there which of them
+    /// was met: the fewer bits a shape takes, the deeper it can stand in others.
     pub face: u32,
 }
 
@@ -143,6 +144,16 @@ pub trait Shape: Send + Sync {
     /// by the hit alone, which may be of any part.
     fn intersect_part(&self, part: u32, ray: &Ray) -> Option<Hit> {
         let _ = (part, ray);
+        None
+    }
+
+    /// At least how far away the surface of a closed shape is from a point, metres: negative inside.
+    ///
+    /// It vanishes on the surface alone and changes by no more than the way between two points:
+    /// |f(p) − f(q)| ≤ |p − q|. It is found to within `gamma64(64)` of the largest coordinate of the
+    /// point and of the bounds. `None` where the shape knows no such function, at any point.
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        let _ = p;
         None
     }
 }

@@ -34,7 +34,7 @@ const fn is_u32(number: f64) -> bool {
 /// Whether the field borrows what the host lends for one call: its struct needs a lifetime.
 pub const fn is_lent(param: &Param) -> bool {
     match param.ty {
-        Type::Text | Type::File | Type::Table => true,
+        Type::Text | Type::File | Type::Table | Type::Part => true,
         // A shape is a number.
         Type::Object(kind) => !matches!(kind, Kind::Shape),
         _ => false,

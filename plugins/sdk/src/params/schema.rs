@@ -40,6 +40,8 @@ pub enum Type {
     Emission,
     /// A handle to another object.
     Object(Kind),
+    /// A handle to a shape of which this one is made: `ShapeRef`.
+    Part,
 }
 
 /// What a number stands for: decides its range and how colours are turned into spectra.

@@ -167,15 +167,16 @@ views! {
     Importer => importer::RemoteImporter,
 }
 
-/// The table through which libraries call an object that may itself be foreign: materials and phase
-/// functions, the kinds that others hold.
+/// The table through which libraries call an object that may itself be foreign: materials, phase
+/// functions and shapes, the kinds that others hold.
 pub(super) fn relay(kind: Kind) -> *const u8 {
-    use luxel_sdk::abi::{MaterialTable, PhaseTable};
+    use luxel_sdk::abi::{MaterialTable, PhaseTable, ShapeTable};
     match kind {
         Kind::Material => {
             std::ptr::from_ref(MaterialTable::of::<material::RemoteMaterial>()).cast()
         }
         Kind::Phase => std::ptr::from_ref(PhaseTable::of::<phase::RemotePhase>()).cast(),
+        Kind::Shape => std::ptr::from_ref(ShapeTable::of::<shape::RemoteShape>()).cast(),
         _ => std::ptr::null(),
     }
 }

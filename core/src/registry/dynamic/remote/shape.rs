@@ -160,6 +160,19 @@ impl Shape for RemoteShape {
         self.0.found(unsafe { self.table().is_closed(self.0.at()) }) == Some(1)
     }
 
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        if self.0.is_poisoned() {
+            return None;
+        }
+        // SAFETY: as above.
+        let distance = self.0.found(unsafe { self.table().distance(self.0.at(), &p) })?;
+        if !distance.is_nan() {
+            return Some(distance);
+        }
+        self.0.wrong("gave a distance that is no number");
+        None
+    }
+
     fn mesh(&self) -> Option<Arc<TriangleMesh>> {
         let mut copied: Option<Option<TriangleMesh>> = None;
         let mut sink = MeshSink { take: copy, owner: (&raw mut copied).cast() };

@@ -1,9 +1,11 @@
+use std::marker::PhantomData;
+
 use glam::{DVec3, Vec2, Vec3};
 
 use super::table;
 use crate::kind::{Hit, Shape, ShapeSample, Surface};
 use crate::num::{Bounds3, Ray};
-use crate::wire::Slice;
+use crate::wire::{Slice, expect};
 
 /// Triangles that a shape hands over: lent for the call, the host copies them.
 #[derive(Clone, Copy, Debug)]
@@ -76,5 +78,93 @@ table! {
         fn part_bounds(shape, part: u32) -> Bounds3 { Some(shape.part_bounds(part)) }
         /// The nearest hit of one part.
         fn intersect_part(shape, part: u32, ray: &Ray) -> Hit { shape.intersect_part(part, ray) }
+        /// At least how far away the surface is, negative inside; nothing where that is not known.
+        fn distance(shape, p: &DVec3) -> f64 { shape.distance(*p) }
+    }
+}
+
+/// A shape of which another one is made, in the frame of that one.
+///
+/// It intersects itself: the host hands over no triangles as a part.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct ShapeRef<'a> {
+    pub(crate) table: &'a ShapeTable,
+    pub(crate) at: *const u8,
+    lent: PhantomData<&'a ()>,
+}
+
+// SAFETY: shapes are `Send + Sync`, and the handle borrows one.
+unsafe impl Send for ShapeRef<'_> {}
+// SAFETY: as above.
+unsafe impl Sync for ShapeRef<'_> {}
+
+impl<'a> ShapeRef<'a> {
+    /// Lends a shape.
+    pub const fn new<S: Shape>(shape: &'a S) -> Self {
+        let at = std::ptr::from_ref(shape).cast();
+        Self { table: ShapeTable::of::<S>(), at, lent: PhantomData }
+    }
+
+    /// Lends the parameters at an address.
+    ///
+    /// # Safety
+    /// They are those of a class with this table, and lent for `'a`.
+    pub const unsafe fn from_raw(table: &'a ShapeTable, at: *const u8) -> Self {
+        Self { table, at, lent: PhantomData }
+    }
+}
+
+/// What stands for the point of a part that has none: its host has then told of a failure.
+const NOWHERE: Surface = Surface {
+    p: DVec3::ZERO,
+    p_err: DVec3::ZERO,
+    ng: DVec3::Z,
+    ns: DVec3::Z,
+    uv: glam::DVec2::ZERO,
+    dp_du: DVec3::X,
+    dp_dv: DVec3::Y,
+};
+
+impl Shape for ShapeRef<'_> {
+    fn bounds(&self) -> Bounds3 {
+        // SAFETY: the handle lends what the table was made for.
+        expect(unsafe { self.table.bounds(self.at) }).unwrap_or(Bounds3::EMPTY)
+    }
+
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        // SAFETY: as above.
+        expect(unsafe { self.table.intersect(self.at, ray) })
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        // SAFETY: as above.
+        expect(unsafe { self.table.surface(self.at, ray, hit) }).unwrap_or(NOWHERE)
+    }
+
+    fn area(&self) -> f64 {
+        // SAFETY: as above.
+        expect(unsafe { self.table.area(self.at) }).unwrap_or(f64::INFINITY)
+    }
+
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        // SAFETY: as above.
+        expect(unsafe { self.table.sample(self.at, from.as_ref(), &u) })
+    }
+
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        // SAFETY: as above.
+        expect(unsafe { self.table.pdf(self.at, from.as_ref(), at) }).unwrap_or(0.0)
+    }
+
+    fn is_closed(&self) -> bool {
+        // SAFETY: as above.
+        expect(unsafe { self.table.is_closed(self.at) }) == Some(1)
+    }
+
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        // SAFETY: as above.
+        expect(unsafe { self.table.distance(self.at, &p) })
     }
 }

@@ -40,7 +40,7 @@ pub struct ParamTable {
 }
 
 /// How parameters are stored, by their number in the boundary; handles come after.
-pub const TYPES: [Type; 16] = [
+pub const TYPES: [Type; 17] = [
     Type::Float,
     Type::Double,
     Type::Int,
@@ -57,6 +57,7 @@ pub const TYPES: [Type; 16] = [
     Type::Look,
     Type::MaybeFloat,
     Type::Emission,
+    Type::Part,
 ];
 /// What a handle's type is, before its kind is added.
 pub const HANDLE: u32 = 32;
@@ -79,6 +80,7 @@ const fn type_number(ty: Type) -> u32 {
         Type::Look => 13,
         Type::MaybeFloat => 14,
         Type::Emission => 15,
+        Type::Part => 16,
         Type::Object(kind) => HANDLE + kind as u32,
     }
 }

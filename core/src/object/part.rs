@@ -1,0 +1,201 @@
+//! Shapes of which another one is made, and how they stand in the frame of that one.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+use luxel_sdk::kind::{Hit, Kind, Shape, ShapeRef, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::num::{Bounds3, Ray, Transform};
+use luxel_sdk::params::Param;
+use luxel_sdk::sampling::sobol_owen_2d;
+
+use super::Object;
+use super::build::{Builder, Draft};
+use crate::cast;
+use crate::diag::Diagnostic;
+use crate::registry::common_params;
+use crate::scene::NodeId;
+
+/// Bits of a hit's face: what a shape that is made of others shares with them.
+const FACE_BITS: u32 = 32;
+/// Of these a shape of one piece takes at most so many.
+pub(super) const OWN_BITS: u32 = 16;
+
+impl Builder<'_> {
+    /// A shape of which this one is made. What it looks like, the whole says.
+    pub(super) fn part(
+        &mut self,
+        draft: &mut Draft,
+        param: &Param,
+        id: NodeId,
+        place: Option<&DAffine3>,
+    ) -> Result<(), String> {
+        let (node, name) = (self.scene.node(id), param.name);
+        for added in common_params(Kind::Shape) {
+            if let Some(own) = node.get(added.name) {
+                let what = added.name;
+                let message = format!("a shape that is a part of another has no `{what}`");
+                let help = format!("give the `{what}` to the whole");
+                self.diagnostics.push(Diagnostic::error("E0402", own.span, message).help(help));
+            }
+        }
+        let transform = place
+            .map(|place| {
+                let found = Transform::new(*place);
+                found.ok_or_else(|| {
+                    format!("`{name}`: its transform is singular: it flattens space")
+                })
+            })
+            .transpose()?;
+        let Some(child) = self.build(id) else { return Ok(()) };
+        let (body, bits) = match child.fixed().shape().mesh() {
+            None => (Body::Object(child.clone()), child.face_bits),
+            Some(triangles) => {
+                let bits = u32::BITS - cast::index(triangles.indices.len()).leading_zeros();
+                let make = self.mesh_parts.ok_or("triangles cannot be a part here")?;
+                let tree = make(triangles).map_err(|why| format!("`{name}`: {why}"))?;
+                (Body::Triangles(tree), bits)
+            }
+        };
+        draft.face_bits = draft.face_bits.max(bits + 1);
+        draft.part(param.offset, body, transform);
+        draft.parts.push(child);
+        if draft.face_bits > FACE_BITS {
+            let deepest = FACE_BITS - OWN_BITS;
+            return Err(format!("`{name}`: shapes stand in one another more than {deepest} deep"));
+        }
+        Ok(())
+    }
+}
+
+impl Draft {
+    /// Analytic shapes that stand in the frame of the whole are their own handles.
+    fn part(&mut self, offset: usize, body: Body, transform: Option<Transform>) {
+        if let (Body::Object(child), None) = (&body, transform) {
+            return self.block.write_raw(offset, child.fixed().handle());
+        }
+        let moved = Arc::new(Moved::new(body, transform.unwrap_or(Transform::IDENTITY)));
+        // It stays where it is for as long as the object owns it.
+        self.block.write_raw(offset, ShapeRef::new(&*moved));
+        self.owned.push(moved);
+    }
+}
+
+/// How triangles become a shape that intersects itself.
+///
+/// # Errors
+/// Why they cannot.
+pub type MeshParts = fn(Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String>;
+
+/// What a part is.
+enum Body {
+    Object(Arc<Object>),
+    Triangles(Arc<dyn Shape>),
+}
+
+/// Points at which the area scale of a transform that is no similarity is averaged.
+const AREA_POINTS: u32 = 1024;
+
+/// A shape with a transform of its own.
+struct Moved {
+    body: Body,
+    transform: Transform,
+    /// The least by which the transform stretches: distances grow by no less.
+    least: f64,
+}
+
+impl Moved {
+    fn new(body: Body, transform: Transform) -> Self {
+        // The inverse stretches by no more than the root of the sum of its squares.
+        let inverse = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| transform.inverse_vector(axis));
+        let most = if transform.is_rigid_or_uniform() {
+            inverse.map(DVec3::length).into_iter().fold(0.0, f64::max)
+        } else {
+            inverse.map(DVec3::length_squared).iter().sum::<f64>().sqrt()
+        };
+        // Rounding must not make distances too long.
+        let least = (1.0 - 64.0 * f64::EPSILON) / most;
+        Self { body, transform, least }
+    }
+
+    fn shape(&self) -> &dyn Shape {
+        match &self.body {
+            Body::Object(object) => object.fixed().shape(),
+            Body::Triangles(tree) => &**tree,
+        }
+    }
+
+    /// A point of the shape in the outer frame.
+    fn carried(&self, s: &Surface) -> Surface {
+        let transform = &self.transform;
+        let (p, p_err) = transform.point_with_error(s.p, s.p_err);
+        let flip = if transform.swaps_handedness() { -1.0 } else { 1.0 };
+        Surface {
+            p,
+            p_err,
+            ng: transform.normal(s.ng).normalize(),
+            ns: transform.normal(s.ns).normalize(),
+            uv: s.uv,
+            dp_du: transform.vector(s.dp_du),
+            dp_dv: transform.vector(s.dp_dv) * flip,
+        }
+    }
+
+    /// The same point in the shape's own frame.
+    fn own(&self, s: &Surface) -> Surface {
+        let transform = &self.transform;
+        Surface {
+            p: transform.inverse_point(s.p),
+            ng: transform.inverse_normal(s.ng).normalize(),
+            ns: transform.inverse_normal(s.ns).normalize(),
+            dp_du: transform.inverse_vector(s.dp_du),
+            dp_dv: transform.inverse_vector(s.dp_dv),
+            ..*s
+        }
+    }
+}
+
+impl Shape for Moved {
+    fn bounds(&self) -> Bounds3 {
+        self.shape().bounds().transform(self.transform.affine())
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.shape().intersect(&self.transform.inverse_ray(ray))
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.carried(&self.shape().surface(&self.transform.inverse_ray(ray), hit))
+    }
+
+    fn area(&self) -> f64 {
+        let area = self.shape().area();
+        if self.transform.is_rigid_or_uniform() {
+            return area * self.transform.area_scale(DVec3::Z);
+        }
+        let scales = (0..AREA_POINTS).filter_map(|i| {
+            let ng = self.shape().sample(None, sobol_owen_2d(i, 0x5eed))?.surface.ng;
+            Some(self.transform.area_scale(ng))
+        });
+        area * scales.sum::<f64>() / f64::from(AREA_POINTS)
+    }
+
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let from = from.map(|p| self.transform.inverse_point(p));
+        let sample = self.shape().sample(from, u)?;
+        let pdf = sample.pdf / self.transform.area_scale(sample.surface.ng);
+        Some(ShapeSample { surface: self.carried(&sample.surface), pdf })
+    }
+
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        let (from, own) = (from.map(|p| self.transform.inverse_point(p)), self.own(at));
+        self.shape().pdf(from, &own) / self.transform.area_scale(own.ng)
+    }
+
+    fn is_closed(&self) -> bool {
+        self.shape().is_closed()
+    }
+
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        Some(self.shape().distance(self.transform.inverse_point(p))? * self.least)
+    }
+}

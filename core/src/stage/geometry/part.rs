@@ -1,0 +1,93 @@
+//! A closed mesh as a part of another shape.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::num::{Bounds3, Ray, gamma64};
+
+use super::{Approach, Geometry, Mesh};
+use crate::accel::{Direction, MeshBvh, Precision, Processor};
+
+/// A mesh that intersects itself: its triangles in double precision, as analytic shapes are.
+struct MeshPart {
+    mesh: Geometry,
+    bounds: Bounds3,
+    area: f64,
+}
+
+/// Triangles with their tree as a shape.
+///
+/// # Errors
+/// Why there is no tree.
+pub(in super::super) fn mesh_part(triangles: Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String> {
+    let bvh = MeshBvh::build(&triangles.points, &triangles.indices).map_err(|e| e.to_string())?;
+    let area = |i: u32| {
+        let [a, b, c] = triangles.corners(i);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    let area = (0..crate::cast::index(triangles.indices.len())).map(area).sum();
+    let mesh = Geometry::Mesh(Arc::new(Mesh::new(triangles, bvh)));
+    let bounds = mesh.bounds();
+    Ok(Arc::new(MeshPart { mesh, bounds, area }))
+}
+
+impl MeshPart {
+    /// Where a ray enters the box, or a little before; `None` where it passes.
+    fn enter(&self, ray: &Ray) -> Option<f64> {
+        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+        for axis in 0..3 {
+            let (o, d) = (ray.o[axis], ray.d[axis]);
+            let (low, high) = (self.bounds.min[axis] - o, self.bounds.max[axis] - o);
+            if d == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            enter = enter.max((low / d).min(high / d));
+            leave = leave.min((low / d).max(high / d));
+        }
+        let room = 1.0 + gamma64(8);
+        (enter <= leave * room).then_some(enter / room)
+    }
+}
+
+impl Shape for MeshPart {
+    fn bounds(&self) -> Bounds3 {
+        self.bounds
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let direction = Direction::new(ray.d)?;
+        let approach = Approach {
+            processor: Processor::ANY,
+            precision: Precision::Exact,
+            direction: Some(&direction),
+            t_enter: self.enter(ray)?,
+            from: None,
+        };
+        let hit = self.mesh.intersect(ray, approach, &mut 0)?;
+        (hit.t > 0.0 && hit.t <= ray.t_max).then_some(hit)
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.mesh.surface(ray, hit, Precision::Exact)
+    }
+
+    fn area(&self) -> f64 {
+        self.area
+    }
+
+    fn sample(&self, _: Option<DVec3>, _: [f32; 2]) -> Option<ShapeSample> {
+        None
+    }
+
+    fn pdf(&self, _: Option<DVec3>, _: &Surface) -> f64 {
+        0.0
+    }
+
+    fn is_closed(&self) -> bool {
+        self.mesh.is_closed()
+    }
+}

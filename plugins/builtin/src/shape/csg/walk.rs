@@ -1,0 +1,173 @@
+//! Sharp solids: a ray from crossing to crossing of both parts.
+//!
+//! Each part tells its own crossings, one after the other: a ray that goes on from one starts beyond
+//! what that crossing's error bound leaves open, so that it is not met again. Whether a ray starts
+//! inside a part, the outer normal of the first crossing says. The whole is crossed where what is
+//! inside of both parts changes what is inside of it.
+
+use glam::DVec3;
+use luxel_sdk::kind::{Hit, Shape, ShapeRef, Surface};
+use luxel_sdk::num::{Bounds3, Ray, gamma64, offset_origin};
+
+use super::{Op, Pair};
+
+/// Crossings that are walked past; a ray that meets more goes through.
+const MOST: usize = 4096;
+
+/// A crossing of one part.
+struct Crossing {
+    /// `t` along the ray that is walked.
+    hit: Hit,
+    surface: Surface,
+    /// Whether the ray goes into the part.
+    enters: bool,
+}
+
+/// A part along the ray.
+struct Follower<'s> {
+    part: ShapeRef<'s>,
+    inside: bool,
+    next: Option<Crossing>,
+}
+
+impl<'s> Follower<'s> {
+    fn new(part: ShapeRef<'s>, ray: &Ray) -> Self {
+        let whole = Ray { t_max: f64::INFINITY, ..*ray };
+        let next = crossing(&part, &whole, 0.0);
+        // Nothing ahead: outside.
+        let inside = next.as_ref().is_some_and(|next| !next.enters);
+        Self { part, inside, next }
+    }
+
+    fn t(&self) -> f64 {
+        self.next.as_ref().map_or(f64::INFINITY, |next| next.hit.t)
+    }
+
+    /// Whether it will be inside after its next crossing.
+    fn after(&self) -> bool {
+        self.next.as_ref().map_or(self.inside, |next| next.enters)
+    }
+
+    /// Past the next crossing.
+    fn advance(&mut self, ray: &Ray) {
+        let Some(passed) = self.next.take() else { return };
+        self.inside = passed.enters;
+        let Surface { p, p_err, ng, .. } = passed.surface;
+        let o = offset_origin(p, p_err, ng, ray.d);
+        let t = (o - ray.o).dot(ray.d) / ray.d.length_squared();
+        // The ray that is walked goes on, however the point was rounded.
+        self.next = crossing(&self.part, &Ray::new(o, ray.d), t.max(passed.hit.t));
+    }
+}
+
+/// The first crossing of a ray that starts at `start` along the one that is walked.
+fn crossing(part: &ShapeRef<'_>, ray: &Ray, start: f64) -> Option<Crossing> {
+    let hit = part.intersect(ray)?;
+    let surface = part.surface(ray, &hit);
+    let enters = surface.ng.dot(ray.d) < 0.0;
+    Some(Crossing { hit: Hit { t: start + hit.t, ..hit }, surface, enters })
+}
+
+/// Whether two crossings are nearer to each other than their errors can tell: as one they leave
+/// neither skins nor gaps between faces that lie in each other.
+fn coincide(a: &Crossing, b: &Crossing, ray: &Ray) -> bool {
+    let err = |s: &Surface| s.ng.abs().dot(s.p_err);
+    let cos = a.surface.ng.dot(ray.d).abs().max(b.surface.ng.dot(ray.d).abs());
+    // `t` rounds with the way and with the place.
+    let rounds = gamma64(8) * (a.hit.t.abs() * ray.d.length() + ray.o.abs().max_element());
+    let apart = (a.hit.t - b.hit.t).abs() * cos;
+    apart <= err(&a.surface) + err(&b.surface) + rounds * cos / ray.d.length()
+}
+
+/// The face of the whole, if there is room for it.
+fn face_of(part: u32, face: u32) -> Option<u32> {
+    face.checked_mul(2)?.checked_add(part)
+}
+
+/// Whether a line can meet a box: conservative.
+pub(super) fn meets(bounds: &Bounds3, ray: &Ray) -> bool {
+    let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (o, d) = (ray.o[axis], ray.d[axis]);
+        let (low, high) = (bounds.min[axis] - o, bounds.max[axis] - o);
+        if d == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (near, far) = if d > 0.0 { (low / d, high / d) } else { (high / d, low / d) };
+        enter = enter.max(near * (1.0 - gamma64(8).copysign(near)));
+        leave = leave.min(far * (1.0 + gamma64(8).copysign(far)));
+    }
+    enter <= leave
+}
+
+/// The nearest crossing of the whole.
+pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
+    if !(meets(&pair.bounds, ray) && ray.t_max > 0.0) {
+        return None;
+    }
+    let mut a = Follower::new(pair.a, ray);
+    if pair.op != Op::Union && a.next.is_none() {
+        return None;
+    }
+    let mut b = Follower::new(pair.b, ray);
+    for _ in 0..MOST {
+        let (pass_a, pass_b) = match (&a.next, &b.next) {
+            (None, None) => return None,
+            (Some(next), Some(other)) if coincide(next, other, ray) => (true, true),
+            _ => (a.t() <= b.t(), b.t() < a.t()),
+        };
+        let after =
+            (if pass_a { a.after() } else { a.inside }, if pass_b { b.after() } else { b.inside });
+        if pair.op.holds(a.inside, b.inside) != pair.op.holds(after.0, after.1) {
+            // Of two that coincide the first that turns over.
+            let of_a = pass_a && after.0 != a.inside;
+            let (met, part) = if of_a { (&a, 0) } else { (&b, 1) };
+            let hit = met.next.as_ref()?.hit;
+            let hit = Hit { face: face_of(part, hit.face)?, ..hit };
+            return (hit.t > 0.0 && hit.t <= ray.t_max).then_some(hit);
+        }
+        if pass_a {
+            a.advance(ray);
+            let gone = a.next.is_none() && !a.inside;
+            if pair.op != Op::Union && gone {
+                return None;
+            }
+        }
+        if pass_b {
+            b.advance(ray);
+        }
+        if a.t().min(b.t()) > 2.0 * ray.t_max {
+            return None;
+        }
+    }
+    None
+}
+
+/// The point that a hit names.
+pub(super) fn surface(pair: &Pair<'_>, ray: &Ray, hit: &Hit) -> Surface {
+    let (part, other) = if hit.face % 2 == 0 { (pair.a, pair.b) } else { (pair.b, pair.a) };
+    let mut found = part.surface(ray, &Hit { face: hit.face / 2, ..*hit });
+    found.p_err = clear_of(&found, &other);
+    if pair.op == Op::Difference && hit.face % 2 == 1 {
+        // Seen from where it was taken away: turned over, and the texture stands on its head.
+        (found.ng, found.ns, found.dp_dv) = (-found.ng, -found.ns, -found.dp_dv);
+        found.uv.y = 1.0 - found.uv.y;
+    }
+    found
+}
+
+/// The error bound of a point, grown where the other part's surface lies in this one: a ray that
+/// leaves the point leaves both.
+fn clear_of(s: &Surface, other: &ShapeRef<'_>) -> DVec3 {
+    let bounds = other.bounds();
+    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let room = 4.0 * s.ng.abs().dot(s.p_err) + gamma64(64) * reach;
+    let across = Ray { t_max: 2.0 * room, ..Ray::new(s.p + s.ng * room, -s.ng) };
+    let Some(hit) = other.intersect(&across) else { return s.p_err };
+    let there = other.surface(&across, &hit);
+    let gap = (there.p - s.p).dot(s.ng).abs();
+    s.p_err.max(there.p_err) + s.ng.abs() * gap
+}

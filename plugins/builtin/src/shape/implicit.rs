@@ -1,0 +1,234 @@
+//! Surfaces that are told by a distance alone: f vanishes on them and changes by no more than the
+//! way. A step of |f| along a ray cannot pass them.
+//!
+//! # Source
+//! Hart 1996, "Sphere Tracing".
+
+use glam::{DVec2, DVec3};
+use luxel_sdk::kind::{Hit, Surface};
+use luxel_sdk::num::{Bounds3, Ray, gamma64, offset_origin};
+use luxel_sdk::sampling::sobol_owen_2d;
+
+use super::axial::length_of;
+
+/// A function with |f(p) − f(q)| ≤ |p − q|, negative inside, found to within `error`.
+pub(super) trait Field {
+    /// f at a point, metres.
+    fn value(&self, p: DVec3) -> f64;
+
+    /// The gradient of f; where it comes from differences, they are over `step` metres.
+    fn gradient(&self, p: DVec3, step: f64) -> DVec3;
+}
+
+/// The gradient of a function, by differences.
+pub(super) fn differences(f: impl Fn(DVec3) -> f64, p: DVec3, step: f64) -> DVec3 {
+    let along = |axis: DVec3| (f(p + axis * step) - f(p - axis * step)) / (2.0 * step);
+    DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
+}
+
+/// How far a value may be off inside these bounds, metres: what `Shape::distance` promises of each
+/// part, and the roundings that join them.
+fn error(bounds: &Bounds3) -> f64 {
+    gamma64(80) * bounds.min.abs().max(bounds.max.abs()).max_element()
+}
+
+/// How far a box is away, negative inside.
+pub(super) fn box_distance(bounds: &Bounds3, p: DVec3) -> f64 {
+    let out = (p - bounds.centre()).abs() - 0.5 * bounds.diagonal();
+    out.max(DVec3::ZERO).length() + out.max_element().min(0.0)
+}
+
+/// Steps after which the least step is doubled, and the most steps.
+const PATIENCE: u32 = 32;
+const MOST_STEPS: u32 = 64 * PATIENCE;
+/// So near to the surface, in sizes of the box, a ray steps to where its last steps say that it is.
+/// Crossings nearer to each other than `FORWARD` such lengths may count as one.
+const NEAR: f64 = 1.0 / (1u64 << 30) as f64;
+const FORWARD: f64 = 64.0;
+
+/// A line of unit direction through a field, from where it enters the box.
+struct Line<'f, F> {
+    field: &'f F,
+    o: DVec3,
+    d: DVec3,
+    /// Where the box is left, metres.
+    end: f64,
+    error: f64,
+    near: f64,
+}
+
+/// The first root along a ray, within the box.
+pub(super) fn march<F: Field>(field: &F, bounds: &Bounds3, ray: &Ray) -> Option<Hit> {
+    let length = length_of(ray)?;
+    let d = ray.d / length;
+    let (enter, leave) = through(bounds, ray.o, d)?;
+    let near = NEAR * bounds.diagonal().length();
+    // From where it enters: from afar the ray's own parameter is too coarse to march by.
+    let line =
+        Line { field, o: ray.o + d * enter, d, end: leave - enter, error: error(bounds), near };
+    // Beyond the ray's end by what rounds, at most.
+    let stop = ray.t_max * length * (1.0 + gamma64(16)) - enter + line.error;
+    let t = (enter + line.root(stop)?) / length;
+    (t > 0.0 && t <= ray.t_max).then_some(Hit { t, at: DVec2::ZERO, face: 0 })
+}
+
+/// Where a line is in a box, from its origin on; a little more than that.
+fn through(bounds: &Bounds3, o: DVec3, d: DVec3) -> Option<(f64, f64)> {
+    let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (low, high) = (bounds.min[axis] - o[axis], bounds.max[axis] - o[axis]);
+        if d[axis] == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) = (low / d[axis], high / d[axis]);
+        enter = enter.max(a.min(b));
+        leave = leave.min(a.max(b));
+    }
+    let room = gamma64(8) * (enter + leave.abs());
+    let (enter, leave) = ((enter - room).max(0.0), leave + room);
+    (enter <= leave && leave.is_finite()).then_some((enter, leave))
+}
+
+impl<F: Field> Line<'_, F> {
+    fn at(&self, s: f64) -> f64 {
+        self.field.value(self.o + self.d * s)
+    }
+
+    /// The first change of sign before `stop`.
+    ///
+    /// Steps are as long as f allows. The shortest step, that of f's own error, grows twofold for
+    /// each `PATIENCE` steps: a ray that crawls along a surface comes to an end, and what it may
+    /// then miss is thinner than a step.
+    fn root(&self, stop: f64) -> Option<f64> {
+        let (mut s, mut f) = (0.0, self.at(0.0));
+        let outside = f > 0.0;
+        let mut least = self.error;
+        for i in 1..MOST_STEPS {
+            if !(s < self.end && s <= stop) {
+                return None;
+            }
+            if i.is_multiple_of(PATIENCE) {
+                least *= 2.0;
+            }
+            let step = f.abs().max(least);
+            let next = (s + step).min(self.end);
+            let g = self.at(next);
+            if (g > 0.0) != outside {
+                return Some(self.between((s, f), (next, g)));
+            }
+            if g.abs() < self.near && g.abs() < f.abs() {
+                // As straight as it came, and a quarter farther.
+                let rest = 1.25 * g.abs() * step / (f - g).abs() + self.error;
+                let beyond = next + rest.min(FORWARD * self.near);
+                let h = self.at(beyond);
+                if (h > 0.0) != outside && beyond <= self.end {
+                    return Some(self.between((next, g), (beyond, h)));
+                }
+            }
+            (s, f) = (next, g);
+        }
+        None
+    }
+
+    /// The root between two places where the sign differs: by secants, halves where one end stays.
+    fn between(&self, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
+        let width = 0.25 * self.error;
+        for i in 0..128 {
+            if !(b.0 - a.0 > width) {
+                break;
+            }
+            let secant = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
+            let halved = 0.5 * (a.0 + b.0);
+            let s = if i % 3 < 2 && secant > a.0 && secant < b.0 { secant } else { halved };
+            let f = self.at(s);
+            if (f > 0.0) == (a.1 > 0.0) {
+                a = (s, f);
+            } else {
+                b = (s, f);
+            }
+        }
+        if a.1.abs() < b.1.abs() && a.0 > 0.0 { a.0 } else { b.0 }
+    }
+}
+
+/// Steps of Newton's from where the ray's parameter says, across the surface.
+const POLISH: u32 = 3;
+
+/// The point that a hit names.
+///
+/// The step of the differences balances what they round, error / step, against what they leave out,
+/// step² times a third derivative: (error / size)^⅔ of the normal each.
+pub(super) fn surface_of<F: Field>(field: &F, bounds: &Bounds3, ray: &Ray, hit: &Hit) -> Surface {
+    let (size, error) = (bounds.diagonal().length(), error(bounds));
+    let step = size * (error / size).cbrt();
+    let mut p = ray.at(hit.t);
+    let mut gradient = field.gradient(p, step);
+    for _ in 0..POLISH {
+        let f = field.value(p);
+        let moved = gradient * (f / gradient.length_squared());
+        // Not where the gradient says nothing: at an edge, or where two surfaces meet.
+        if !(moved.length() <= 1e-3 * size) || f.abs() <= 0.0 {
+            break;
+        }
+        p -= moved;
+    }
+    if (p - ray.at(hit.t)).length() > 0.0 {
+        gradient = field.gradient(p, step);
+    }
+    let steep = gradient.length().clamp(1e-3, 1.0);
+    let ng = gradient.normalize_or(-ray.d.normalize());
+    // Where f is known to `error`, the point is known to that over how steeply f changes; and once
+    // more for the ray that starts here.
+    let p_err = DVec3::splat(2.0 * error / steep + field.value(p).abs() / steep);
+    let (uv, dp_du, dp_dv) = flat_coordinates(p, ng, size);
+    Surface { p, p_err, ng, ns: ng, uv, dp_du, dp_dv }
+}
+
+/// The two coordinates across which the surface is flattest, in lengths of `scale`.
+fn flat_coordinates(p: DVec3, n: DVec3, scale: f64) -> (DVec2, DVec3, DVec3) {
+    let axis = n.abs().max_position();
+    let (u, v) = match n[axis] > 0.0 {
+        true => ((axis + 1) % 3, (axis + 2) % 3),
+        false => ((axis + 2) % 3, (axis + 1) % 3),
+    };
+    let along = |i: usize| {
+        let mut d = DVec3::AXES[i];
+        d[axis] = -n[i] / n[axis];
+        d * scale
+    };
+    (DVec2::new(p[u], p[v]) / scale, along(u), along(v))
+}
+
+/// Lines along each axis by which an area is measured, and crossings of one.
+const LINES: u32 = 1 << 14;
+const CROSSINGS: u32 = 1024;
+
+/// The area of a surface in a box, by lines along the axes, to about a thousandth: `first` finds the
+/// first crossing of a ray. A crossing counts for 1 / (|nx| + |ny| + |nz|) of what a line stands for,
+/// so that the three families share the area, and none counts for more than its square. The lines
+/// are scattered evenly but in no pattern that a shape may have too.
+pub(super) fn area_by_lines(bounds: &Bounds3, first: impl Fn(&Ray) -> Option<Surface>) -> f64 {
+    let size = bounds.diagonal();
+    let mut area = 0.0;
+    for (axis, seed) in [(0, 0x5eed), (1, 0xa11e), (2, 0xcafe)] {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let part = size[u] * size[v] / f64::from(LINES);
+        let d = DVec3::AXES[axis];
+        for i in 0..LINES {
+            let at = sobol_owen_2d(i, seed).map(f64::from);
+            let mut o = bounds.min - d * size[axis];
+            o[u] = bounds.min[u] + size[u] * at[0];
+            o[v] = bounds.min[v] + size[v] * at[1];
+            for _ in 0..CROSSINGS {
+                let Some(s) = first(&Ray::new(o, d)) else { break };
+                let n = s.ng.abs();
+                area += part / (n.x + n.y + n.z);
+                o = offset_origin(s.p, s.p_err, s.ng, d);
+            }
+        }
+    }
+    area
+}

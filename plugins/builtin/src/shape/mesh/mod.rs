@@ -3,7 +3,11 @@
 mod assemble;
 mod inline;
 mod obj;
+mod obj_faces;
 mod ply;
+mod polygons;
+mod net;
+mod subdivide;
 
 use std::sync::Arc;
 
@@ -13,6 +17,8 @@ use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
 use luxel_sdk::{Choice, Params};
 
+use self::assemble::Axes;
+use self::subdivide::Scheme;
 use super::up::Up;
 use crate::sniff;
 
@@ -47,7 +53,8 @@ pub(crate) struct Mesh<'a> {
     /// Corners: x y z each.
     #[param(optional, unit = "m", group = "geometry")]
     pub(crate) points: Table<'a>,
-    /// Three places in `points` for each triangle, counter-clockwise from outside, counted from 0.
+    /// Places in `points`, counted from 0: three for each triangle, counter-clockwise from outside;
+    /// with `sides` as many as each face has.
     #[param(optional)]
     pub(crate) indices: Table<'a>,
     /// Shading normals: x y z for each corner, or none.
@@ -68,38 +75,84 @@ pub(crate) struct Mesh<'a> {
     /// What is done about shading normals.
     #[param(choice, default = Shading::Keep)]
     pub(crate) smooth: Shading,
+    /// The number of corners of each face, 3 or more; without it all are triangles.
+    #[param(optional)]
+    pub(crate) sides: Table<'a>,
+    /// How often faces are subdivided, before points are moved to the limit surface.
+    #[param(default = 0, max = 8)]
+    pub(crate) subdivide: u32,
+    /// How faces are subdivided.
+    #[param(choice, default = Scheme::CatmullClark)]
+    pub(crate) scheme: Scheme,
+    /// Edges that stay sharp while they are subdivided: two points, counted from 0 (also in files),
+    /// and for how many levels; 10 is for ever.
+    #[param(optional)]
+    pub(crate) creases: Table<'a>,
     #[param(shared)]
     table: Shared<'a, Arc<TriangleMesh>>,
 }
 
 impl Build<Arc<TriangleMesh>> for Mesh<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
-        let path = self.file.path.get();
-        let mut mesh = if path.is_empty() {
-            inline::build(self)?
-        } else {
-            let fault = |message: String| vec![Fault::file("file", format!("{path}: {message}"))];
-            let bytes = context.read(path).map_err(|message| vec![Fault::file("file", message)])?;
-            let frame = assemble::Axes { turn: self.up.turn(), unit: self.unit };
-            // By what it holds rather than by what it is called.
-            if bytes.starts_with(b"ply") {
-                ply::read(&bytes, frame).map_err(fault)?
-            } else if has_extension(path, "ply") {
-                let found = sniff::what(&bytes);
-                return Err(fault(format!("not a PLY file, which begins with `ply`, but {found}")));
-            } else if let Some(told) = stranger(&bytes) {
-                return Err(fault(told));
-            } else {
-                obj::read(&bytes, frame).map_err(fault)?
-            }
-        };
+        let mut mesh =
+            if self.subdivide > 0 { self.refined(context)? } else { self.plain(context)? };
         let repaired = assemble::finish(&mut mesh, self.smooth);
         if repaired > 0 {
+            let path = self.file.path.get();
             let name = if path.is_empty() { "the mesh" } else { path };
             let message = format!("{name}: {repaired} unusable normals were made from the faces");
             context.warn(&message);
         }
         Ok(mesh.into())
+    }
+}
+
+impl Mesh<'_> {
+    /// Triangles as they were given.
+    fn plain(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+        if self.file.path.get().is_empty() {
+            return inline::build(self);
+        }
+        self.read(context, ply::read, obj::read)
+    }
+
+    /// Triangles that are made of the given faces.
+    fn refined(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+        let faces = if self.file.path.get().is_empty() {
+            inline::polygons(self)?
+        } else {
+            self.read(context, ply::polygons, obj_faces::read)?
+        };
+        let settings = subdivide::Settings {
+            levels: self.subdivide,
+            scheme: self.scheme,
+            creases: self.creases.get(),
+        };
+        let net = subdivide::subdivide(faces.clean(), settings, context)?;
+        net.into_mesh().map_err(|bad| vec![Fault::mesh("subdivide", bad.to_string())])
+    }
+
+    /// What a file holds, by what it is rather than by what it is called.
+    fn read<T>(
+        &self,
+        context: &dyn BuildContext,
+        ply: fn(&[u8], Axes) -> Result<T, String>,
+        obj: fn(&[u8], Axes) -> Result<T, String>,
+    ) -> Result<T, Vec<Fault>> {
+        let path = self.file.path.get();
+        let bytes = context.read(path).map_err(|message| vec![Fault::file("file", message)])?;
+        let axes = Axes { turn: self.up.turn(), unit: self.unit };
+        let found = if bytes.starts_with(b"ply") {
+            ply(&bytes, axes)
+        } else if has_extension(path, "ply") {
+            let found = sniff::what(&bytes);
+            Err(format!("not a PLY file, which begins with `ply`, but {found}"))
+        } else if let Some(told) = stranger(&bytes) {
+            Err(told)
+        } else {
+            obj(&bytes, axes)
+        };
+        found.map_err(|message| vec![Fault::file("file", format!("{path}: {message}"))])
     }
 }
 

@@ -88,7 +88,7 @@ fn alike(a: f64, b: f64) -> bool {
 }
 
 /// Finds the first face that names a corner which does not exist.
-fn check_indices(text: &str) -> Result<(), String> {
+pub(super) fn check_indices(text: &str) -> Result<(), String> {
     const NAMES: [&str; 3] = ["v", "vt", "vn"];
     let mut counts = [0i64; 3];
     // For each list the greatest index, and the line that has it.

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::abi::Class;
 use luxel_sdk::color::{RgbSpace, Spectrum};
-use luxel_sdk::kind::{Kind, Output};
+use luxel_sdk::kind::{Kind, Output, TextureRef};
 use luxel_sdk::params::{
     Emission, Fault, File, Maybe, Param, Preset, Quantity, Role, Table, Text, Type,
 };
 
 use super::Object;
+use super::asked::Asked;
 use super::block::Block;
 use super::colour::{self, Amount, Lanes};
 use super::context::{self, Embedded, Reader};
@@ -174,6 +175,11 @@ impl<'a> Builder<'a> {
         let built = object.build_shared(&reader);
         let (reads, warnings) = reader.finish();
         object.reads = reads;
+        if object.class.shared.is_some() {
+            // The table may be made of what they say.
+            let textures = object.parts.iter().filter(|part| part.class.kind == Kind::Texture);
+            object.reads.extend(textures.flat_map(|part| part.reads.iter().cloned()));
+        }
         for warning in warnings {
             if let Some(node) = node {
                 self.diagnostics.push(Diagnostic::warning("E0417", node.span, warning));
@@ -214,6 +220,15 @@ impl<'a> Builder<'a> {
         match (param.ty, value) {
             (Type::Emission, _) => return self.emission(draft, param, value, node),
             (Type::Object(Kind::Shape), _) => {}
+            (Type::Object(Kind::Texture), Some(Value::Node(id))) => {
+                // What is asked for numbers says the same in every mode: a mesh keeps its form.
+                let mode = std::mem::replace(&mut self.mode, ColorMode::Rgb);
+                let texture = self.build(*id);
+                self.mode = mode;
+                if let Some(texture) = texture {
+                    draft.asked(param.offset, &texture);
+                }
+            }
             (Type::Object(_), Some(Value::Node(id))) => {
                 if let Some(child) = self.build(*id) {
                     draft.child(param.offset, &child);
@@ -335,6 +350,13 @@ impl Draft {
         if !child.is_constant() {
             self.patches.children.push(ChildPatch { offset, child: child.clone() });
         }
+    }
+
+    fn asked(&mut self, offset: usize, texture: &Arc<Object>) {
+        let asked = Arc::new(Asked::new(texture.clone()));
+        self.block.write_raw(offset, TextureRef::new(&*asked));
+        self.parts.push(texture.clone());
+        self.owned.push(asked);
     }
 
     fn texture(&mut self, param: &Param, texture: Arc<Object>, factor: f32) -> Result<(), String> {

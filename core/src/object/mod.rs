@@ -4,6 +4,7 @@
 //! point to point (textures) or path to path (wavelengths). Where nothing varies the template itself
 //! is what the plugin sees; else the host copies it, fills the varying fields, and runs `prepare`.
 
+mod asked;
 mod block;
 mod build;
 mod colour;

@@ -8,6 +8,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::color::{Observer, Palette, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
     Eval, Kind, Light, LightForm, Material, MaterialRef, Output, Sample, Texture, TexturePoint,
+    TextureRef,
 };
 use luxel_sdk::params::{Build, BuildContext, Dimension, Emission, Fault, Shared, Unit};
 
@@ -130,6 +131,44 @@ impl Texture for Tabled<'_> {
     }
 }
 
+/// Gives back what drives it.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Driven {
+    /// By what.
+    #[param(default = 0.5, min = 0, max = 10, textured)]
+    value: f32,
+}
+
+impl Texture for Driven {
+    fn eval(&self, _at: &TexturePoint) -> Spectrum {
+        Spectrum::splat(self.value)
+    }
+}
+
+/// Asks a texture while it is built; −1 if there is none.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Asking<'a> {
+    /// Which.
+    #[param(optional)]
+    of: TextureRef<'a>,
+    #[param(shared)]
+    table: Shared<'a, f32>,
+}
+
+impl Build<f32> for Asking<'_> {
+    fn build(&self, _context: &dyn BuildContext) -> Result<f32, Vec<Fault>> {
+        Ok(self.of.number(DVec3::ZERO, Vec2::new(0.25, 4.0)).unwrap_or(-1.0))
+    }
+}
+
+impl Texture for Asking<'_> {
+    fn eval(&self, _at: &TexturePoint) -> Spectrum {
+        Spectrum::splat(*self.table)
+    }
+}
+
 struct World {
     registry: Registry,
     scene: Scene,
@@ -143,6 +182,8 @@ impl World {
             Class::material::<Through<'_>>("through"),
             Class::texture::<Coordinates>("coordinates"),
             Class::texture::<Tabled<'_>>("tabled"),
+            Class::texture::<Driven>("driven"),
+            Class::texture::<Asking<'_>>("asking"),
             Class::light::<Lamp>("lamp"),
         ];
         registry.add("test", &classes).unwrap();
@@ -306,6 +347,34 @@ fn rgb_light_of_scale_one_is_white_in_both_modes() {
         .sum();
     // D65 is piecewise linear at 1 nm, the rule has 35 points in each: error far below 1e-4.
     assert!((mean / f64::from(n) - 1.0).abs() < 1e-4, "{}", mean / f64::from(n));
+}
+
+#[test]
+fn a_texture_is_asked_while_an_object_is_built() {
+    let mut world = World::new();
+    let colour = world.node(Kind::Texture, "coordinates", &[("scale", number(2.0))]);
+    let varying = world.node(Kind::Texture, "driven", &[("value", Value::Node(colour))]);
+    let fixed = world.node(Kind::Texture, "driven", &[("value", number(3.0))]);
+    let weights = luxel_sdk::color::RgbSpace::LinearSrgb.luminance_weights().as_vec3();
+    // Of the colour (1/2, 8, 1), which the parameter's range leaves as it is.
+    let luminance = weights.dot(Vec3::new(0.5, 8.0, 1.0));
+    for mode in [ColorMode::Rgb, ColorMode::Spectral] {
+        for (of, expected) in [
+            (Some(colour), luminance),
+            (Some(varying), luminance),
+            (Some(fixed), 3.0),
+            (None, -1.0),
+        ] {
+            let given: Vec<_> = of.map(|of| ("of", Value::Node(of))).into_iter().collect();
+            let id = world.node(Kind::Texture, "asking", &given);
+            let object = world.build(id, mode).unwrap();
+            let at =
+                TexturePoint { p: DVec3::ZERO, uv: Vec2::ZERO, lambda: Wavelengths::sample(0.3) };
+            let found = object.fixed().texture().eval(&at).lane(0);
+            // A few roundings of a number below 10.
+            assert!((found - expected).abs() <= 40.0 * f32::EPSILON, "{found} {expected}");
+        }
+    }
 }
 
 fn number(x: f64) -> Value {

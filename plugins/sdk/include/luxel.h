@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0x071365a79ec0cd15ull
+#define LUXEL_LAYOUT_HASH 0x2881850c94901dc4ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -403,6 +403,16 @@ typedef struct {
     luxel_status (*sample)(const void *at, const luxel_vec3 *wo, const float (*u)[2], luxel_sample *out);
 } luxel_phase_table;
 
+/* A value that varies over a surface or through space. */
+typedef struct {
+    /* Bytes of this table. */
+    size_t size;
+    /* The value at a point. */
+    luxel_status (*eval)(const void *at, const luxel_texture_point *point, luxel_spectrum *out);
+    /* What the lanes mean: 0 values as they are, 1 linear sRGB. */
+    luxel_status (*output)(const void *at, uint32_t *out);
+} luxel_texture_table;
+
 /* Where random numbers come from: the same for the same arguments, in [0, 1). */
 typedef struct {
     /* Bytes of this table. */
@@ -430,6 +440,12 @@ typedef struct {
     const luxel_phase_table *table;
     const void *at;
 } luxel_phase_ref;
+
+/* A texture, to be asked anywhere; without a table there is none. */
+typedef struct {
+    const luxel_texture_table *table;
+    const void *at;
+} luxel_texture_ref;
 
 /* A sampler. */
 typedef struct {
@@ -584,16 +600,6 @@ typedef struct {
     /* Hands triangles over, and says how many; nothing for shapes that intersect themselves. */
     luxel_status (*mesh)(const void *at, luxel_mesh_sink *sink, uint64_t *out);
 } luxel_shape_table;
-
-/* A value that varies over a surface or through space. */
-typedef struct {
-    /* Bytes of this table. */
-    size_t size;
-    /* The value at a point. */
-    luxel_status (*eval)(const void *at, const luxel_texture_point *point, luxel_spectrum *out);
-    /* What the lanes mean: 0 values as they are, 1 linear sRGB. */
-    luxel_status (*output)(const void *at, uint32_t *out);
-} luxel_texture_table;
 
 /* A source of light, in its own frame. */
 typedef struct {
@@ -984,6 +990,10 @@ LUXEL_CHECK(sizeof(luxel_phase_ref) == 16, "size of luxel_phase_ref");
 LUXEL_CHECK(_Alignof(luxel_phase_ref) == 8, "alignment of luxel_phase_ref");
 LUXEL_CHECK(offsetof(luxel_phase_ref, table) == 0, "luxel_phase_ref.table");
 LUXEL_CHECK(offsetof(luxel_phase_ref, at) == 8, "luxel_phase_ref.at");
+LUXEL_CHECK(sizeof(luxel_texture_ref) == 16, "size of luxel_texture_ref");
+LUXEL_CHECK(_Alignof(luxel_texture_ref) == 8, "alignment of luxel_texture_ref");
+LUXEL_CHECK(offsetof(luxel_texture_ref, table) == 0, "luxel_texture_ref.table");
+LUXEL_CHECK(offsetof(luxel_texture_ref, at) == 8, "luxel_texture_ref.at");
 LUXEL_CHECK(sizeof(luxel_sampler_ref) == 16, "size of luxel_sampler_ref");
 LUXEL_CHECK(_Alignof(luxel_sampler_ref) == 8, "alignment of luxel_sampler_ref");
 LUXEL_CHECK(offsetof(luxel_sampler_ref, table) == 0, "luxel_sampler_ref.table");

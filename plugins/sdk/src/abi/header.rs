@@ -11,7 +11,7 @@ use super::{
     CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
     MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
     PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
-    ShapeTable, TextureTable, Triangles,
+    ShapeTable, TextureRef, TextureTable, Triangles,
 };
 use crate::color::{Spectrum, Wavelengths};
 use crate::kind::{
@@ -135,6 +135,8 @@ describe! { HANDLES, HANDLES_C {
     MaterialRef<'static> => "luxel_material_ref" { table, at }
     /// A phase function.
     PhaseRef<'static> => "luxel_phase_ref" { table, at }
+    /// A texture, to be asked anywhere; without a table there is none.
+    TextureRef<'static> => "luxel_texture_ref" { table, at }
     /// A sampler.
     SamplerRef<'static> => "luxel_sampler_ref" { table, at }
     /// The numbers of one path: add to next.dimension what was taken.
@@ -196,6 +198,7 @@ pub fn header() -> String {
     each(REQUESTS_C, &mut out);
     MaterialTable::describe(&mut out);
     PhaseTable::describe(&mut out);
+    TextureTable::describe(&mut out);
     SamplerTable::describe(&mut out);
     each(HANDLES_C, &mut out);
     HostTable::describe(&mut out);
@@ -207,7 +210,6 @@ pub fn header() -> String {
     each(JOBS_C, &mut out);
     each(LIBRARY_C, &mut out);
     ShapeTable::describe(&mut out);
-    TextureTable::describe(&mut out);
     LightTable::describe(&mut out);
     MediumTable::describe(&mut out);
     CameraTable::describe(&mut out);

@@ -8,11 +8,12 @@ mod ply;
 mod polygons;
 mod net;
 mod subdivide;
+mod displace;
 
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TextureRef, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
 use luxel_sdk::{Choice, Params};
@@ -39,11 +40,27 @@ pub(crate) enum Shading {
 /// Files are Wavefront `.obj` and `.ply` (text or binary); polygons become fans of triangles, so
 /// they should be convex. `unit` says how long one unit of the file is.
 ///
+/// With `subdivide`, the faces are the cage of a smooth surface, which every point is moved to: quads
+/// and others after Catmull and Clark, triangles after Loop. Edges stay sharp at `creases` and where
+/// no two faces join, as do points of a single face; texture coordinates are interpolated linearly
+/// within each face of the cage, and their seams never tear. Points of tables and PLY files that are
+/// at the same place are one; OBJ files say themselves which are.
+///
+/// With `displace`, a texture moves the surface, split into triangles of at most `edge`. Both make
+/// 8,388,608 triangles at most.
+///
 /// ```scene
 /// shape mesh "cow"   { file = "assets/spot.obj", unit = 1 m, material = white }
 /// shape mesh "floor" {
 ///   points  = #[ -1 0 -1   1 0 -1   1 0 1   -1 0 1 ] m
 ///   indices = #[ 0 2 1   0 3 2 ]
+///   material = white
+/// }
+/// shape mesh "pebble" {
+///   points  = #[ 1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1 ] cm
+///   indices = #[ 0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5 ]
+///   subdivide = 2, scheme = "loop", creases = #[ 0 2 1.5  2 1 1.5 ]
+///   displace = texture checker {}, displace_by = 0.5 mm, edge = 1 mm
 ///   material = white
 /// }
 /// ```
@@ -88,14 +105,27 @@ pub(crate) struct Mesh<'a> {
     /// and for how many levels; 10 is for ever.
     #[param(optional)]
     pub(crate) creases: Table<'a>,
+    /// Moves the surface, after it is subdivided, along its normals: a value, or the luminance of a
+    /// colour. Without texture coordinates, it is asked at (0, 0) of each point of the shape's frame.
+    #[param(optional)]
+    pub(crate) displace: TextureRef<'a>,
+    /// How far a value of 1 moves it, outwards; `displace` has to have it.
+    #[param(optional, unit = "m")]
+    pub(crate) displace_by: f64,
+    /// The value that leaves it where it is.
+    #[param(default = 0.0)]
+    pub(crate) displace_from: f64,
+    /// Longest edge of a triangle that `displace` moves, before it moves; `displace` has to have it.
+    #[param(optional, unit = "m", min = f64::MIN_POSITIVE)]
+    pub(crate) edge: f64,
     #[param(shared)]
     table: Shared<'a, Arc<TriangleMesh>>,
 }
 
 impl Build<Arc<TriangleMesh>> for Mesh<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
-        let mut mesh =
-            if self.subdivide > 0 { self.refined(context)? } else { self.plain(context)? };
+        let made = self.subdivide > 0 || self.displace.is_given();
+        let mut mesh = if made { self.refined(context)? } else { self.plain(context)? };
         let repaired = assemble::finish(&mut mesh, self.smooth);
         if repaired > 0 {
             let path = self.file.path.get();
@@ -123,13 +153,28 @@ impl Mesh<'_> {
         } else {
             self.read(context, ply::polygons, obj_faces::read)?
         };
-        let settings = subdivide::Settings {
-            levels: self.subdivide,
-            scheme: self.scheme,
-            creases: self.creases.get(),
+        let mut net = if self.subdivide > 0 {
+            let settings = subdivide::Settings {
+                levels: self.subdivide,
+                scheme: self.scheme,
+                creases: self.creases.get(),
+            };
+            subdivide::subdivide(faces.clean(), settings, context)?
+        } else {
+            faces.fans()
         };
-        let net = subdivide::subdivide(faces.clean(), settings, context)?;
-        net.into_mesh().map_err(|bad| vec![Fault::mesh("subdivide", bad.to_string())])
+        let mut field = "subdivide";
+        if self.displace.is_given() {
+            let settings = displace::Settings {
+                texture: self.displace,
+                by: self.displace_by,
+                from: self.displace_from,
+                edge: self.edge,
+            };
+            field = "displace_by";
+            net = displace::displace(net, settings, self.smooth)?;
+        }
+        net.into_mesh().map_err(|bad| vec![Fault::mesh(field, bad.to_string())])
     }
 
     /// What a file holds, by what it is rather than by what it is called.
@@ -173,6 +218,14 @@ fn has_extension(path: &str, wanted: &str) -> bool {
 
 impl Shape for Mesh<'_> {
     fn check(&self) -> Result<(), Fault> {
+        if self.displace.is_given() && self.displace_by.abs() <= 0.0 {
+            let message = "`displace` needs `displace_by`, how far a value of 1 moves, as `displace_by = 1 cm`";
+            return Err(Fault::mesh("displace_by", message));
+        }
+        if self.displace.is_given() && self.edge <= 0.0 {
+            let message = "`displace` needs `edge`, its longest triangle edge, as `edge = 2 mm`";
+            return Err(Fault::mesh("edge", message));
+        }
         if self.file.path.get().is_empty() || self.unit > 0.0 {
             return Ok(());
         }

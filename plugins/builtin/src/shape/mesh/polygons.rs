@@ -72,6 +72,21 @@ impl Polygons {
         }
         out
     }
+
+    /// Every face as a fan about its first corner.
+    pub(super) fn fans(self) -> Net {
+        let mut kept = vec![];
+        for face in self.starts.windows(2) {
+            kept.extend((face[0] + 1..face[1].max(1) - 1).map(|i| [face[0], i, i + 1]));
+        }
+        let triangles = kept.iter().map(|t| t.map(|i| self.corners[i as usize])).collect();
+        Net {
+            places: self.points,
+            triangles,
+            uvs: pick(&kept, &self.uvs),
+            normals: pick(&kept, &self.normals),
+        }
+    }
 }
 
 /// What the corners of triangles have, triangle by triangle; nothing where there is nothing.

@@ -43,6 +43,10 @@ fn params(path: &'static str) -> Mesh<'static> {
         subdivide: 0,
         scheme: Scheme::CatmullClark,
         creases: NONE,
+        displace: TextureRef::NONE,
+        displace_by: 0.0,
+        displace_from: 0.0,
+        edge: 0.0,
         table: Shared::new(&EMPTY),
     }
 }

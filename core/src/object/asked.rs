@@ -29,7 +29,7 @@ impl Texture for Asked {
         let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
         scratch.reset();
         let palette = Palette::rgb();
-        let site = Site { p: at.p, uv: at.uv, palette: &palette };
+        let site = Site { p: at.p, uv: at.uv, palette: &palette, color: None };
         self.texture.resolve(&site, &scratch).texture().eval(at)
     }
 

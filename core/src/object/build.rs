@@ -141,6 +141,7 @@ impl<'a> Builder<'a> {
         }
         let mut object = Object {
             class: *class,
+            takes_colors: draft.patches.take_colors(),
             need: draft.block.chunks().len().saturating_add(draft.patches.need()),
             template: draft.block,
             patches: draft.patches,
@@ -362,7 +363,7 @@ impl Draft {
     fn texture(&mut self, param: &Param, texture: Arc<Object>, factor: f32) -> Result<(), String> {
         let output = texture.fixed().texture().output();
         let target = match param.ty {
-            Type::Float if output == Output::Rgb => {
+            Type::Float if output != Output::Value => {
                 Target::Luminance(RgbSpace::LinearSrgb.luminance_weights().as_vec3())
             }
             Type::Float => Target::Float,

@@ -100,7 +100,7 @@ impl Shader<'_, '_> {
         self.path.on = Some(Standing { leaving: hit.into(), ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
-            self.scatter(at, &surface, &numbers);
+            self.scatter(at, &surface, hit, &numbers);
         } else {
             at.sight.given = false;
         }
@@ -108,14 +108,15 @@ impl Shader<'_, '_> {
 
     /// The light sample and the scattering sample at a surface.
     #[inline(always)]
-    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, numbers: &Numbers) {
+    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, hit: &SceneHit, numbers: &Numbers) {
         if self.wants.0 & SHADED.0 == 0 {
             return;
         }
         self.scratch.reset();
-        let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette };
         let scratch: &Scratch = self.scratch;
         let object = &self.stage.materials[at.material as usize];
+        let color = if object.takes_colors() { self.stage.color(hit) } else { None };
+        let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette, color };
         let material = object.resolve(&site, scratch).material();
         let needs = object.needs().unwrap_or_else(|| material.needs());
         let local = Local::new(at.wo, at, surface, needs);

@@ -1,11 +1,12 @@
 //! Rays through the whole stage.
 
+use glam::Vec3;
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::{Ray, sphere_roots};
 
 use crate::accel::{Direction, Processor, Room};
 
-use super::geometry::Approach;
+use super::geometry::{Approach, Geometry};
 use super::placement::carried;
 use super::{Leaving, MediumStack, Placement, SceneHit, Skin, Stage};
 
@@ -87,6 +88,16 @@ impl Stage {
                     geometry.surface(&transform.inverse_ray(ray), &hit.hit, self.film.precision);
                 carried(transform, &local)
             }
+        }
+    }
+
+    /// The colour that a surface has of itself at a hit, linear sRGB.
+    #[inline(never)]
+    pub fn color(&self, hit: &SceneHit) -> Option<Vec3> {
+        let placement = &self.placements[hit.placement as usize];
+        match &*self.geometries[placement.geometry as usize] {
+            Geometry::Mesh(mesh) => mesh.color(hit.hit.face, hit.hit.at),
+            Geometry::Analytic(_) => None,
         }
     }
 

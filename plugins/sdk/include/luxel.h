@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0x2881850c94901dc4ull
+#define LUXEL_LAYOUT_HASH 0x94e430578bdb241eull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -317,6 +317,7 @@ typedef struct {
     luxel_triangles_of indices;
     luxel_vec3s normals;
     luxel_vec2s uvs;
+    luxel_vec3s colors;
 } luxel_triangles;
 
 /* A shared table on its way. */
@@ -409,7 +410,8 @@ typedef struct {
     size_t size;
     /* The value at a point. */
     luxel_status (*eval)(const void *at, const luxel_texture_point *point, luxel_spectrum *out);
-    /* What the lanes mean: 0 values as they are, 1 linear sRGB. */
+    /* What the lanes mean: 0 values as they are, 1 linear sRGB, 2 the same where the surface has no
+       colours of its own. */
     luxel_status (*output)(const void *at, uint32_t *out);
 } luxel_texture_table;
 
@@ -937,13 +939,14 @@ LUXEL_CHECK(sizeof(luxel_scene_sphere) == 32, "size of luxel_scene_sphere");
 LUXEL_CHECK(_Alignof(luxel_scene_sphere) == 8, "alignment of luxel_scene_sphere");
 LUXEL_CHECK(offsetof(luxel_scene_sphere, centre) == 0, "luxel_scene_sphere.centre");
 LUXEL_CHECK(offsetof(luxel_scene_sphere, radius) == 24, "luxel_scene_sphere.radius");
-LUXEL_CHECK(sizeof(luxel_triangles) == 88, "size of luxel_triangles");
+LUXEL_CHECK(sizeof(luxel_triangles) == 104, "size of luxel_triangles");
 LUXEL_CHECK(_Alignof(luxel_triangles) == 8, "alignment of luxel_triangles");
 LUXEL_CHECK(offsetof(luxel_triangles, centre) == 0, "luxel_triangles.centre");
 LUXEL_CHECK(offsetof(luxel_triangles, points) == 24, "luxel_triangles.points");
 LUXEL_CHECK(offsetof(luxel_triangles, indices) == 40, "luxel_triangles.indices");
 LUXEL_CHECK(offsetof(luxel_triangles, normals) == 56, "luxel_triangles.normals");
 LUXEL_CHECK(offsetof(luxel_triangles, uvs) == 72, "luxel_triangles.uvs");
+LUXEL_CHECK(offsetof(luxel_triangles, colors) == 88, "luxel_triangles.colors");
 LUXEL_CHECK(sizeof(luxel_built) == 16, "size of luxel_built");
 LUXEL_CHECK(_Alignof(luxel_built) == 8, "alignment of luxel_built");
 LUXEL_CHECK(offsetof(luxel_built, address) == 0, "luxel_built.address");

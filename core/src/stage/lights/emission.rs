@@ -178,7 +178,8 @@ impl Stage {
         scratch: &'a Scratch,
     ) -> impl Fn(f32) -> Spectrum + 'a {
         let uv = surface.uv.as_vec2();
-        let light = object.resolve(&Site { p: surface.p, uv, palette }, scratch).light();
+        let light =
+            object.resolve(&Site { p: surface.p, uv, palette, color: None }, scratch).light();
         move |cos| emitted(light, light.le(cos, uv, area), self.mode, palette)
     }
 
@@ -243,7 +244,8 @@ impl Stage {
     ) -> Option<(Ray, Spectrum)> {
         let LightSource::Free { object, transform } = source else { return None };
         let from = Origin { p, p_err: DVec3::ZERO, ng: DVec3::ZERO };
-        let light = object.resolve(&Site { p, uv: Vec2::ZERO, palette }, scratch).light();
+        let light =
+            object.resolve(&Site { p, uv: Vec2::ZERO, palette, color: None }, scratch).light();
         let found = self.sample_free(light, transform.as_deref(), &from, palette, u)?;
         Some((found.ray, found.le_over_pdf))
     }

@@ -18,6 +18,7 @@ pub(super) fn build(mesh: &Mesh<'_>) -> Result<TriangleMesh, Vec<Fault>> {
         fan(&tables.corners[face[0] as usize..face[1] as usize], &mut out.indices);
     }
     (out.normals, out.uvs) = (tables.normals(), tables.uvs());
+    out.colors = tables.colors();
     Ok(out)
 }
 
@@ -27,7 +28,7 @@ pub(super) fn polygons(mesh: &Mesh<'_>) -> Result<Polygons, Vec<Fault>> {
     let points = tables.points.iter().map(|p| DVec3::from_array(*p));
     let rebased = tables.axes.rebase(points.clone());
     rebased.map_err(|bad| vec![Fault::mesh("points", bad.to_string())])?;
-    let (normals, uvs) = (tables.normals(), tables.uvs());
+    let (normals, uvs, colors) = (tables.normals(), tables.uvs(), tables.colors());
     let mut out = Polygons {
         points: points.map(|p| tables.axes.point(p)).collect(),
         starts: tables.starts,
@@ -35,6 +36,7 @@ pub(super) fn polygons(mesh: &Mesh<'_>) -> Result<Polygons, Vec<Fault>> {
         ..Polygons::default()
     };
     (out.normals, out.uvs) = (out.spread(&normals), out.spread(&uvs));
+    out.colors = out.spread(&colors);
     out.weld();
     Ok(out)
 }
@@ -45,6 +47,7 @@ struct Tables<'a> {
     points: &'a [[f64; 3]],
     normals: &'a [[f64; 3]],
     uvs: &'a [[f64; 2]],
+    colors: &'a [[f64; 3]],
     corners: Vec<u32>,
     starts: Vec<u32>,
 }
@@ -55,20 +58,27 @@ impl<'a> Tables<'a> {
         let points = groups::<3>("points", mesh.points.get(), &mut faults);
         let normals = groups::<3>("normals", mesh.normals.get(), &mut faults);
         let uvs = groups::<2>("uvs", mesh.uvs.get(), &mut faults);
+        let colors = groups::<3>("colors", mesh.colors.get(), &mut faults);
         let (indices, sides) = (mesh.indices.get(), mesh.sides.get());
         let starts = starts(indices.len(), sides, &mut faults);
-        for (field, n) in [("normals", normals.len()), ("uvs", uvs.len())] {
+        let lists = [("normals", normals.len()), ("uvs", uvs.len()), ("colors", colors.len())];
+        for (field, n) in lists {
             if n != 0 && n != points.len() {
                 let message =
                     format!("{n} {field} for {} points: there must be as many", points.len());
                 faults.push(Fault::mesh(field, message));
             }
         }
+        let out_of_range = |x: &f64| !(0.0..=1.0).contains(x);
+        if let Some(i) = colors.as_flattened().iter().position(out_of_range) {
+            let message = format!("colour {} has {}, outside [0, 1]", i / 3, mesh.colors.get()[i]);
+            faults.push(Fault::mesh("colors", message));
+        }
         let what = if sides.is_empty() { "triangle" } else { "face" };
         let corners = corners(indices, &starts, points.len(), what);
         let corners = corners.map_err(|fault| faults.push(fault)).unwrap_or_default();
         let axes = Axes { turn: mesh.up.turn(), ..Axes::METRES };
-        let tables = Self { axes, points, normals, uvs, corners, starts };
+        let tables = Self { axes, points, normals, uvs, colors, corners, starts };
         if faults.is_empty() { Ok(tables) } else { Err(faults) }
     }
 
@@ -77,9 +87,18 @@ impl<'a> Tables<'a> {
         self.normals.iter().map(|n| self.axes.normal(unit(n))).collect()
     }
 
+    fn colors(&self) -> Vec<Vec3> {
+        self.colors.iter().map(|c| DVec3::from_array(*c).as_vec3()).collect()
+    }
+
     fn uvs(&self) -> Vec<Vec2> {
         self.uvs.iter().map(|uv| finite_uv(DVec2::from_array(*uv))).collect()
     }
+}
+
+/// A colour of a surface: each part in [0, 1], 0 where it is no number.
+pub(super) fn unit_color(color: DVec3) -> Vec3 {
+    color.as_vec3().map(|x| if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) })
 }
 
 /// Texture coordinates in single precision; (0, 0) where they do not fit.

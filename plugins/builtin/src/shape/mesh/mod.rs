@@ -80,6 +80,9 @@ pub(crate) struct Mesh<'a> {
     /// Texture coordinates: u v for each corner, or none.
     #[param(optional)]
     pub(crate) uvs: Table<'a>,
+    /// Colours, linear sRGB: r g b in [0, 1] for each corner, or none; see `texture vertex_color`.
+    #[param(optional)]
+    pub(crate) colors: Table<'a>,
     /// An OBJ or PLY file.
     #[param(optional, group = "geometry")]
     pub(crate) file: File<'a>,
@@ -124,6 +127,7 @@ pub(crate) struct Mesh<'a> {
 
 impl Build<Arc<TriangleMesh>> for Mesh<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
+        self.warn_of_idle(context);
         let made = self.subdivide > 0 || self.displace.is_given();
         let mut mesh = if made { self.refined(context)? } else { self.plain(context)? };
         let repaired = assemble::finish(&mut mesh, self.smooth);
@@ -138,6 +142,16 @@ impl Build<Arc<TriangleMesh>> for Mesh<'_> {
 }
 
 impl Mesh<'_> {
+    /// Tells of what is given and does nothing.
+    fn warn_of_idle(&self, context: &dyn BuildContext) {
+        if self.subdivide == 0 && !self.creases.get().is_empty() {
+            context.warn("`creases` do nothing without `subdivide`");
+        }
+        if !self.displace.is_given() && (self.edge > 0.0 || self.displace_by.abs() > 0.0) {
+            context.warn("`displace_by` and `edge` do nothing without `displace`");
+        }
+    }
+
     /// Triangles as they were given.
     fn plain(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
         if self.file.path.get().is_empty() {

@@ -22,6 +22,8 @@ pub(super) struct Net {
     pub(super) uvs: Vec<Vec2>,
     /// Three for each triangle, or none.
     pub(super) normals: Vec<Vec3>,
+    /// Three for each triangle, linear sRGB, or none.
+    pub(super) colors: Vec<Vec3>,
 }
 
 impl Net {
@@ -44,7 +46,8 @@ impl Net {
                 let corner = 3 * i + k;
                 let uv = self.uvs.get(corner).map(|uv| uv.to_array().map(f32::to_bits));
                 let normal = self.normals.get(corner).map(|n| n.to_array().map(f32::to_bits));
-                corners[k] = *known.entry((triangle[k], uv, normal)).or_insert_with(|| {
+                let color = self.colors.get(corner).map(|c| c.to_array().map(f32::to_bits));
+                corners[k] = *known.entry((triangle[k], uv, normal, color)).or_insert_with(|| {
                     first.push(corner);
                     u32::try_from(first.len() - 1).expect("three corners of so many triangles")
                 });
@@ -56,7 +59,8 @@ impl Net {
         let mesh = Axes::METRES.rebase(first.iter().map(place))?;
         let uvs = if self.uvs.is_empty() { vec![] } else { all(&first, &self.uvs) };
         let normals = if self.normals.is_empty() { vec![] } else { all(&first, &self.normals) };
-        Ok(TriangleMesh { indices, uvs, normals, ..mesh })
+        let colors = if self.colors.is_empty() { vec![] } else { all(&first, &self.colors) };
+        Ok(TriangleMesh { indices, uvs, normals, colors, ..mesh })
     }
 }
 

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::assemble::Axes;
 use super::inline::finite_uv;
-use super::obj::check_indices;
+use super::obj::{check_indices, color_of};
 use super::polygons::Polygons;
 
 /// All groups of the file as one mesh.
@@ -20,7 +20,10 @@ pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<Polygons, String> {
     for (i, line) in text.lines().enumerate() {
         file.line(line).map_err(|message| format!("line {}: {message}", i + 1))?;
     }
-    let Lists { mut faces, lines, .. } = file;
+    let Lists { mut faces, lines, colors, .. } = file;
+    if !colors.iter().any(|color| color.is_nan()) {
+        faces.colors = faces.spread(&colors);
+    }
     if faces.n_faces() == 0 {
         return Err("an OBJ file without a face (no line `f 1 2 3`)".to_owned());
     }
@@ -47,13 +50,15 @@ struct Lists {
     n_lines: usize,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
+    /// Of each point, not a number where it has none.
+    colors: Vec<Vec3>,
 }
 
 impl Default for Lists {
     fn default() -> Self {
         let faces = Polygons { starts: vec![0], ..Polygons::default() };
-        let (lines, uvs, normals) = (vec![], vec![], vec![]);
-        Self { axes: Axes::METRES, faces, lines, n_lines: 0, uvs, normals }
+        let (lines, uvs, normals, colors) = (vec![], vec![], vec![], vec![]);
+        Self { axes: Axes::METRES, faces, lines, n_lines: 0, uvs, normals, colors }
     }
 }
 
@@ -62,16 +67,18 @@ impl Lists {
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => {
-                let p = numbers::<3>(words, 3)?;
+                let [x, y, z, r, g, b] = numbers::<6>(words, 3, f64::NAN)?;
+                let p = [x, y, z];
+                self.colors.push(color([r, g, b]));
                 self.faces.points.push(self.axes.point(DVec3::from_array(p)));
                 self.lines.push(self.n_lines);
             }
             Some("vt") => {
-                let [u, v] = numbers::<2>(words, 1)?;
+                let [u, v] = numbers::<2>(words, 1, 0.0)?;
                 self.uvs.push(finite_uv(DVec2::new(u, v)));
             }
             Some("vn") => {
-                let n = numbers::<3>(words, 3)?;
+                let n = numbers::<3>(words, 3, 0.0)?;
                 self.normals.push(self.axes.normal(DVec3::from_array(n).as_vec3()));
             }
             Some("f") => self.face(words)?,
@@ -112,12 +119,18 @@ fn of_word(word: &str, n: usize) -> Option<usize> {
     usize::try_from(place).ok().filter(|_| place < n)
 }
 
-/// Numbers of which the first `least` must be there.
+/// What stands behind a point; not a number where it is no three numbers.
+fn color(color: [f64; 3]) -> Vec3 {
+    if color.iter().any(|x| x.is_nan()) { Vec3::NAN } else { color_of(color) }
+}
+
+/// Numbers of which the first `least` must be there; others that are not are `absent`.
 fn numbers<'a, const N: usize>(
     mut words: impl Iterator<Item = &'a str>,
     least: usize,
+    absent: f64,
 ) -> Result<[f64; N], String> {
-    let mut out = [0.0; N];
+    let mut out = [absent; N];
     for (i, x) in out.iter_mut().enumerate() {
         match words.next() {
             Some(word) => {

@@ -19,6 +19,8 @@ pub(super) struct Polygons {
     pub(super) uvs: Vec<Vec2>,
     /// Of each corner, or none; zero where there is none for it.
     pub(super) normals: Vec<Vec3>,
+    /// Of each corner, linear sRGB, or none.
+    pub(super) colors: Vec<Vec3>,
     /// Which point each has become when points at the same place were made one, if they were.
     pub(super) same: Vec<u32>,
 }
@@ -67,6 +69,7 @@ impl Polygons {
                 out.corners.push(self.corners[i]);
                 out.uvs.extend(self.uvs.get(i));
                 out.normals.extend(self.normals.get(i));
+                out.colors.extend(self.colors.get(i));
             }
             out.starts.push(out.corners.len().try_into().expect("there are no more than before"));
         }
@@ -85,6 +88,7 @@ impl Polygons {
             triangles,
             uvs: pick(&kept, &self.uvs),
             normals: pick(&kept, &self.normals),
+            colors: pick(&kept, &self.colors),
         }
     }
 }

@@ -12,7 +12,8 @@ table! {
     Texture => TextureTable "luxel_texture_table" {
         /// The value at a point.
         fn eval(texture, point: &TexturePoint) -> Spectrum { Some(texture.eval(point)) }
-        /// What the lanes mean: 0 values as they are, 1 linear sRGB.
+        /// What the lanes mean: 0 values as they are, 1 linear sRGB, 2 the same where the surface has no
+        /// colours of its own.
         fn output(texture) -> u32 { Some(texture.output() as u32) }
     }
 }
@@ -59,7 +60,7 @@ impl<'a> TextureRef<'a> {
         let value = expect(unsafe { table.eval(self.at, &point) })?;
         // SAFETY: as above.
         let output = expect(unsafe { table.output(self.at) });
-        if output != Some(Output::Rgb as u32) {
+        if output.is_none_or(|output| output == Output::Value as u32) {
             return Some(value.lane(0));
         }
         // A weighted mean: of three equal numbers exactly that number.

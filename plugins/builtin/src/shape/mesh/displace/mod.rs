@@ -43,10 +43,10 @@ pub(super) fn displace(
         } else {
             "far too many".to_owned()
         };
+        let fits = many.fits.map_or("no edge".to_owned(), |fits| format!("{fits:.2e} m"));
         let message = format!(
             "an edge of {edge} m makes {n} triangles, at most {MOST_TRIANGLES} may be: \
-             {:.2e} m would fit",
-            many.fits
+             {fits} would fit"
         );
         vec![Fault::mesh("edge", message)]
     })?;

@@ -16,8 +16,8 @@ use super::super::net::Net;
 pub(super) struct TooMany {
     /// About how many.
     pub(super) triangles: f64,
-    /// An edge, in metres, that would do.
-    pub(super) fits: f64,
+    /// An edge, in metres, that would do, if any.
+    pub(super) fits: Option<f64>,
 }
 
 /// Splits triangles until no edge is longer than `most`, metres.
@@ -28,7 +28,7 @@ pub(super) fn tessellate(mut net: Net, most: f64, limit: u64) -> Result<Net, Too
     let too_many =
         |net: &Net| TooMany { triangles: estimate(net, most), fits: fitting(net, most, limit) };
     // An estimate may be off by as much.
-    if estimate(&net, most) > 4.0 * limit as f64 {
+    if estimate(&net, most) > 4.0 * limit as f64 || net.triangles.len() as u64 > limit {
         return Err(too_many(&net));
     }
     let given =
@@ -103,6 +103,7 @@ impl Split {
                     None => triangle[usize::from(i)],
                 }));
                 values(&net.uvs, i, *part, |v: Vec2| v, &mut out.uvs);
+                values(&net.colors, i, *part, |c: Vec3| c, &mut out.colors);
                 values(&net.normals, i, *part, Vec3::normalize_or_zero, &mut out.normals);
             }
         }
@@ -166,16 +167,19 @@ fn estimate(net: &Net, most: f64) -> f64 {
     net.triangles.iter().map(of).sum()
 }
 
-/// An edge that makes as many triangles as there may be, or a little fewer.
-fn fitting(net: &Net, most: f64, limit: u64) -> f64 {
-    let mut edge = most;
-    // Finite lengths are within so many factors of each other.
-    for _ in 0..4096 {
+/// An edge that makes as many triangles as there may be, or a little fewer; none where there are too
+/// many already.
+fn fitting(net: &Net, most: f64, limit: u64) -> Option<f64> {
+    let length = |(a, b): (u32, u32)| net.places[a as usize].distance(net.places[b as usize]);
+    let longest = net.triangles.iter().flat_map(|t| edges(*t)).map(length).fold(0.0, f64::max);
+    // Shorter ones split a single edge into more than there may be.
+    let mut edge = most.max(longest / (2.0 * limit as f64));
+    while edge <= longest {
         if estimate(net, edge) <= 0.5 * limit as f64 {
             break;
         }
         edge *= 1.25;
     }
     // It will be told with three digits.
-    edge * 1.01
+    (edge <= longest || net.triangles.len() as u64 <= limit).then_some(edge * 1.01)
 }

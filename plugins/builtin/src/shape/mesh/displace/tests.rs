@@ -136,7 +136,7 @@ fn a_plate_rises_where_its_texture_is_high() {
     let triangles = vec![[0, 1, 2], [0, 2, 3]];
     let uv = |i: &u32| places[*i as usize].as_vec3().xz();
     let uvs = triangles.iter().flatten().map(uv).collect();
-    let plate = Net { places: places.to_vec(), triangles, uvs, normals: vec![] };
+    let plate = Net { places: places.to_vec(), triangles, uvs, ..Net::default() };
     let checker = Heights(|at| f32::from((at.uv.x < 0.5) == (at.uv.y < 0.5)));
     let moved = displace(plate, settings(&checker, 0.02, 0.1), Shading::Keep).unwrap();
     for p in &moved.places {
@@ -166,10 +166,11 @@ fn too_short_an_edge_is_refused_with_one_that_fits() {
     assert!(faults.unwrap_err()[0].message.contains("far too many triangles"));
     for edge in [1e-3, 0.011, 0.04] {
         let refused = tessellate(octahedron(), edge, 10_000).unwrap_err();
-        let made = tessellate(octahedron(), refused.fits, 10_000).unwrap().triangles.len();
+        let made = tessellate(octahedron(), refused.fits.unwrap(), 10_000).unwrap().triangles.len();
         // Halving makes steps of four.
         assert!((1_000..=10_000).contains(&made), "{refused:?}: {made}");
     }
+    assert!(tessellate(octahedron(), 0.5, 7).unwrap_err().fits.is_none());
     let bad = Heights(|_| f32::NAN);
     let faults = displace(octahedron(), settings(&bad, 0.1, 1.0), Shading::Keep).unwrap_err();
     assert_eq!(faults[0].field, "displace");

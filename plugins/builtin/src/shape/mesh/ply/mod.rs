@@ -5,13 +5,14 @@
 mod header;
 mod value;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
+use luxel_sdk::color::srgb_decode;
 use luxel_sdk::kind::TriangleMesh;
 
 use self::header::{Element, Header};
 use self::value::{Encoding, Reader, Scalar};
 use super::assemble::{Axes, fan};
-use super::inline::finite_uv;
+use super::inline::{finite_uv, unit_color};
 use super::polygons::Polygons;
 
 /// Reads the elements `vertex` and `face`; others are passed over.
@@ -20,7 +21,7 @@ use super::polygons::Polygons;
 /// What does not fit together, with its vertex or face.
 pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
     let mut indices = vec![];
-    let mesh = parse(bytes, axes, &mut |corners| fan(corners, &mut indices), None)?;
+    let mesh = parse(bytes, axes, &mut indices, None)?;
     if indices.is_empty() {
         return Err(EMPTY.to_owned());
     }
@@ -31,14 +32,7 @@ pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
 pub(super) fn polygons(bytes: &[u8], axes: Axes) -> Result<Polygons, String> {
     let mut out = Polygons { starts: vec![0], ..Polygons::default() };
     let mut points = vec![];
-    let mut take = |corners: &[u32]| {
-        if corners.len() >= 3 {
-            out.corners.extend(corners);
-            // Too many are refused below.
-            out.starts.push(u32::try_from(out.corners.len()).unwrap_or(u32::MAX));
-        }
-    };
-    let mesh = parse(bytes, axes, &mut take, Some(&mut points))?;
+    let mesh = parse(bytes, axes, &mut out, Some(&mut points))?;
     if out.n_faces() == 0 {
         return Err(EMPTY.to_owned());
     }
@@ -47,8 +41,41 @@ pub(super) fn polygons(bytes: &[u8], axes: Axes) -> Result<Polygons, String> {
     }
     out.points = points;
     (out.normals, out.uvs) = (out.spread(&mesh.normals), out.spread(&mesh.uvs));
+    out.colors = out.spread(&mesh.colors);
     out.weld();
     Ok(out)
+}
+
+/// Where faces go.
+trait Faces {
+    /// So many are coming.
+    fn expect(&mut self, n: usize);
+    /// One more.
+    fn add(&mut self, corners: &[u32]);
+}
+
+impl Faces for Vec<[u32; 3]> {
+    fn expect(&mut self, n: usize) {
+        self.reserve(n);
+    }
+
+    fn add(&mut self, corners: &[u32]) {
+        fan(corners, self);
+    }
+}
+
+impl Faces for Polygons {
+    fn expect(&mut self, n: usize) {
+        self.starts.reserve(n);
+    }
+
+    fn add(&mut self, corners: &[u32]) {
+        if corners.len() >= 3 {
+            self.corners.extend(corners);
+            // Too many are refused when all are there.
+            self.starts.push(u32::try_from(self.corners.len()).unwrap_or(u32::MAX));
+        }
+    }
 }
 
 const EMPTY: &str = "a mesh without a triangle";
@@ -57,8 +84,8 @@ const EMPTY: &str = "a mesh without a triangle";
 fn parse(
     bytes: &[u8],
     axes: Axes,
-    face: &mut dyn FnMut(&[u32]),
-    mut exact: Option<&mut Vec<DVec3>>,
+    out: &mut impl Faces,
+    mut exact: Exact<'_>,
 ) -> Result<TriangleMesh, String> {
     let header = Header::parse(bytes)?;
     let mut reader = Reader::new(&bytes[header.length..], header.encoding);
@@ -71,7 +98,7 @@ fn parse(
             "vertex" if mesh.is_none() => {
                 mesh = Some(vertices(element, &mut reader, axes, exact.take())?);
             }
-            "face" => faces(element, &mut reader, n_points, face)?,
+            "face" => faces(element, &mut reader, n_points, out)?,
             _ => skip(element, &mut reader)?,
         }
     }
@@ -83,6 +110,9 @@ struct Layout {
     point: [usize; 3],
     normal: Option<[usize; 3]>,
     uv: Option<[usize; 2]>,
+    color: Option<[usize; 3]>,
+    /// How colours are stored, which says how they are meant.
+    depth: Scalar,
 }
 
 impl Layout {
@@ -92,7 +122,9 @@ impl Layout {
         let pairs = [("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("u0", "v0")];
         let uv = pairs.iter().find_map(|(u, v)| Some([find(u)?, find(v)?]));
         let point = all(["x", "y", "z"]).ok_or("vertices without x, y and z")?;
-        Ok(Self { point, normal: all(["nx", "ny", "nz"]), uv })
+        let color = all(["red", "green", "blue"]).or_else(|| all(["r", "g", "b"]));
+        let depth = color.map_or(Scalar::F32, |color| element.properties[color[0]].value);
+        Ok(Self { point, normal: all(["nx", "ny", "nz"]), uv, color, depth })
     }
 }
 
@@ -139,7 +171,11 @@ fn strided<'a>(
         mesh.normals = rows.clone().map(|row| axes.normal(normal(row))).collect();
     }
     if let Some([u, v]) = layout.uv.map(|uv| uv.map(column)) {
-        mesh.uvs = rows.map(|row| finite_uv(DVec2::new(at(row, u), at(row, v)))).collect();
+        mesh.uvs = rows.clone().map(|row| finite_uv(DVec2::new(at(row, u), at(row, v)))).collect();
+    }
+    if let Some([r, g, b]) = layout.color.map(|color| color.map(column)) {
+        let color = |row| linear(DVec3::new(at(row, r), at(row, g), at(row, b)), layout.depth);
+        mesh.colors = rows.map(color).collect();
     }
     Ok(mesh)
 }
@@ -152,7 +188,7 @@ fn listed(
     exact: Exact<'_>,
 ) -> Result<TriangleMesh, String> {
     let mut points = Vec::with_capacity(element.count);
-    let (mut normals, mut uvs) = (vec![], vec![]);
+    let (mut normals, mut uvs, mut colors) = (vec![], vec![], vec![]);
     let mut row = vec![0.0; element.properties.len()];
     for i in 0..element.count {
         for (value, property) in row.iter_mut().zip(&element.properties) {
@@ -169,24 +205,41 @@ fn listed(
         if let Some([u, v]) = layout.uv {
             uvs.push(finite_uv(DVec2::new(row[u], row[v])));
         }
+        if let Some(color) = layout.color {
+            colors.push(linear(DVec3::from_array(color.map(|k| row[k])), layout.depth));
+        }
     }
     if let Some(exact) = exact {
         exact.extend(points.iter().map(|p| axes.point(*p)));
     }
     let mesh = axes.rebase(points.into_iter())?;
-    Ok(TriangleMesh { normals, uvs, ..mesh })
+    Ok(TriangleMesh { normals, uvs, colors, ..mesh })
+}
+
+/// A colour as linear sRGB: whole numbers are parts of the greatest, of sRGB with its curve; others
+/// are linear already. Outside [0, 1] is no colour of a surface.
+fn linear(color: DVec3, depth: Scalar) -> Vec3 {
+    let most = match depth {
+        Scalar::U8 => f64::from(u8::MAX),
+        Scalar::U16 => f64::from(u16::MAX),
+        Scalar::U32 => f64::from(u32::MAX),
+        _ => return unit_color(color),
+    };
+    unit_color((color / most).map(srgb_decode))
 }
 
 fn faces(
     element: &Element,
     reader: &mut Reader<'_>,
     n_points: u32,
-    face: &mut dyn FnMut(&[u32]),
+    out: &mut impl Faces,
 ) -> Result<(), String> {
     let names = ["vertex_indices", "vertex_index"];
     let wanted = |p: &header::Property| p.list.is_some() && names.contains(&p.name.as_str());
     let list = element.properties.iter().position(wanted);
     let list = list.ok_or("faces without a list `vertex_indices`")?;
+    // A triangle takes at least a byte for its length and one for each corner.
+    out.expect(element.count.min(reader.rest().len() / 4));
     let mut corners = vec![];
     for i in 0..element.count {
         let located = |error| format!("face {i} of {}: {error}", element.count);
@@ -201,7 +254,7 @@ fn faces(
             };
             read.map_err(located)?;
         }
-        face(&corners);
+        out.add(&corners);
     }
     Ok(())
 }

@@ -51,13 +51,14 @@ pub(super) fn subdivide(
     context: &dyn BuildContext,
 ) -> Result<Net, Vec<Fault>> {
     check(&faces, settings).map_err(|fault| vec![fault])?;
-    let mut uvs = faces.uvs.clone();
+    let (mut uvs, mut colors) = (faces.uvs.clone(), faces.colors.clone());
     let mut level = Level::build(faces, settings.creases)?;
     for _ in 0..settings.levels {
         if context.cancelled() {
             break;
         }
         uvs = refine::values(&level, settings.scheme, &uvs);
+        colors = refine::values(&level, settings.scheme, &colors);
         level = refine::refine(&level, settings.scheme);
     }
     if level.triangles().is_none() {
@@ -65,7 +66,7 @@ pub(super) fn subdivide(
     }
     let normals = limit::normals(&level, settings.scheme);
     let places = limit::points(&level, settings.scheme);
-    Ok(level.into_net(places, &uvs, &normals))
+    Ok(level.into_net(places, &uvs, &normals, &colors))
 }
 
 fn check(faces: &Polygons, settings: Settings<'_>) -> Result<(), Fault> {

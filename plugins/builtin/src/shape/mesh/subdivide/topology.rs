@@ -237,10 +237,17 @@ impl Level {
     }
 
     /// The same as triangles, at other places.
-    pub(super) fn into_net(self, places: Vec<DVec3>, uvs: &[Vec2], normals: &[Vec3]) -> Net {
+    pub(super) fn into_net(
+        self,
+        places: Vec<DVec3>,
+        uvs: &[Vec2],
+        normals: &[Vec3],
+        colors: &[Vec3],
+    ) -> Net {
         let triangles = self.triangles().unwrap_or_default();
         let (uvs, normals) = (pick(&triangles, uvs), pick(&triangles, normals));
+        let colors = pick(&triangles, colors);
         let triangles = triangles.iter().map(|t| t.map(|i| self.corners[i as usize])).collect();
-        Net { places, triangles, uvs, normals }
+        Net { places, triangles, uvs, normals, colors }
     }
 }

@@ -172,7 +172,7 @@ fn event(material: &Object, spectral: bool) -> f64 {
     for i in 0..N {
         let (wo, wi, uv) = directions[i as usize % directions.len()];
         scratch.reset();
-        let site = Site { p: DVec3::ZERO, uv, palette: &palette };
+        let site = Site { p: DVec3::ZERO, uv, palette: &palette, color: None };
         let material: &dyn Material = material.resolve(&site, &scratch).material();
         sum += material.eval(wo, wi).pdf;
         sum += material.sample(wo, [uv.x, uv.y, 0.3]).map_or(0.0, |sample| sample.pdf);

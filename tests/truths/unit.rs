@@ -178,7 +178,7 @@ fn phase() -> Vec<Row> {
     let outside = stage.outside.unwrap() as usize;
     let scratch = Scratch::default();
     let palette = luxel_sdk::color::Palette::rgb();
-    let site = Site { p: DVec3::ZERO, uv: glam::Vec2::ZERO, palette: &palette };
+    let site = Site { p: DVec3::ZERO, uv: glam::Vec2::ZERO, palette: &palette, color: None };
     let medium = stage.media[outside].resolve(&site, &scratch).medium();
     let value = |degrees: f64| medium.phase().eval(Vec3::NEG_Z, direction(degrees)).f.lane(0);
     let row = |case: &str, expected, measured: f64| {

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::abi::Class;
 use luxel_sdk::color::{RgbSpace, Spectrum};
-use luxel_sdk::kind::{Kind, Output};
+use luxel_sdk::kind::{Kind, Output, TextureRef};
 use luxel_sdk::params::{
     Emission, Fault, File, Maybe, Param, Preset, Quantity, Role, Table, Text, Type,
 };
 
 use super::Object;
+use super::asked::Asked;
 use super::block::Block;
 use super::colour::{self, Amount, Lanes};
 use super::context::{self, Embedded, Reader};
@@ -144,6 +145,7 @@ impl<'a> Builder<'a> {
         }
         let mut object = Object {
             class: *class,
+            takes_colors: draft.patches.take_colors(),
             need: draft.block.chunks().len().saturating_add(draft.patches.need()),
             template: draft.block,
             patches: draft.patches,
@@ -179,6 +181,11 @@ impl<'a> Builder<'a> {
         let built = object.build_shared(&reader);
         let (reads, warnings) = reader.finish();
         object.reads = reads;
+        if object.class.shared.is_some() {
+            // The table may be made of what they say.
+            let textures = object.parts.iter().filter(|part| part.class.kind == Kind::Texture);
+            object.reads.extend(textures.flat_map(|part| part.reads.iter().cloned()));
+        }
         for warning in warnings {
             if let Some(node) = node {
                 self.diagnostics.push(Diagnostic::warning("E0417", node.span, warning));
@@ -221,6 +228,15 @@ impl<'a> Builder<'a> {
             (Type::Object(Kind::Shape), _) => {}
             (Type::Part, Some(Value::Node(id))) => self.part(draft, param, *id, None)?,
             (Type::Part, Some(Value::Moved(id, to))) => self.part(draft, param, *id, Some(to))?,
+            (Type::Object(Kind::Texture), Some(Value::Node(id))) => {
+                // What is asked for numbers says the same in every mode: a mesh keeps its form.
+                let mode = std::mem::replace(&mut self.mode, ColorMode::Rgb);
+                let texture = self.build(*id);
+                self.mode = mode;
+                if let Some(texture) = texture {
+                    draft.asked(param.offset, &texture);
+                }
+            }
             (Type::Object(_), Some(Value::Node(id))) => {
                 if let Some(child) = self.build(*id) {
                     draft.child(param.offset, &child);
@@ -346,10 +362,17 @@ impl Draft {
         }
     }
 
+    fn asked(&mut self, offset: usize, texture: &Arc<Object>) {
+        let asked = Arc::new(Asked::new(texture.clone()));
+        self.block.write_raw(offset, TextureRef::new(&*asked));
+        self.parts.push(texture.clone());
+        self.owned.push(asked);
+    }
+
     fn texture(&mut self, param: &Param, texture: Arc<Object>, factor: f32) -> Result<(), String> {
         let output = texture.fixed().texture().output();
         let target = match param.ty {
-            Type::Float if output == Output::Rgb => {
+            Type::Float if output != Output::Value => {
                 Target::Luminance(RgbSpace::LinearSrgb.luminance_weights().as_vec3())
             }
             Type::Float => Target::Float,

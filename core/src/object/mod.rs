@@ -4,6 +4,7 @@
 //! point to point (textures) or path to path (wavelengths). Where nothing varies the template itself
 //! is what the plugin sees; else the host copies it, fills the varying fields, and runs `prepare`.
 
+mod asked;
 mod block;
 mod build;
 mod colour;
@@ -37,6 +38,8 @@ pub struct Object {
     class: Class,
     template: Block,
     patches: Patches,
+    /// Whether it takes the surface's own colours: they are not looked for elsewhere.
+    takes_colors: bool,
     /// Scratch that resolving takes, children included, in chunks.
     need: usize,
     /// Tables and texts that the template's bytes point into.
@@ -63,6 +66,12 @@ impl Object {
     #[inline(always)]
     pub fn needs(&self) -> Option<Needs> {
         self.needs
+    }
+
+    /// Whether it asks a site for the surface's own colours.
+    #[inline(always)]
+    pub fn takes_colors(&self) -> bool {
+        self.takes_colors
     }
 
     /// Who failed and how, if a library's code has failed in this object.

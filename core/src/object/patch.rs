@@ -95,6 +95,13 @@ impl Patches {
             && self.children.is_empty()
     }
 
+    /// Whether anything below takes the surface's own colours.
+    pub(super) fn take_colors(&self) -> bool {
+        let own =
+            |patch: &TexturePatch| patch.output == Output::Corners || patch.texture.takes_colors;
+        self.textures.iter().any(own) || self.children.iter().any(|patch| patch.child.takes_colors)
+    }
+
     /// Scratch that the objects below take, in chunks.
     pub(super) fn need(&self) -> usize {
         let textures = self.textures.iter().map(|patch| patch.texture.need);

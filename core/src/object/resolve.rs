@@ -68,6 +68,8 @@ pub struct Site<'a> {
     pub uv: Vec2,
     /// The path's wavelengths.
     pub palette: &'a Palette,
+    /// The surface's own colour, linear sRGB, where its corner points have any.
+    pub color: Option<Vec3>,
 }
 
 /// An object's parameters at one point: a valid struct of its class, lent for `'a`.
@@ -275,10 +277,13 @@ impl Writer {
 #[inline(never)]
 fn fill_texture(write: Writer, patch: &TexturePatch, at: &Site<'_>, scratch: &Scratch) {
     let point = TexturePoint { p: at.p, uv: at.uv, lambda: at.palette.wavelengths };
-    let value = patch.texture.resolve(at, scratch).texture().eval(&point);
+    let value = match at.color {
+        Some(color) if patch.output == Output::Corners => Spectrum::from_rgb(color),
+        _ => patch.texture.resolve(at, scratch).texture().eval(&point),
+    };
     let lanes = match (patch.output, patch.target) {
         (_, Target::Luminance(weights)) => Spectrum::splat(luminance(value.rgb(), weights)),
-        (Output::Rgb, _) => patch.uplift.lanes(value.rgb(), at.palette),
+        (Output::Rgb | Output::Corners, _) => patch.uplift.lanes(value.rgb(), at.palette),
         (Output::Value, _) => value,
     };
     let lanes: Spectrum = (lanes * patch.factor).clamp(patch.range[0], patch.range[1]);

@@ -8,6 +8,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::color::{Observer, Palette, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
     Eval, Kind, Light, LightForm, Material, MaterialRef, Output, Sample, Texture, TexturePoint,
+    TextureRef,
 };
 use luxel_sdk::params::{Build, BuildContext, Dimension, Emission, Fault, Shared, Unit};
 
@@ -130,6 +131,62 @@ impl Texture for Tabled<'_> {
     }
 }
 
+/// Gives back what drives it.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Driven {
+    /// By what.
+    #[param(default = 0.5, min = 0, max = 10, textured)]
+    value: f32,
+}
+
+impl Texture for Driven {
+    fn eval(&self, _at: &TexturePoint) -> Spectrum {
+        Spectrum::splat(self.value)
+    }
+}
+
+/// The surface's own colours, or grey.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Own {
+    /// Where there are none.
+    #[param(default = 0.5)]
+    grey: f32,
+}
+
+impl Texture for Own {
+    fn eval(&self, _at: &TexturePoint) -> Spectrum {
+        Spectrum::splat(self.grey)
+    }
+    fn output(&self) -> Output {
+        Output::Corners
+    }
+}
+
+/// Asks a texture while it is built; −1 if there is none.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Asking<'a> {
+    /// Which.
+    #[param(optional)]
+    of: TextureRef<'a>,
+    #[param(shared)]
+    table: Shared<'a, f32>,
+}
+
+impl Build<f32> for Asking<'_> {
+    fn build(&self, _context: &dyn BuildContext) -> Result<f32, Vec<Fault>> {
+        Ok(self.of.number(DVec3::ZERO, Vec2::new(0.25, 4.0)).unwrap_or(-1.0))
+    }
+}
+
+impl Texture for Asking<'_> {
+    fn eval(&self, _at: &TexturePoint) -> Spectrum {
+        Spectrum::splat(*self.table)
+    }
+}
+
 struct World {
     registry: Registry,
     scene: Scene,
@@ -143,6 +200,9 @@ impl World {
             Class::material::<Through<'_>>("through"),
             Class::texture::<Coordinates>("coordinates"),
             Class::texture::<Tabled<'_>>("tabled"),
+            Class::texture::<Own>("own"),
+            Class::texture::<Driven>("driven"),
+            Class::texture::<Asking<'_>>("asking"),
             Class::light::<Lamp>("lamp"),
         ];
         registry.add("test", &classes).unwrap();
@@ -174,7 +234,7 @@ impl World {
 
 fn echo(object: &Object, uv: Vec2, palette: &Palette) -> Eval {
     let scratch = Scratch::default();
-    let site = Site { p: DVec3::ZERO, uv, palette };
+    let site = Site { p: DVec3::ZERO, uv, palette, color: None };
     object.resolve(&site, &scratch).material().eval(Vec3::Z, Vec3::Z)
 }
 
@@ -183,7 +243,7 @@ fn what_does_not_vary_is_the_template_itself() {
     let mut world = World::new();
     let id = world.node(Kind::Material, "echo", &[("roughness", number(0.75))]);
     let object = world.build(id, ColorMode::Spectral).unwrap();
-    assert!(object.is_constant());
+    assert!(object.is_constant() && !object.takes_colors());
     let got = echo(&object, Vec2::ZERO, &Palette::rgb());
     assert_eq!((got.f, got.pdf.to_bits()), (Spectrum::splat(0.25), 1.5f32.to_bits()));
 }
@@ -254,7 +314,7 @@ fn a_shared_table_stays_where_it_was_while_its_object_moves() {
     let palette = Palette::rgb();
     for ((object, other), i) in objects.iter().zip(0_u8..) {
         let scratch = Scratch::default();
-        let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette };
+        let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette, color: None };
         let at = TexturePoint { p: site.p, uv: site.uv, lambda: palette.wavelengths };
         let found = object.resolve(&site, &scratch).texture().eval(&at).to_array();
         assert_eq!(found[..2], [f32::from(i); 2]);
@@ -275,7 +335,7 @@ fn radiance_means_the_same_light_in_both_modes_and_both_systems() {
             let object = world.build(id, mode).unwrap();
             let palette = Palette::new(Wavelengths::sample(0.3));
             let scratch = Scratch::default();
-            let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette };
+            let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette, color: None };
             object.resolve(&site, &scratch).light().le(1.0, Vec2::ZERO, 1.0)
         };
         let rgb = luminance(ColorMode::Rgb).rgb().as_dvec3();
@@ -299,13 +359,64 @@ fn rgb_light_of_scale_one_is_white_in_both_modes() {
             let w = Wavelengths::sample((f32::from(i) + 0.5) / f32::from(n) / 4.0);
             let palette = Palette::new(w);
             let scratch = Scratch::default();
-            let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette };
+            let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette, color: None };
             let le = object.resolve(&site, &scratch).light().le(1.0, Vec2::ZERO, 1.0);
             to_xyz(Observer::Cie1931, le, &w).y
         })
         .sum();
     // D65 is piecewise linear at 1 nm, the rule has 35 points in each: error far below 1e-4.
     assert!((mean / f64::from(n) - 1.0).abs() < 1e-4, "{}", mean / f64::from(n));
+}
+
+#[test]
+fn the_colours_of_a_surface_go_before_what_a_texture_says() {
+    let mut world = World::new();
+    let own = world.node(Kind::Texture, "own", &[]);
+    let through = world.node(Kind::Texture, "driven", &[("value", Value::Node(own))]);
+    let weights = luxel_sdk::color::RgbSpace::LinearSrgb.luminance_weights().as_vec3();
+    let red = Vec3::new(0.75, 0.25, 0.0);
+    for (texture, color, expected) in [
+        (own, Some(red), red),
+        (own, None, Vec3::splat(0.5)),
+        (through, Some(red), Vec3::splat(weights.dot(red))),
+    ] {
+        let id = world.node(Kind::Material, "echo", &[("reflectance", Value::Node(texture))]);
+        let object = world.build(id, ColorMode::Rgb).unwrap();
+        let (palette, scratch) = (Palette::rgb(), Scratch::default());
+        let site = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette: &palette, color };
+        let got = object.resolve(&site, &scratch).material().eval(Vec3::Z, Vec3::Z).f.rgb();
+        assert!(object.takes_colors());
+        // Three products and their sum.
+        assert!((got - expected).abs().max_element() <= 4.0 * f32::EPSILON, "{got} {expected}");
+    }
+}
+
+#[test]
+fn a_texture_is_asked_while_an_object_is_built() {
+    let mut world = World::new();
+    let colour = world.node(Kind::Texture, "coordinates", &[("scale", number(2.0))]);
+    let varying = world.node(Kind::Texture, "driven", &[("value", Value::Node(colour))]);
+    let fixed = world.node(Kind::Texture, "driven", &[("value", number(3.0))]);
+    let weights = luxel_sdk::color::RgbSpace::LinearSrgb.luminance_weights().as_vec3();
+    // Of the colour (1/2, 8, 1), which the parameter's range leaves as it is.
+    let luminance = weights.dot(Vec3::new(0.5, 8.0, 1.0));
+    for mode in [ColorMode::Rgb, ColorMode::Spectral] {
+        for (of, expected) in [
+            (Some(colour), luminance),
+            (Some(varying), luminance),
+            (Some(fixed), 3.0),
+            (None, -1.0),
+        ] {
+            let given: Vec<_> = of.map(|of| ("of", Value::Node(of))).into_iter().collect();
+            let id = world.node(Kind::Texture, "asking", &given);
+            let object = world.build(id, mode).unwrap();
+            let at =
+                TexturePoint { p: DVec3::ZERO, uv: Vec2::ZERO, lambda: Wavelengths::sample(0.3) };
+            let found = object.fixed().texture().eval(&at).lane(0);
+            // A few roundings of a number below 10.
+            assert!((found - expected).abs() <= 40.0 * f32::EPSILON, "{found} {expected}");
+        }
+    }
 }
 
 fn number(x: f64) -> Value {

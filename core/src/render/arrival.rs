@@ -129,7 +129,7 @@ impl Shader<'_, '_> {
         self.path.on = Some(Standing { leaving, p: surface.p, ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
-            self.scatter(at, hit.placement, surface, numbers);
+            self.scatter(at, surface, hit, numbers);
         } else {
             at.sight.given = false;
         }
@@ -137,18 +137,19 @@ impl Shader<'_, '_> {
 
     /// The light sample and the scattering sample at a surface.
     #[inline(always)]
-    fn scatter(&mut self, at: &mut Arrival, place: u32, surface: &Surface, numbers: &Numbers) {
+    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, hit: &SceneHit, numbers: &Numbers) {
         if self.wants.0 & SHADED.0 == 0 {
             return;
         }
-        let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette };
+        let object = &self.stage.materials[at.material as usize];
+        let color = if object.takes_colors() { self.stage.color(hit) } else { None };
+        let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette, color };
         let around = self.stage.features.nested.then(|| {
             let (here, beyond) = (&self.path.media, &self.path.beyond);
-            self.stage.index_around((here, beyond), place, &site, self.scratch)
+            self.stage.index_around((here, beyond), hit.placement, &site, self.scratch)
         });
         self.scratch.reset();
         let scratch: &Scratch = self.scratch;
-        let object = &self.stage.materials[at.material as usize];
         let (material, needs) = match around {
             None => {
                 let material = object.resolve(&site, scratch).material();

@@ -33,7 +33,7 @@ pub(super) fn passes(
         if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
             scratch.reset();
             let uv = glam::Vec2::ZERO;
-            let at = Site { p: ray.o, uv, palette: &path.palette };
+            let at = Site { p: ray.o, uv, palette: &path.palette, color: None };
             let medium = stage.media[medium as usize].resolve(&at, scratch).medium();
             left *= medium.transmittance(&Ray { t_max, ..ray }, samples);
         }

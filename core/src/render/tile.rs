@@ -299,7 +299,7 @@ impl<'s> Worker<'s> {
             if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
                 self.medium_scratch.reset();
                 let uv = glam::Vec2::ZERO;
-                let at = Site { p: ray.o, uv, palette: &path.palette };
+                let at = Site { p: ray.o, uv, palette: &path.palette, color: None };
                 let object = &stage.media[medium as usize];
                 let medium = object.resolve(&at, &self.medium_scratch).medium();
                 let free = medium.sample(&Ray { t_max, ..ray }, samples);

@@ -6,7 +6,7 @@ mod tests;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
@@ -249,6 +249,17 @@ impl Mesh {
             lift -= n * (weight * (p - corner).dot(n).min(0.0));
         }
         lift
+    }
+
+    /// The mean of the corners' colours, linear sRGB, if they have any; `at` as in `surface`.
+    pub fn color(&self, triangle: u32, at: DVec2) -> Option<Vec3> {
+        let mesh = self.triangles();
+        if mesh.colors.is_empty() {
+            return None;
+        }
+        let [a, b, c] = mesh.indices[triangle as usize].map(|i| mesh.colors[i as usize]);
+        let at = at.as_vec2();
+        Some(a * (1.0 - at.x - at.y) + b * at.x + c * at.y)
     }
 }
 

@@ -133,7 +133,7 @@ fn power(light: &LightSource, radius: f64, mode: ColorMode) -> f32 {
     for i in 0..GRID * GRID {
         let uv = (Vec2::new((i % GRID) as f32, (i / GRID) as f32) + 0.5) / GRID as f32;
         scratch.reset();
-        let at = Site { p: DVec3::ZERO, uv, palette: &palette };
+        let at = Site { p: DVec3::ZERO, uv, palette: &palette, color: None };
         let area = match light {
             LightSource::Surface { area, .. } => *area,
             LightSource::Free { .. } => 0.0,
@@ -176,7 +176,7 @@ impl Stage {
                 self.sample_surface(&light, from, palette, u, scratch)
             }
             LightSource::Free { object, transform } => {
-                let at = Site { p: from.p + from.lift, uv: Vec2::ZERO, palette };
+                let at = Site { p: from.p + from.lift, uv: Vec2::ZERO, palette, color: None };
                 let light = object.resolve(&at, scratch).light();
                 self.sample_free(light, transform.as_deref(), from, palette, u)
             }
@@ -259,7 +259,7 @@ impl Stage {
         }
         let per_pdf = cos_o.abs() / (sample.pdf * distance2);
         let uv = surface.uv.as_vec2();
-        let at = Site { p: surface.p, uv, palette };
+        let at = Site { p: surface.p, uv, palette, color: None };
         let resolved = light.object.resolve(&at, scratch).light();
         let le = emitted(resolved, resolved.le(narrow(cos_o), uv, light.area), self.mode, palette);
         (!le.is_black()).then(|| FoundLight {
@@ -284,7 +284,7 @@ impl Stage {
             return (Spectrum::ZERO, 0.0);
         };
         let uv = surface.uv.as_vec2();
-        let at = Site { p: surface.p, uv, palette };
+        let at = Site { p: surface.p, uv, palette, color: None };
         let resolved = object.resolve(&at, scratch).light();
         let cos_o = surface.ng.dot(wo);
         let le = emitted(resolved, resolved.le(narrow(cos_o), uv, *area), self.mode, palette);
@@ -326,7 +326,7 @@ impl Stage {
                 Some(transform) => transform.inverse_vector(d).normalize(),
                 None => d,
             };
-            let at = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette };
+            let at = Site { p: DVec3::ZERO, uv: Vec2::ZERO, palette, color: None };
             let resolved = object.resolve(&at, scratch).light();
             let found = resolved.escaped(local);
             le += emitted(resolved, found.le, self.mode, palette);

@@ -1,6 +1,6 @@
 //! Rays through the whole stage.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::Ray;
 
@@ -107,9 +107,7 @@ impl Stage {
             }
         }
     }
-}
 
-impl Stage {
     /// From a point of a mesh to the smooth surface that its normals speak of, seen from one side;
     /// zero elsewhere.
     pub fn lift(&self, hit: &SceneHit, outside: bool) -> DVec3 {
@@ -119,6 +117,16 @@ impl Stage {
         };
         let lift = mesh.lift(hit.hit.face, hit.hit.at, outside);
         placement.transform.as_ref().map_or(lift, |transform| transform.vector(lift))
+    }
+
+    /// The colour that a surface has of itself at a hit, linear sRGB.
+    #[inline(never)]
+    pub fn color(&self, hit: &SceneHit) -> Option<Vec3> {
+        let placement = &self.placements[hit.placement as usize];
+        match &*self.geometries[placement.geometry as usize] {
+            Geometry::Mesh(mesh) => mesh.color(hit.hit.face, hit.hit.at),
+            Geometry::Analytic(_) => None,
+        }
     }
 }
 

@@ -71,8 +71,12 @@ impl Set {
             ColorMode::Spectral => Palette::new(Wavelengths::sample(0.37)),
         };
         let scratch = Scratch::default();
-        let site =
-            Site { p: DVec3::new(0.3, -0.2, 0.7), uv: Vec2::new(0.3, 0.7), palette: &palette };
+        let site = Site {
+            p: DVec3::new(0.3, -0.2, 0.7),
+            uv: Vec2::new(0.3, 0.7),
+            palette: &palette,
+            color: None,
+        };
         f(self.object.resolve(&site, &scratch))
     }
 

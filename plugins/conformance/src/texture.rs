@@ -208,7 +208,7 @@ fn honours_bounds(
     let mut rng = Rng::new(colours.subject.options.seed);
     for at in grid(&mut rng) {
         let value = texture.eval(&at);
-        let lanes = if texture.output() == Output::Rgb { 3 } else { 4 };
+        let lanes = if texture.output() != Output::Value { 3 } else { 4 };
         for lane in value.to_array().into_iter().take(lanes).map(f64::from) {
             let off = (limits[0] - lane).max(lane - limits[1]);
             judge.within("within what it is made of", off.max(0.0), ROUNDING, || {
@@ -228,7 +228,7 @@ fn keeps_colours(colours: &Colours<'_>, judge: &mut Judge) {
     let vivid_ones = |i| Color::Rgb(vivid(i));
     let Some(object) = colours.build(&vivid_ones, ColorMode::Rgb) else { return };
     let texture = object.fixed().texture();
-    if texture.output() == Output::Rgb || colours.names.is_empty() {
+    if texture.output() != Output::Value || colours.names.is_empty() {
         return;
     }
     for lane in 0..3 {
@@ -254,9 +254,9 @@ fn looks_at_wavelengths(colours: &Colours<'_>, judge: &mut Judge) {
         let [one, two] = [0.2, 0.7].map(|u| {
             let lambda = Wavelengths::sample(u);
             let (palette, scratch) = (Palette::new(lambda), Scratch::default());
-            let site = Site { p: at.p, uv: at.uv, palette: &palette };
+            let site = Site { p: at.p, uv: at.uv, palette: &palette, color: None };
             let texture = object.resolve(&site, &scratch).texture();
-            let rgb = texture.output() == Output::Rgb;
+            let rgb = texture.output() != Output::Value;
             rgb.then(|| bits(texture.eval(&TexturePoint { lambda, ..at })))
         });
         judge.holds("RGB depends on no wavelength", one == two, || format!("{at:?}"));

@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0xa8097e94f7d847d8ull
+#define LUXEL_LAYOUT_HASH 0x1da97fdc5d63fe69ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -319,6 +319,7 @@ typedef struct {
     luxel_triangles_of indices;
     luxel_vec3s normals;
     luxel_vec2s uvs;
+    luxel_vec3s colors;
 } luxel_triangles;
 
 /* A shared table on its way. */
@@ -405,6 +406,17 @@ typedef struct {
     luxel_status (*sample)(const void *at, const luxel_vec3 *wo, const float (*u)[2], luxel_sample *out);
 } luxel_phase_table;
 
+/* A value that varies over a surface or through space. */
+typedef struct {
+    /* Bytes of this table. */
+    size_t size;
+    /* The value at a point. */
+    luxel_status (*eval)(const void *at, const luxel_texture_point *point, luxel_spectrum *out);
+    /* What the lanes mean: 0 values as they are, 1 linear sRGB, 2 the same where the surface has no
+       colours of its own. */
+    luxel_status (*output)(const void *at, uint32_t *out);
+} luxel_texture_table;
+
 /* Where random numbers come from: the same for the same arguments, in [0, 1). */
 typedef struct {
     /* Bytes of this table. */
@@ -432,6 +444,12 @@ typedef struct {
     const luxel_phase_table *table;
     const void *at;
 } luxel_phase_ref;
+
+/* A texture, to be asked anywhere; without a table there is none. */
+typedef struct {
+    const luxel_texture_table *table;
+    const void *at;
+} luxel_texture_ref;
 
 /* A sampler. */
 typedef struct {
@@ -600,16 +618,6 @@ typedef struct {
     const luxel_shape_table *table;
     const void *at;
 } luxel_shape_ref;
-
-/* A value that varies over a surface or through space. */
-typedef struct {
-    /* Bytes of this table. */
-    size_t size;
-    /* The value at a point. */
-    luxel_status (*eval)(const void *at, const luxel_texture_point *point, luxel_spectrum *out);
-    /* What the lanes mean: 0 values as they are, 1 linear sRGB. */
-    luxel_status (*output)(const void *at, uint32_t *out);
-} luxel_texture_table;
 
 /* A source of light, in its own frame. */
 typedef struct {
@@ -948,13 +956,14 @@ LUXEL_CHECK(sizeof(luxel_scene_sphere) == 32, "size of luxel_scene_sphere");
 LUXEL_CHECK(_Alignof(luxel_scene_sphere) == 8, "alignment of luxel_scene_sphere");
 LUXEL_CHECK(offsetof(luxel_scene_sphere, centre) == 0, "luxel_scene_sphere.centre");
 LUXEL_CHECK(offsetof(luxel_scene_sphere, radius) == 24, "luxel_scene_sphere.radius");
-LUXEL_CHECK(sizeof(luxel_triangles) == 88, "size of luxel_triangles");
+LUXEL_CHECK(sizeof(luxel_triangles) == 104, "size of luxel_triangles");
 LUXEL_CHECK(_Alignof(luxel_triangles) == 8, "alignment of luxel_triangles");
 LUXEL_CHECK(offsetof(luxel_triangles, centre) == 0, "luxel_triangles.centre");
 LUXEL_CHECK(offsetof(luxel_triangles, points) == 24, "luxel_triangles.points");
 LUXEL_CHECK(offsetof(luxel_triangles, indices) == 40, "luxel_triangles.indices");
 LUXEL_CHECK(offsetof(luxel_triangles, normals) == 56, "luxel_triangles.normals");
 LUXEL_CHECK(offsetof(luxel_triangles, uvs) == 72, "luxel_triangles.uvs");
+LUXEL_CHECK(offsetof(luxel_triangles, colors) == 88, "luxel_triangles.colors");
 LUXEL_CHECK(sizeof(luxel_built) == 16, "size of luxel_built");
 LUXEL_CHECK(_Alignof(luxel_built) == 8, "alignment of luxel_built");
 LUXEL_CHECK(offsetof(luxel_built, address) == 0, "luxel_built.address");
@@ -1001,6 +1010,10 @@ LUXEL_CHECK(sizeof(luxel_phase_ref) == 16, "size of luxel_phase_ref");
 LUXEL_CHECK(_Alignof(luxel_phase_ref) == 8, "alignment of luxel_phase_ref");
 LUXEL_CHECK(offsetof(luxel_phase_ref, table) == 0, "luxel_phase_ref.table");
 LUXEL_CHECK(offsetof(luxel_phase_ref, at) == 8, "luxel_phase_ref.at");
+LUXEL_CHECK(sizeof(luxel_texture_ref) == 16, "size of luxel_texture_ref");
+LUXEL_CHECK(_Alignof(luxel_texture_ref) == 8, "alignment of luxel_texture_ref");
+LUXEL_CHECK(offsetof(luxel_texture_ref, table) == 0, "luxel_texture_ref.table");
+LUXEL_CHECK(offsetof(luxel_texture_ref, at) == 8, "luxel_texture_ref.at");
 LUXEL_CHECK(sizeof(luxel_sampler_ref) == 16, "size of luxel_sampler_ref");
 LUXEL_CHECK(_Alignof(luxel_sampler_ref) == 8, "alignment of luxel_sampler_ref");
 LUXEL_CHECK(offsetof(luxel_sampler_ref, table) == 0, "luxel_sampler_ref.table");

@@ -256,7 +256,7 @@ fn index(number: f64, n: usize) -> Result<u32, String> {
 fn type_of(number: u32) -> Option<Type> {
     if let Some(kind) = number.checked_sub(HANDLE) {
         let (kind, _) = Kind::ALL.get(kind as usize)?;
-        let held = matches!(kind, Kind::Material | Kind::Phase | Kind::Shape);
+        let held = matches!(kind, Kind::Material | Kind::Phase | Kind::Shape | Kind::Texture);
         return held.then_some(Type::Object(*kind));
     }
     TYPES.get(number as usize).copied()

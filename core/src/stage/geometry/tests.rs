@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use luxel_sdk::Params;
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::{Hit, Kind, Shape, ShapeSample, Surface, TriangleMesh};
@@ -138,4 +138,16 @@ fn rays_from_a_flat_quad_do_not_meet_it_whatever_its_place_and_shape() {
             assert_eq!(hits, 0, "triangle {index} at scale {scale}, {precision:?}");
         }
     }
+}
+
+#[test]
+fn colours_are_interpolated_between_corners() {
+    let bare = mesh_of([DVec3::ZERO, DVec3::X, DVec3::Y]);
+    assert!(bare.color(0, DVec2::splat(0.25)).is_none());
+    // Four corners, of which the second triangle takes the first, third and fourth.
+    let colors = vec![Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE];
+    let triangles = TriangleMesh { colors, ..bare.triangles().clone() };
+    let mesh = Mesh { triangles: Arc::new(triangles), ..bare };
+    assert_eq!(mesh.color(0, DVec2::new(0.25, 0.5)), Some(Vec3::new(0.25, 0.25, 0.5)));
+    assert_eq!(mesh.color(1, DVec2::new(0.25, 0.5)), Some(Vec3::new(0.75, 0.5, 0.75)));
 }

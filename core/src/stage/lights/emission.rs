@@ -179,7 +179,8 @@ impl Stage {
         scratch: &'a Scratch,
     ) -> impl Fn(f32) -> Spectrum + 'a {
         let uv = surface.uv.as_vec2();
-        let light = object.resolve(&Site { p: surface.p, uv, palette }, scratch).light();
+        let light =
+            object.resolve(&Site { p: surface.p, uv, palette, color: None }, scratch).light();
         move |cos| emitted(light, light.le(cos, uv, area), self.mode, palette)
     }
 
@@ -244,7 +245,8 @@ impl Stage {
     ) -> Option<(Ray, Spectrum)> {
         let LightSource::Free { object, transform } = source else { return None };
         let from = Arrival { p, ..Arrival::default() };
-        let light = object.resolve(&Site { p, uv: Vec2::ZERO, palette }, scratch).light();
+        let site = Site { p, uv: Vec2::ZERO, palette, color: None };
+        let light = object.resolve(&site, scratch).light();
         let found = self.sample_free(light, transform.as_deref(), &from, palette, u)?;
         Some((found.ray, found.le_over_pdf))
     }

@@ -4,6 +4,7 @@ mod checker;
 mod decode;
 mod image;
 mod scale;
+mod vertex_color;
 
 pub(crate) use decode::{Pixels, Wrap, decode};
 
@@ -14,4 +15,5 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::texture::<image::Image<'static>>("image"),
     Class::texture::<checker::Checker>("checker"),
     Class::texture::<scale::Scale>("scale"),
+    Class::texture::<vertex_color::VertexColor>("vertex_color"),
 ];

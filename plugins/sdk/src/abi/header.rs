@@ -11,7 +11,7 @@ use super::{
     CameraTable, FilterTable, HostRef, HostTable, IntegratorTable, Lanes, LightTable, MaterialRef,
     MaterialTable, MediumTable, MeshSink, PathsRef, PathsTable, PhaseRef, PhaseTable,
     PictureJobRef, PictureJobTable, RoundRef, SamplerRef, SamplerTable, SamplesRef, SceneSphere,
-    ShapeRef, ShapeTable, TextureTable, Triangles,
+    ShapeRef, ShapeTable, TextureRef, TextureTable, Triangles,
 };
 use crate::color::{Spectrum, Wavelengths};
 use crate::kind::{
@@ -110,7 +110,7 @@ describe! { PLAIN, PLAIN_C {
     /// A sphere around the scene.
     SceneSphere => "luxel_scene_sphere" { centre, radius }
     /// Triangles that a shape hands over.
-    Triangles => "luxel_triangles" { centre, points, indices, normals, uvs }
+    Triangles => "luxel_triangles" { centre, points, indices, normals, uvs, colors }
     /// A shared table on its way.
     Built => "luxel_built" { address, owner }
     /// A value of an imported node. Tags: 0 bool, 1 number, 2 quantity, 3 vector, 4 text, 5 rgb,
@@ -135,6 +135,8 @@ describe! { HANDLES, HANDLES_C {
     MaterialRef<'static> => "luxel_material_ref" { table, at }
     /// A phase function.
     PhaseRef<'static> => "luxel_phase_ref" { table, at }
+    /// A texture, to be asked anywhere; without a table there is none.
+    TextureRef<'static> => "luxel_texture_ref" { table, at }
     /// A sampler.
     SamplerRef<'static> => "luxel_sampler_ref" { table, at }
     /// The numbers of one path: add to next.dimension what was taken.
@@ -202,6 +204,7 @@ pub fn header() -> String {
     each(REQUESTS_C, &mut out);
     MaterialTable::describe(&mut out);
     PhaseTable::describe(&mut out);
+    TextureTable::describe(&mut out);
     SamplerTable::describe(&mut out);
     each(HANDLES_C, &mut out);
     HostTable::describe(&mut out);
@@ -214,7 +217,6 @@ pub fn header() -> String {
     each(LIBRARY_C, &mut out);
     ShapeTable::describe(&mut out);
     each(PARTS_C, &mut out);
-    TextureTable::describe(&mut out);
     LightTable::describe(&mut out);
     MediumTable::describe(&mut out);
     CameraTable::describe(&mut out);

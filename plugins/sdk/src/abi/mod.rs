@@ -33,8 +33,8 @@ pub use crate::kind::table::{
     CameraTable, FilterTable, HostRef, HostTable, ImportSink, ImportValueTable, ImporterTable,
     IntegratorTable, Lanes, LightTable, MaterialRef, MaterialTable, MediumTable, MeshSink,
     PathsRef, PathsTable, PhaseRef, PhaseTable, PictureJobRef, PictureJobTable, RoundRef,
-    SamplerRef, SamplerTable, SamplesRef, SceneSphere, ShapeRef, ShapeTable, TextureTable,
-    Triangles,
+    SamplerRef, SamplerTable, SamplesRef, SceneSphere, ShapeRef, ShapeTable, TextureRef,
+    TextureTable, Triangles,
 };
 pub use crate::params::{
     Built, ContextRef, ContextTable, FaultSink, HANDLE, ParamTable, TYPES, param_tables,
@@ -53,6 +53,10 @@ unsafe impl Field for MaterialRef<'_> {
 // SAFETY: the host writes a live phase function, which is never null.
 unsafe impl Field for PhaseRef<'_> {
     const TYPE: Type = Type::Object(Kind::Phase);
+}
+// SAFETY: the host writes a live texture; zero bytes are none.
+unsafe impl Field for TextureRef<'_> {
+    const TYPE: Type = Type::Object(Kind::Texture);
 }
 
 // SAFETY: the host writes a live shape, which is never null.

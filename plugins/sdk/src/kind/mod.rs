@@ -34,7 +34,7 @@ pub use shape::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
 pub use sight::Sight;
 pub use texture::{Output, Texture, TexturePoint};
 
-pub use table::{MaterialRef, PathsRef, PhaseRef, ShapeRef};
+pub use table::{MaterialRef, PathsRef, PhaseRef, ShapeRef, TextureRef};
 
 pub use crate::params::Kind;
 pub use crate::wire::Queue;

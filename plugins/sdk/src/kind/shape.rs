@@ -63,6 +63,8 @@ pub struct TriangleMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates per corner point, or empty.
     pub uvs: Vec<Vec2>,
+    /// A colour per corner point, linear sRGB, or empty.
+    pub colors: Vec<Vec3>,
 }
 
 impl TriangleMesh {

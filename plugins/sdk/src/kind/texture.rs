@@ -26,6 +26,9 @@ pub enum Output {
     Value,
     /// Linear sRGB: the host uplifts it where the path is spectral.
     Rgb,
+    /// The colours that a surface's corner points have, as linear sRGB: the host takes those, and asks
+    /// for the value, linear sRGB too, only where there are none.
+    Corners,
 }
 
 /// A value that varies over a surface or through space.

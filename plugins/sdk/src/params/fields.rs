@@ -23,7 +23,7 @@ use crate::wire::Slice;
     message = "a parameter cannot be of type `{Self}`",
     label = "not a type that the host can write",
     note = "parameters are f32, f64, u32, bool, Vec2, Vec3, DVec3, Spectrum, ComplexIor, Emission, \
-            Maybe<f32>, Text, File, Table, Look, MaterialRef, PhaseRef, ShapeRef, or derive `Choice`"
+            Maybe<f32>, Text, File, Table, Look, MaterialRef, PhaseRef, ShapeRef, TextureRef, or derive `Choice`"
 )]
 pub unsafe trait Field: Copy {
     /// How it is stored.

@@ -15,7 +15,7 @@ struct Surface {
     #[param(required)]
     //~ a parameter cannot be of type `Axis`
     //~ not a type that the host can write
-    //~ parameters are f32, f64, u32, bool, Vec2, Vec3, DVec3, Spectrum, ComplexIor, Emission, Maybe<f32>, Text, File, Table, Look, MaterialRef, PhaseRef, ShapeRef, or derive `Choice`
+    //~ parameters are f32, f64, u32, bool, Vec2, Vec3, DVec3, Spectrum, ComplexIor, Emission, Maybe<f32>, Text, File, Table, Look, MaterialRef, PhaseRef, ShapeRef, TextureRef, or derive `Choice`
     axis: Axis,
 }
 

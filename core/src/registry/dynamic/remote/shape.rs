@@ -222,9 +222,11 @@ fn fits_together(mesh: &TriangleMesh) -> bool {
     let per_corner = |len: usize| len == 0 || len == n;
     per_corner(mesh.normals.len())
         && per_corner(mesh.uvs.len())
+        && per_corner(mesh.colors.len())
         && mesh.centre.is_finite()
         && mesh.normals.iter().all(|normal| normal.is_finite())
         && mesh.uvs.iter().all(|uv| uv.is_finite())
+        && mesh.colors.iter().all(|color| color.is_finite())
 }
 
 /// Most corners or triangles that can be counted: a longer list is none.
@@ -234,8 +236,9 @@ const MOST: usize = u32::MAX as usize;
 unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
     // SAFETY: the sink's own owner.
     let out = unsafe { &mut *owner.cast::<Option<Option<TriangleMesh>>>() };
-    let Triangles { points, indices, normals, uvs, .. } = triangles;
-    if points.len().max(indices.len()).max(normals.len()).max(uvs.len()) > MOST {
+    let Triangles { points, indices, normals, uvs, colors, .. } = triangles;
+    let lists = [points.len(), indices.len(), normals.len(), uvs.len(), colors.len()];
+    if lists.into_iter().any(|n| n > MOST) {
         *out = Some(None);
         return;
     }
@@ -247,11 +250,14 @@ unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
     let normals = unsafe { triangles.normals.get() };
     // SAFETY: as above.
     let uvs = unsafe { triangles.uvs.get() };
+    // SAFETY: as above.
+    let colors = unsafe { triangles.colors.get() };
     *out = Some(Some(TriangleMesh {
         centre: triangles.centre,
         points: points.to_vec(),
         indices: indices.to_vec(),
         normals: normals.to_vec(),
         uvs: uvs.to_vec(),
+        colors: colors.to_vec(),
     }));
 }

@@ -58,6 +58,9 @@ impl Texture for RemoteTexture {
 
     fn output(&self) -> Output {
         // SAFETY: as above.
-        output(&self.0, self.0.found(unsafe { self.table().output(self.0.at()) }))
+        match self.0.found(unsafe { self.table().output(self.0.at()) }) {
+            Some(2) => Output::Corners,
+            found => output(&self.0, found),
+        }
     }
 }

@@ -22,6 +22,11 @@ impl Axes {
     /// Of points that are in metres with +Y up already.
     pub(super) const METRES: Self = Self { turn: DMat3::IDENTITY, unit: 1.0 };
 
+    /// A point of the file in the frame of the shape.
+    pub(super) fn point(self, p: DVec3) -> DVec3 {
+        self.turn * (p * self.unit)
+    }
+
     /// Rebases points about the centre of their bounds, subtracted before anything rounds to
     /// single precision. Walks over them twice and keeps only the result.
     ///
@@ -70,7 +75,7 @@ impl Axes {
 #[derive(Debug)]
 pub(super) struct BadPoint {
     /// Which one, counted from 0.
-    i: usize,
+    pub(super) i: usize,
     /// As it was read.
     pub(super) p: DVec3,
     /// What is wrong with it, as the end of a sentence.

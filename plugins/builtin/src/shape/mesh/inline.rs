@@ -1,39 +1,110 @@
 //! Meshes whose numbers stand in the scene.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use luxel_sdk::kind::TriangleMesh;
 use luxel_sdk::params::Fault;
 
 use super::Mesh;
-use super::assemble::Axes;
+use super::assemble::{Axes, fan};
+use super::polygons::Polygons;
 
 /// Takes the tables apart; all that is wrong with them at once.
 pub(super) fn build(mesh: &Mesh<'_>) -> Result<TriangleMesh, Vec<Fault>> {
-    let mut faults = vec![];
-    let points = groups::<3>("points", mesh.points.get(), &mut faults);
-    let normals = groups::<3>("normals", mesh.normals.get(), &mut faults);
-    let uvs = groups::<2>("uvs", mesh.uvs.get(), &mut faults);
-    let corners = groups::<3>("indices", mesh.indices.get(), &mut faults);
-    for (field, n) in [("normals", normals.len()), ("uvs", uvs.len())] {
-        if n != 0 && n != points.len() {
-            let message = format!("{n} {field} for {} points: there must be as many", points.len());
-            faults.push(Fault::mesh(field, message));
-        }
+    let tables = Tables::read(mesh)?;
+    let points = tables.points.iter().map(|p| DVec3::from_array(*p));
+    let rebased = tables.axes.rebase(points);
+    let mut out = rebased.map_err(|bad| vec![Fault::mesh("points", bad.to_string())])?;
+    for face in tables.starts.windows(2) {
+        fan(&tables.corners[face[0] as usize..face[1] as usize], &mut out.indices);
     }
-    let axes = Axes { turn: mesh.up.turn(), ..Axes::METRES };
-    let indices = triangles(corners, points.len(), &mut faults);
-    let rebased = axes.rebase(points.iter().map(|p| DVec3::from_array(*p)));
-    let rebased = rebased.map_err(|bad| faults.push(Fault::mesh("points", bad.to_string())));
-    let (Ok(mut out), true) = (rebased, faults.is_empty()) else { return Err(faults) };
-    out.indices = indices;
-    out.normals = normals
-        .iter()
-        .map(|n| axes.normal(DVec3::from_array(*n).normalize_or_zero().as_vec3()))
-        .collect::<Vec<Vec3>>();
-    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
-    let narrow = |x: f64| if x.is_finite() { x as f32 } else { 0.0 };
-    out.uvs = uvs.iter().map(|uv| Vec2::from_array(uv.map(narrow))).collect();
+    (out.normals, out.uvs) = (tables.normals(), tables.uvs());
+    out.colors = tables.colors();
     Ok(out)
+}
+
+/// The same, with faces as they were given.
+pub(super) fn polygons(mesh: &Mesh<'_>) -> Result<Polygons, Vec<Fault>> {
+    let tables = Tables::read(mesh)?;
+    let points = tables.points.iter().map(|p| DVec3::from_array(*p));
+    let rebased = tables.axes.rebase(points.clone());
+    rebased.map_err(|bad| vec![Fault::mesh("points", bad.to_string())])?;
+    let (normals, uvs, colors) = (tables.normals(), tables.uvs(), tables.colors());
+    let mut out = Polygons {
+        points: points.map(|p| tables.axes.point(p)).collect(),
+        starts: tables.starts,
+        corners: tables.corners,
+        ..Polygons::default()
+    };
+    (out.normals, out.uvs) = (out.spread(&normals), out.spread(&uvs));
+    out.colors = out.spread(&colors);
+    out.weld();
+    Ok(out)
+}
+
+/// What the scene says, found to fit together.
+struct Tables<'a> {
+    axes: Axes,
+    points: &'a [[f64; 3]],
+    normals: &'a [[f64; 3]],
+    uvs: &'a [[f64; 2]],
+    colors: &'a [[f64; 3]],
+    corners: Vec<u32>,
+    starts: Vec<u32>,
+}
+
+impl<'a> Tables<'a> {
+    fn read(mesh: &Mesh<'a>) -> Result<Self, Vec<Fault>> {
+        let mut faults = vec![];
+        let points = groups::<3>("points", mesh.points.get(), &mut faults);
+        let normals = groups::<3>("normals", mesh.normals.get(), &mut faults);
+        let uvs = groups::<2>("uvs", mesh.uvs.get(), &mut faults);
+        let colors = groups::<3>("colors", mesh.colors.get(), &mut faults);
+        let (indices, sides) = (mesh.indices.get(), mesh.sides.get());
+        let starts = starts(indices.len(), sides, &mut faults);
+        let lists = [("normals", normals.len()), ("uvs", uvs.len()), ("colors", colors.len())];
+        for (field, n) in lists {
+            if n != 0 && n != points.len() {
+                let message =
+                    format!("{n} {field} for {} points: there must be as many", points.len());
+                faults.push(Fault::mesh(field, message));
+            }
+        }
+        let out_of_range = |x: &f64| !(0.0..=1.0).contains(x);
+        if let Some(i) = colors.as_flattened().iter().position(out_of_range) {
+            let message = format!("colour {} has {}, outside [0, 1]", i / 3, mesh.colors.get()[i]);
+            faults.push(Fault::mesh("colors", message));
+        }
+        let what = if sides.is_empty() { "triangle" } else { "face" };
+        let corners = corners(indices, &starts, points.len(), what);
+        let corners = corners.map_err(|fault| faults.push(fault)).unwrap_or_default();
+        let axes = Axes { turn: mesh.up.turn(), ..Axes::METRES };
+        let tables = Self { axes, points, normals, uvs, colors, corners, starts };
+        if faults.is_empty() { Ok(tables) } else { Err(faults) }
+    }
+
+    fn normals(&self) -> Vec<Vec3> {
+        let unit = |n: &[f64; 3]| DVec3::from_array(*n).normalize_or_zero().as_vec3();
+        self.normals.iter().map(|n| self.axes.normal(unit(n))).collect()
+    }
+
+    fn colors(&self) -> Vec<Vec3> {
+        self.colors.iter().map(|c| DVec3::from_array(*c).as_vec3()).collect()
+    }
+
+    fn uvs(&self) -> Vec<Vec2> {
+        self.uvs.iter().map(|uv| finite_uv(DVec2::from_array(*uv))).collect()
+    }
+}
+
+/// A colour of a surface: each part in [0, 1], 0 where it is no number.
+pub(super) fn unit_color(color: DVec3) -> Vec3 {
+    color.as_vec3().map(|x| if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) })
+}
+
+/// Texture coordinates in single precision; (0, 0) where they do not fit.
+pub(super) fn finite_uv(uv: DVec2) -> Vec2 {
+    let uv = uv.as_vec2();
+    if uv.is_finite() { uv } else { Vec2::ZERO }
 }
 
 fn groups<'a, const N: usize>(
@@ -49,25 +120,56 @@ fn groups<'a, const N: usize>(
     groups
 }
 
-fn triangles(corners: &[[f64; 3]], n_points: usize, faults: &mut Vec<Fault>) -> Vec<[u32; 3]> {
-    if corners.is_empty() {
-        faults.push(Fault::mesh("indices", "a mesh without a triangle"));
+/// Where the corners of each face begin, and the last one's end.
+fn starts(n_indices: usize, sides: &[f64], faults: &mut Vec<Fault>) -> Vec<u32> {
+    let mut fault = |field, message: String| faults.push(Fault::mesh(field, message));
+    let Ok(n) = u32::try_from(n_indices) else {
+        fault("indices", "more than 4,294,967,295 indices".to_owned());
+        return vec![];
+    };
+    if n == 0 {
+        fault("indices", "a mesh without a triangle".to_owned());
     }
-    let mut out = Vec::with_capacity(corners.len());
-    for (i, corner) in corners.iter().enumerate() {
-        let found = corner.map(|c| index(c, n_points));
-        let [Some(a), Some(b), Some(c)] = found else {
-            let k = found.iter().position(Option::is_none).unwrap_or(0);
-            let message = format!(
-                "index {} of triangle {i} names no point: there are {n_points}, from 0",
-                corner[k]
-            );
-            faults.push(Fault::mesh("indices", message));
-            return out;
+    if sides.is_empty() {
+        if n % 3 != 0 {
+            fault("indices", format!("{n} numbers in indices: not a multiple of 3"));
+        }
+        return (0..=n).step_by(3).collect();
+    }
+    let (mut out, mut at) = (vec![0], 0u64);
+    for (i, side) in sides.iter().enumerate() {
+        let Some(corners) = index(*side, u32::MAX as usize).filter(|n| *n >= 3) else {
+            fault("sides", format!("face {i} has {side} sides: 3 or more are wanted"));
+            return vec![];
         };
-        out.push([a, b, c]);
+        at += u64::from(corners);
+        out.push(u32::try_from(at).unwrap_or(u32::MAX));
+    }
+    if at != u64::from(n) {
+        fault("sides", format!("{at} corners in sides, but {n} numbers in indices"));
+        return vec![];
     }
     out
+}
+
+fn corners(
+    indices: &[f64],
+    starts: &[u32],
+    n_points: usize,
+    what: &str,
+) -> Result<Vec<u32>, Fault> {
+    let n = starts.last().map_or(0, |end| *end as usize);
+    let mut out = Vec::with_capacity(n);
+    for (i, x) in indices[..n].iter().enumerate() {
+        let Some(corner) = index(*x, n_points) else {
+            let face = starts.partition_point(|start| *start as usize <= i).saturating_sub(1);
+            let message =
+                format!("index {x} of {what} {face} names no point: there are {n_points}, from 0");
+            return Err(Fault::mesh("indices", message));
+        };
+        out.push(corner);
+    }
+    Ok(out)
 }
 
 /// A whole number below `n`.

@@ -3,16 +3,23 @@
 mod assemble;
 mod inline;
 mod obj;
+mod obj_faces;
 mod ply;
+mod polygons;
+mod net;
+mod subdivide;
+mod displace;
 
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TextureRef, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
 use luxel_sdk::{Choice, Params};
 
+use self::assemble::Axes;
+use self::subdivide::Scheme;
 use super::up::Up;
 use crate::sniff;
 
@@ -33,11 +40,27 @@ pub(crate) enum Shading {
 /// Files are Wavefront `.obj` and `.ply` (text or binary); polygons become fans of triangles, so
 /// they should be convex. `unit` says how long one unit of the file is.
 ///
+/// With `subdivide`, the faces are the cage of a smooth surface, which every point is moved to: quads
+/// and others after Catmull and Clark, triangles after Loop. Edges stay sharp at `creases` and where
+/// no two faces join, as do points of a single face; texture coordinates are interpolated linearly
+/// within each face of the cage, and their seams never tear. Points of tables and PLY files that are
+/// at the same place are one; OBJ files say themselves which are.
+///
+/// With `displace`, a texture moves the surface, split into triangles of at most `edge`. Both make
+/// 8,388,608 triangles at most.
+///
 /// ```scene
 /// shape mesh "cow"   { file = "assets/spot.obj", unit = 1 m, material = white }
 /// shape mesh "floor" {
 ///   points  = #[ -1 0 -1   1 0 -1   1 0 1   -1 0 1 ] m
 ///   indices = #[ 0 2 1   0 3 2 ]
+///   material = white
+/// }
+/// shape mesh "pebble" {
+///   points  = #[ 1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1 ] cm
+///   indices = #[ 0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5 ]
+///   subdivide = 2, scheme = "loop", creases = #[ 0 2 1.5  2 1 1.5 ]
+///   displace = texture checker {}, displace_by = 0.5 mm, edge = 1 mm
 ///   material = white
 /// }
 /// ```
@@ -47,7 +70,8 @@ pub(crate) struct Mesh<'a> {
     /// Corners: x y z each.
     #[param(optional, unit = "m", group = "geometry")]
     pub(crate) points: Table<'a>,
-    /// Three places in `points` for each triangle, counter-clockwise from outside, counted from 0.
+    /// Places in `points`, counted from 0: three for each triangle, counter-clockwise from outside;
+    /// with `sides` as many as each face has.
     #[param(optional)]
     pub(crate) indices: Table<'a>,
     /// Shading normals: x y z for each corner, or none.
@@ -56,6 +80,9 @@ pub(crate) struct Mesh<'a> {
     /// Texture coordinates: u v for each corner, or none.
     #[param(optional)]
     pub(crate) uvs: Table<'a>,
+    /// Colours, linear sRGB: r g b in [0, 1] for each corner, or none; see `texture vertex_color`.
+    #[param(optional)]
+    pub(crate) colors: Table<'a>,
     /// An OBJ or PLY file.
     #[param(optional, group = "geometry")]
     pub(crate) file: File<'a>,
@@ -68,38 +95,123 @@ pub(crate) struct Mesh<'a> {
     /// What is done about shading normals.
     #[param(choice, default = Shading::Keep)]
     pub(crate) smooth: Shading,
+    /// The number of corners of each face, 3 or more; without it all are triangles.
+    #[param(optional)]
+    pub(crate) sides: Table<'a>,
+    /// How often faces are subdivided, before points are moved to the limit surface.
+    #[param(default = 0, max = 8)]
+    pub(crate) subdivide: u32,
+    /// How faces are subdivided.
+    #[param(choice, default = Scheme::CatmullClark)]
+    pub(crate) scheme: Scheme,
+    /// Edges that stay sharp while they are subdivided: two points, counted from 0 (also in files),
+    /// and for how many levels; 10 is for ever.
+    #[param(optional)]
+    pub(crate) creases: Table<'a>,
+    /// Moves the surface, after it is subdivided, along its normals: a value, or the luminance of a
+    /// colour. Without texture coordinates, it is asked at (0, 0) of each point of the shape's frame.
+    #[param(optional)]
+    pub(crate) displace: TextureRef<'a>,
+    /// How far a value of 1 moves it, outwards; `displace` has to have it.
+    #[param(optional, unit = "m")]
+    pub(crate) displace_by: f64,
+    /// The value that leaves it where it is.
+    #[param(default = 0.0)]
+    pub(crate) displace_from: f64,
+    /// Longest edge of a triangle that `displace` moves, before it moves; `displace` has to have it.
+    #[param(optional, unit = "m", min = f64::MIN_POSITIVE)]
+    pub(crate) edge: f64,
     #[param(shared)]
     table: Shared<'a, Arc<TriangleMesh>>,
 }
 
 impl Build<Arc<TriangleMesh>> for Mesh<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
-        let path = self.file.path.get();
-        let mut mesh = if path.is_empty() {
-            inline::build(self)?
-        } else {
-            let fault = |message: String| vec![Fault::file("file", format!("{path}: {message}"))];
-            let bytes = context.read(path).map_err(|message| vec![Fault::file("file", message)])?;
-            let frame = assemble::Axes { turn: self.up.turn(), unit: self.unit };
-            // By what it holds rather than by what it is called.
-            if bytes.starts_with(b"ply") {
-                ply::read(&bytes, frame).map_err(fault)?
-            } else if has_extension(path, "ply") {
-                let found = sniff::what(&bytes);
-                return Err(fault(format!("not a PLY file, which begins with `ply`, but {found}")));
-            } else if let Some(told) = stranger(&bytes) {
-                return Err(fault(told));
-            } else {
-                obj::read(&bytes, frame).map_err(fault)?
-            }
-        };
+        self.warn_of_idle(context);
+        let made = self.subdivide > 0 || self.displace.is_given();
+        let mut mesh = if made { self.refined(context)? } else { self.plain(context)? };
         let repaired = assemble::finish(&mut mesh, self.smooth);
         if repaired > 0 {
+            let path = self.file.path.get();
             let name = if path.is_empty() { "the mesh" } else { path };
             let message = format!("{name}: {repaired} unusable normals were made from the faces");
             context.warn(&message);
         }
         Ok(mesh.into())
+    }
+}
+
+impl Mesh<'_> {
+    /// Tells of what is given and does nothing.
+    fn warn_of_idle(&self, context: &dyn BuildContext) {
+        if self.subdivide == 0 && !self.creases.get().is_empty() {
+            context.warn("`creases` do nothing without `subdivide`");
+        }
+        if !self.displace.is_given() && (self.edge > 0.0 || self.displace_by.abs() > 0.0) {
+            context.warn("`displace_by` and `edge` do nothing without `displace`");
+        }
+    }
+
+    /// Triangles as they were given.
+    fn plain(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+        if self.file.path.get().is_empty() {
+            return inline::build(self);
+        }
+        self.read(context, ply::read, obj::read)
+    }
+
+    /// Triangles that are made of the given faces.
+    fn refined(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+        let faces = if self.file.path.get().is_empty() {
+            inline::polygons(self)?
+        } else {
+            self.read(context, ply::polygons, obj_faces::read)?
+        };
+        let mut net = if self.subdivide > 0 {
+            let settings = subdivide::Settings {
+                levels: self.subdivide,
+                scheme: self.scheme,
+                creases: self.creases.get(),
+            };
+            subdivide::subdivide(faces.clean(), settings, context)?
+        } else {
+            faces.fans()
+        };
+        let mut field = "subdivide";
+        if self.displace.is_given() {
+            let settings = displace::Settings {
+                texture: self.displace,
+                by: self.displace_by,
+                from: self.displace_from,
+                edge: self.edge,
+            };
+            field = "displace_by";
+            net = displace::displace(net, settings, self.smooth)?;
+        }
+        net.into_mesh().map_err(|bad| vec![Fault::mesh(field, bad.to_string())])
+    }
+
+    /// What a file holds, by what it is rather than by what it is called.
+    fn read<T>(
+        &self,
+        context: &dyn BuildContext,
+        ply: fn(&[u8], Axes) -> Result<T, String>,
+        obj: fn(&[u8], Axes) -> Result<T, String>,
+    ) -> Result<T, Vec<Fault>> {
+        let path = self.file.path.get();
+        let bytes = context.read(path).map_err(|message| vec![Fault::file("file", message)])?;
+        let axes = Axes { turn: self.up.turn(), unit: self.unit };
+        let found = if bytes.starts_with(b"ply") {
+            ply(&bytes, axes)
+        } else if has_extension(path, "ply") {
+            let found = sniff::what(&bytes);
+            Err(format!("not a PLY file, which begins with `ply`, but {found}"))
+        } else if let Some(told) = stranger(&bytes) {
+            Err(told)
+        } else {
+            obj(&bytes, axes)
+        };
+        found.map_err(|message| vec![Fault::file("file", format!("{path}: {message}"))])
     }
 }
 
@@ -120,6 +232,14 @@ fn has_extension(path: &str, wanted: &str) -> bool {
 
 impl Shape for Mesh<'_> {
     fn check(&self) -> Result<(), Fault> {
+        if self.displace.is_given() && self.displace_by.abs() <= 0.0 {
+            let message = "`displace` needs `displace_by`, how far a value of 1 moves, as `displace_by = 1 cm`";
+            return Err(Fault::mesh("displace_by", message));
+        }
+        if self.displace.is_given() && self.edge <= 0.0 {
+            let message = "`displace` needs `edge`, its longest triangle edge, as `edge = 2 mm`";
+            return Err(Fault::mesh("edge", message));
+        }
         if self.file.path.get().is_empty() || self.unit > 0.0 {
             return Ok(());
         }

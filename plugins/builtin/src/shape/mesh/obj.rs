@@ -3,10 +3,12 @@
 use std::borrow::Cow;
 
 use glam::{DVec3, Vec2, Vec3};
+use luxel_sdk::color::srgb_decode;
 use luxel_sdk::kind::TriangleMesh;
 use tobj::LoadOptions;
 
 use super::assemble::Axes;
+use super::inline::unit_color;
 
 const OPTIONS: LoadOptions =
     LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
@@ -50,6 +52,11 @@ pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
             out.uvs.extend(narrow.chain(std::iter::repeat(Vec2::ZERO)).take(n));
         }
     }
+    // Some points without a colour leave the list short.
+    if meshes.iter().all(|m| m.vertex_color.len() == m.positions.len()) {
+        let colors = meshes.iter().flat_map(|m| m.vertex_color.as_chunks().0);
+        out.colors = colors.map(|c| color_of(*c)).collect();
+    }
     out.indices = triangles(&meshes)?;
     Ok(out)
 }
@@ -70,6 +77,11 @@ fn triangles(meshes: &[tobj::Mesh]) -> Result<Vec<[u32; 3]>, String> {
     Ok(out)
 }
 
+/// A point's colour, which programs write as sRGB.
+pub(super) fn color_of(color: [f64; 3]) -> Vec3 {
+    unit_color(DVec3::from_array(color).map(srgb_decode))
+}
+
 /// The line, counted from 1, that gives a point.
 fn line_of(text: &[u8], p: DVec3) -> Option<usize> {
     let given = |line: &[u8]| {
@@ -88,7 +100,7 @@ fn alike(a: f64, b: f64) -> bool {
 }
 
 /// Finds the first face that names a corner which does not exist.
-fn check_indices(text: &str) -> Result<(), String> {
+pub(super) fn check_indices(text: &str) -> Result<(), String> {
     const NAMES: [&str; 3] = ["v", "vt", "vn"];
     let mut counts = [0i64; 3];
     // For each list the greatest index, and the line that has it.

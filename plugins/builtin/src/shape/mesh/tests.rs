@@ -9,6 +9,8 @@ use luxel_sdk::params::Text;
 
 use super::*;
 
+mod made;
+
 /// A host with one file.
 struct OneFile {
     bytes: Arc<[u8]>,
@@ -35,10 +37,19 @@ fn params(path: &'static str) -> Mesh<'static> {
         indices: NONE,
         normals: NONE,
         uvs: NONE,
+        colors: NONE,
         file: File { path: Text::new(path) },
         unit: 1.0,
         up: Up::Y,
         smooth: Shading::Keep,
+        sides: NONE,
+        subdivide: 0,
+        scheme: Scheme::CatmullClark,
+        creases: NONE,
+        displace: TextureRef::NONE,
+        displace_by: 0.0,
+        displace_from: 0.0,
+        edge: 0.0,
         table: Shared::new(&EMPTY),
     }
 }

@@ -35,7 +35,7 @@ pub use phase::{PhaseRef, PhaseTable};
 pub use picture::{PathsRef, PathsTable, PictureJobRef, PictureJobTable};
 pub use sampler::{SamplerRef, SamplerTable, SamplesRef};
 pub use shape::{MeshSink, ShapeRef, ShapeTable, Triangles};
-pub use texture::TextureTable;
+pub use texture::{TextureRef, TextureTable};
 
 /// Writes a table down once: the struct, its C form, the functions that a plugin puts into it, and
 /// methods that call it.

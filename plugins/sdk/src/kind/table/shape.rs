@@ -21,6 +21,8 @@ pub struct Triangles {
     pub normals: Slice<Vec3>,
     /// Texture coordinates per corner point, or none.
     pub uvs: Slice<Vec2>,
+    /// A colour per corner point, linear sRGB, or none.
+    pub colors: Slice<Vec3>,
 }
 
 /// Where a shape's triangles go.
@@ -69,6 +71,7 @@ table! {
                 indices: Slice::new(&mesh.indices),
                 normals: Slice::new(&mesh.normals),
                 uvs: Slice::new(&mesh.uvs),
+                colors: Slice::new(&mesh.colors),
             });
             Some(mesh.indices.len() as u64)
         }

@@ -1,7 +1,8 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
-//! `cargo run --release -p luxel-bench -- [all|parse|cold|memory|ply|plugins|
-//! rays|leaks|leaks-long|errors|strands|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]`. The program under test is `target/release/luxel` beside this one unless given.
+//! `cargo run --release -p luxel-bench -- [WHAT] [--luxel PATH] [--python PATH] [--embree LIBRARY]`; a
+//! word that it does not know makes it tell what it measures. The program under test is
+//! `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
@@ -22,86 +23,91 @@ use std::process::ExitCode;
 
 use process::Luxel;
 
-/// What is measured, and with which programs.
+/// With which programs something is measured.
 struct Plan {
-    what: String,
     luxel: Luxel,
     python: Option<PathBuf>,
     embree: Option<PathBuf>,
 }
 
-const USAGE: &str = "usage: luxel-bench [all|parse|cold|memory|ply|plugins|rays|leaks|leaks-long|errors|strands|reload|cornell] [--luxel PATH] [--python PATH] [--embree LIBRARY]";
+/// Something that can be measured.
+struct Bench {
+    name: &'static str,
+    /// Whether the program is run, rather than its crates.
+    runs_program: bool,
+    run: fn(&Plan) -> Result<(), String>,
+}
 
-fn plan() -> Result<Plan, String> {
-    let mut what = "all".to_owned();
+const fn of_program(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> Bench {
+    Bench { name, runs_program: true, run }
+}
+
+const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> Bench {
+    Bench { name, runs_program: false, run }
+}
+
+/// The last is not among `all`: it takes long.
+const BENCHES: [Bench; 12] = [
+    of_crates("parse", |_| {
+        parse::run();
+        Ok(())
+    }),
+    of_program("cold", |plan| peer::cold(&plan.luxel)),
+    of_program("memory", |plan| peer::memory(&plan.luxel)),
+    of_program("ply", |plan| ply::run(&plan.luxel, plan.python.as_deref())),
+    of_program("plugins", |plan| boundary::run(&plan.luxel)),
+    of_crates("rays", |plan| {
+        rays::run(plan.embree.as_deref(), plan.python.as_deref());
+        Ok(())
+    }),
+    of_crates("errors", |_| errors::run()),
+    of_crates("strands", |_| strands::run()),
+    of_crates("leaks", |plan| {
+        rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 40_000);
+        Ok(())
+    }),
+    of_program("reload", |plan| reload::run(&plan.luxel)),
+    of_program("cornell", |plan| peer::cornell(&plan.luxel, plan.python.as_deref())),
+    of_crates("leaks-long", |plan| {
+        rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 1_000_000);
+        Ok(())
+    }),
+];
+
+fn usage() -> String {
+    let names: Vec<&str> = BENCHES.iter().map(|bench| bench.name).collect();
+    let names = names.join("|");
+    format!("usage: luxel-bench [all|{names}] [--luxel PATH] [--python PATH] [--embree LIBRARY]")
+}
+
+/// What is to be measured, and with which programs.
+fn plan() -> Result<(&'static [Bench], Plan), String> {
+    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 1).0;
+    let mut benches = ALL;
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
-    let mut python = None;
-    let mut embree = None;
+    let (mut python, mut embree) = (None, None);
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         match word.as_str() {
-            "all" | "parse" | "cold" | "memory" | "ply" | "plugins" | "rays" | "leaks"
-            | "leaks-long" | "errors" | "strands" | "reload" | "cornell" => {
-                what = word;
-            }
+            "all" => benches = ALL,
             "--luxel" => luxel = words.next().map(PathBuf::from),
             "--embree" => embree = words.next().map(PathBuf::from),
             "--python" => python = words.next().map(PathBuf::from),
-            _ => return Err(format!("`{word}`? {USAGE}")),
+            name => match BENCHES.iter().position(|bench| bench.name == name) {
+                Some(i) => benches = &BENCHES[i..=i],
+                None => return Err(format!("`{word}`? {}", usage())),
+            },
         }
     }
     let program = luxel.filter(|path| path.exists());
-    if !matches!(what.as_str(), "parse" | "rays" | "leaks" | "leaks-long" | "errors" | "strands")
-        && program.is_none()
-    {
+    if program.is_none() && benches.iter().any(|bench| bench.runs_program) {
         return Err("no `luxel`: run `cargo build --release -p luxel`, or give --luxel".to_owned());
     }
-    Ok(Plan { what, luxel: Luxel { program: program.unwrap_or_default() }, python, embree })
-}
-
-fn run(plan: &Plan) -> Result<(), String> {
-    let wanted = |what: &str| plan.what == what || plan.what == "all";
-    if wanted("parse") {
-        parse::run();
-    }
-    if wanted("cold") {
-        peer::cold(&plan.luxel)?;
-    }
-    if wanted("memory") {
-        peer::memory(&plan.luxel)?;
-    }
-    if wanted("ply") {
-        ply::run(&plan.luxel, plan.python.as_deref())?;
-    }
-    if wanted("plugins") {
-        boundary::run(&plan.luxel)?;
-    }
-    if wanted("rays") {
-        rays::run(plan.embree.as_deref(), plan.python.as_deref());
-    }
-    if wanted("errors") {
-        errors::run()?;
-    }
-    if wanted("strands") {
-        strands::run()?;
-    }
-    if wanted("leaks") {
-        rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 40_000);
-    }
-    if plan.what == "leaks-long" {
-        rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 1_000_000);
-    }
-    if wanted("reload") {
-        reload::run(&plan.luxel)?;
-    }
-    if wanted("cornell") {
-        peer::cornell(&plan.luxel, plan.python.as_deref())?;
-    }
-    Ok(())
+    Ok((benches, Plan { luxel: Luxel { program: program.unwrap_or_default() }, python, embree }))
 }
 
 fn main() -> ExitCode {
-    match plan().and_then(|plan| run(&plan)) {
+    match plan().and_then(|(benches, plan)| benches.iter().try_for_each(|it| (it.run)(&plan))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             println!("{message}");

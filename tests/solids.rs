@@ -258,9 +258,9 @@ fn a_part_whose_file_has_changed_is_made_anew() {
     let obj = |x: f64| {
         let corner = |i: i32| [-1.0, x][usize::from(i != 0)];
         let corners = (0..8).map(|i| (corner(i & 1), 2 * (i >> 1 & 1) - 1, 2 * (i >> 2) - 1));
-        let points: String = corners.map(|(x, y, z)| format!("v {x} {y} {z}\n")).collect();
+        let points: Vec<_> = corners.map(|(x, y, z)| format!("v {x} {y} {z}\n")).collect();
         let faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
-        points + &faces.map(|f| format!("f {f}\n")).concat()
+        points.concat() + &faces.map(|f| format!("f {f}\n")).concat()
     };
     let text = format!(
         "{CAMERA}shape difference {{ a = shape mesh {{ file = \"a.obj\", unit = 1 m }}, b = shape sphere {{ radius = 50 cm }} }}"

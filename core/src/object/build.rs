@@ -15,7 +15,7 @@ use super::Object;
 use super::asked::Asked;
 use super::block::Block;
 use super::colour::{self, Amount, Lanes};
-use super::context::{self, Embedded, Reader};
+use super::context::{Embedded, Reader};
 use super::part::{MeshParts, OWN_BITS};
 use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
 use super::resolve::SCRATCH;
@@ -94,7 +94,7 @@ impl<'a> Builder<'a> {
         }
         if let Some(object) = self.before.by_content.get(&key)
             && object.is_current(self.registry)
-            && context::unchanged(&object.reads, self.files)
+            && object.is_unchanged(self.files)
         {
             self.objects.by_content.insert(key, object.clone());
             return Some(object.clone());

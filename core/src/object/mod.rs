@@ -22,6 +22,7 @@ use std::sync::Arc;
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Needs;
 
+use crate::files::Files;
 use crate::registry::Registry;
 use crate::registry::dynamic::Watch;
 use block::Block;
@@ -87,6 +88,12 @@ impl Object {
         now.is_some_and(|now| now.is_same(class))
             && self.failure().is_none()
             && self.parts.iter().all(|part| part.is_current(registry))
+    }
+
+    /// Whether the files that it and its parts were built from are what they were.
+    fn is_unchanged(&self, files: &dyn Files) -> bool {
+        context::unchanged(&self.reads, files)
+            && self.parts.iter().all(|part| part.is_unchanged(files))
     }
 
     /// Whether its parameters are the same everywhere and at every wavelength.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 use luxel_core::diag::{Diagnostic, Span, nearest};
 use luxel_core::registry::Registry;
-use luxel_core::scene::{Argument, GroupId, Node, NodeId};
+use luxel_core::scene::{Argument, GroupId, Node, NodeId, Value as Fitted};
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Type};
@@ -183,10 +183,7 @@ impl Evaluator<'_> {
                 }
             }
             match self.conform(param, field) {
-                Some(value) => {
-                    let value = in_its_place(value, param, &field.value);
-                    params.push(Argument { name: param.name, value, span: field.span });
-                }
+                Some(value) => params.push(in_its_place(value, param, field)),
                 None => poisoned = true,
             }
         }
@@ -343,21 +340,17 @@ impl Evaluator<'_> {
     }
 }
 
-/// A shape that is a part of another keeps its transform.
-fn in_its_place(
-    value: luxel_core::scene::Value,
-    param: &Param,
-    given: &Value,
-) -> luxel_core::scene::Value {
-    use luxel_core::scene::Value as Kept;
-    match (value, given) {
-        (Kept::Node(id), Value::Object(part))
+/// What a field gives a parameter. A shape that is a part of another keeps its transform.
+fn in_its_place(value: Fitted, param: &Param, field: &FieldValue) -> Argument {
+    let value = match (value, &field.value) {
+        (Fitted::Node(id), Value::Object(part))
             if param.ty == Type::Part && part.transform != DAffine3::IDENTITY =>
         {
-            Kept::Moved(id, Arc::new(part.transform))
+            Fitted::Moved(id, Arc::new(part.transform))
         }
         (value, _) => value,
-    }
+    };
+    Argument { name: param.name, value, span: field.span }
 }
 
 /// Whether objects of a kind stand in the scene and so take a `transform`.

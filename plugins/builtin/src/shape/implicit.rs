@@ -190,10 +190,8 @@ pub(super) fn surface_of<F: Field>(field: &F, bounds: &Bounds3, ray: &Ray, hit: 
 /// The two coordinates across which the surface is flattest, in lengths of `scale`.
 fn flat_coordinates(p: DVec3, n: DVec3, scale: f64) -> (DVec2, DVec3, DVec3) {
     let axis = n.abs().max_position();
-    let (u, v) = match n[axis] > 0.0 {
-        true => ((axis + 1) % 3, (axis + 2) % 3),
-        false => ((axis + 2) % 3, (axis + 1) % 3),
-    };
+    let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+    let (u, v) = if n[axis] > 0.0 { (next, last) } else { (last, next) };
     let along = |i: usize| {
         let mut d = DVec3::AXES[i];
         d[axis] = -n[i] / n[axis];

@@ -65,9 +65,12 @@ impl Field for Blend<'_> {
     /// Of each part by itself: differences do not see across the edge between them.
     fn gradient(&self, p: DVec3, step: f64) -> DVec3 {
         let (of_a, of_b) = self.weights(distance_of(&self.a, p), distance_of(&self.b, p));
-        let part = |weight: f64, part| match weight.abs() > 0.0 {
-            true => differences(|q| distance_of(part, q), p, step) * weight,
-            false => DVec3::ZERO,
+        let part = |weight: f64, part| {
+            if weight.abs() > 0.0 {
+                differences(|q| distance_of(part, q), p, step) * weight
+            } else {
+                DVec3::ZERO
+            }
         };
         part(of_a, &self.a) + part(of_b, &self.b)
     }

@@ -92,7 +92,7 @@ impl<'s> Pair<'s> {
                 return Err(Fault::range(field, message));
             }
         }
-        if smooth >= 0.0 && smooth <= super::LONGEST {
+        if (0.0..=super::LONGEST).contains(&smooth) {
             let bounds = Self::found_bounds(op, a, b, smooth);
             if bounds.min.cmple(bounds.max).all() {
                 return Ok(());

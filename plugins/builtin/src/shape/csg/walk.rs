@@ -148,10 +148,11 @@ pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
 
 /// The point that a hit names.
 pub(super) fn surface(pair: &Pair<'_>, ray: &Ray, hit: &Hit) -> Surface {
-    let (part, other) = if hit.face % 2 == 0 { (pair.a, pair.b) } else { (pair.b, pair.a) };
+    let (part, other) =
+        if hit.face.is_multiple_of(2) { (pair.a, pair.b) } else { (pair.b, pair.a) };
     let mut found = part.surface(ray, &Hit { face: hit.face / 2, ..*hit });
     found.p_err = clear_of(&found, &other);
-    if pair.op == Op::Difference && hit.face % 2 == 1 {
+    if pair.op == Op::Difference && !hit.face.is_multiple_of(2) {
         // Seen from where it was taken away: turned over, and the texture stands on its head.
         (found.ng, found.ns, found.dp_dv) = (-found.ng, -found.ns, -found.dp_dv);
         found.uv.y = 1.0 - found.uv.y;

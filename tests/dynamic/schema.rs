@@ -135,7 +135,7 @@ fn parameters_that_cannot_be_are_refused() {
     check_param(AMOUNT, "has a doc that stands nowhere", |p| p.doc = text(null(), 9));
     check_param(AMOUNT, "has the unknown type 16", |p| p.ty = 16);
     check_param(AMOUNT, "has the unknown type 4294967295", |p| p.ty = u32::MAX);
-    check_param(AMOUNT, "has the unknown type 34", |p| p.ty = 34);
+    check_param(AMOUNT, "has the unknown type 35", |p| p.ty = 35);
     check_param(AMOUNT, "has the unknown role 6", |p| p.role = 6);
     check_param(AMOUNT, "has the unknown unit `parsec`", |p| p.unit = Text::new("parsec"));
     check_param(AMOUNT, "has the unknown kind of default 4", |p| p.preset = 4);

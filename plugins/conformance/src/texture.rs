@@ -208,7 +208,7 @@ fn honours_bounds(
     let mut rng = Rng::new(colours.subject.options.seed);
     for at in grid(&mut rng) {
         let value = texture.eval(&at);
-        let lanes = if texture.output() != Output::Value { 3 } else { 4 };
+        let lanes = if texture.output() == Output::Value { 4 } else { 3 };
         for lane in value.to_array().into_iter().take(lanes).map(f64::from) {
             let off = (limits[0] - lane).max(lane - limits[1]);
             judge.within("within what it is made of", off.max(0.0), ROUNDING, || {

@@ -56,6 +56,11 @@ pub(crate) enum Shading {
 ///   indices = #[ 0 2 1   0 3 2 ]
 ///   material = white
 /// }
+/// ```
+///
+/// A cage of triangles, smooth but for two edges, with the squares of a chessboard on it:
+///
+/// ```scene
 /// shape mesh "pebble" {
 ///   points  = #[ 1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1 ] cm
 ///   indices = #[ 0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5 ]

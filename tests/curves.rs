@@ -74,9 +74,9 @@ fn strands_of_one_shape_look_like_shapes_of_one_strand() {
 fn a_glass_fibre_in_even_light_is_unseen_at_every_scale_and_distance() {
     for (scale, far) in [("1 m", "0 m"), ("1 um", "0 m"), ("1000 km", "0 m"), ("1 m", "1000 km")] {
         let world = format!(
-            "let m = {scale}
+            "let size = {scale}
             let far = [{far}, -{far}, {far}]
-            fn at(x: float, y: float, z: float) = (x * m + far[0], y * m + far[1], z * m + far[2])
+            fn at(x: float, y: float, z: float) = (x * size + far[0], y * size + far[1], z * size + far[2])
             camera perspective {{ look = look_at(from = at(0.3, 0.4, 6), to = at(0, 0.2, 0), up = (0, 1, 0)), fov = 40 deg }}
             film rgb {{ resolution = (24, 16) }}
             filter box {{}}
@@ -87,8 +87,8 @@ fn a_glass_fibre_in_even_light_is_unseen_at_every_scale_and_distance() {
         let fibre = "
             let bow = [-2, -0.5, 0.3, -0.9, 1, -0.6, 1.1, 0.9, 0.8, 2.1, -0.7, -0.2]
             shape curves {
-                points   = [for i in 0..12 => bow[i] * m + far[i % 3]]
-                radii    = [0.3 * m, 0.5 * m, 0.2 * m, 0.1 * m]
+                points   = [for i in 0..12 => bow[i] * size + far[i % 3]]
+                radii    = [0.3 * size, 0.5 * size, 0.2 * size, 0.1 * size]
                 material = material dielectric { ior = 1.5 }
             }";
         let truth = picture(&world).pixels().next().expect("it has pixels").1.mean;

@@ -46,12 +46,12 @@ pub(crate) enum Form {
 /// strand, in equal shares for its segments, `v` around or across. A light cannot shine from it.
 ///
 /// ```scene
-/// shape curves "fibre" {
-///   points = #[ 0 0 0  0 30 0  40 60 0  40 90 0 ] mm, radius = 1 mm, material = glass
+/// shape curves "wire" {
+///   points = #[ 0 0 0  0 30 0  40 60 0  40 90 0 ] mm, radius = 1 mm, material = gold
 /// }
 /// shape curves "grass" {
 ///   points  = #[ 0 0 0  0 30 0  5 60 0  20 80 0   30 0 0  30 40 0  30 60 9  25 90 20 ] mm
-///   strands = #[ 4 ], form = "ribbon", radii = #[ 2 2 1 0  2 2 1 0 ] mm, material = green
+///   strands = #[ 4 ], form = "ribbon", radii = #[ 2 2 1 0  2 2 1 0 ] mm, material = paint
 /// }
 /// ```
 #[derive(Params, Clone, Copy)]

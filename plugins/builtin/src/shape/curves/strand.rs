@@ -203,6 +203,11 @@ impl Given<'_> {
 }
 
 /// A count of points.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "whole and within the numbers of 32 bits"
+)]
 fn whole(x: f64, i: usize) -> Result<usize, Fault> {
     if x >= 1.0 && x <= f64::from(u32::MAX) && x.fract() == 0.0 {
         return Ok(x as usize);

@@ -51,7 +51,7 @@ fn a_level_ribbon_faces_up_and_is_a_rectangle() {
 #[test]
 fn a_ribbon_faces_where_its_normals_say() {
     let points = [0.0, 1.0, 2.0, 3.0].map(|x| [x, 0.0, 0.0]);
-    let normals = vec![[0.0, 0.0, 3.0]; 4].concat();
+    let normals = [[0.0, 0.0, 3.0]; 4].concat();
     let given = Given { form: Form::Ribbon, normals, ..Given::new(&points, &[0.5]) };
     given.ask(|curves| {
         let ray = Ray::new(DVec3::new(1.5, 0.2, 4.0), -DVec3::Z);

@@ -5,6 +5,8 @@ mod assets;
 #[cfg(test)]
 mod bad_input;
 #[cfg(test)]
+mod builder;
+#[cfg(test)]
 mod cli;
 #[cfg(test)]
 mod curves;

@@ -166,8 +166,10 @@ impl Block {
         if !inside.any() {
             return None;
         }
-        if (edges.zeros() & inside).any() {
-            edges = Edges::exact([ax, bx, cx], [ay, by, cy]);
+        let zeros = edges.zeros();
+        if (zeros & inside).any() {
+            // Only where it must: what a triangle answers does not depend on its neighbours.
+            edges = Edges::exact([ax, bx, cx], [ay, by, cy]).or(edges, zeros);
             inside = edges.inside();
         }
 
@@ -191,6 +193,16 @@ impl Edges {
     #[inline(always)]
     fn zeros(self) -> BVec4A {
         self.u.cmpeq(Vec4::ZERO) | self.v.cmpeq(Vec4::ZERO) | self.w.cmpeq(Vec4::ZERO)
+    }
+
+    /// These where `mask` says so, else the others.
+    #[cold]
+    fn or(self, others: Self, mask: BVec4A) -> Self {
+        Self {
+            u: Vec4::select(mask, self.u, others.u),
+            v: Vec4::select(mask, self.v, others.v),
+            w: Vec4::select(mask, self.w, others.w),
+        }
     }
 
     /// The same with both products exact; a sign survives the narrowing even if its value does not.
@@ -221,9 +233,8 @@ impl Edges {
 
 /// `t` and the weights of the second and third corner where a line meets a triangle with t > 0.
 ///
-/// Like the lanes above, in double precision. Its products round: the sign of a rounded difference of
-/// products is right or zero unless both products round to the same number, which an edge's two
-/// triangles do alike; a zero counts as inside for both.
+/// Like the lanes above, in double precision. Products round: where both round to the same number, what
+/// they lost decides, so that every sign is exact. A zero counts as inside for both triangles of an edge.
 fn watertight(line: &Line, corners: [DVec3; 3]) -> Option<[f64; 3]> {
     let kz = line.d.abs().max_position();
     let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
@@ -234,7 +245,15 @@ fn watertight(line: &Line, corners: [DVec3; 3]) -> Option<[f64; 3]> {
         (p[kx] - sx * p[kz], p[ky] - sy * p[kz], p[kz])
     });
     let [a, b, c] = sheared;
-    let (u, v, w) = (c.0 * b.1 - c.1 * b.0, a.0 * c.1 - a.1 * c.0, b.0 * a.1 - b.1 * a.0);
+    let edge = |p: (f64, f64, f64), q: (f64, f64, f64)| {
+        let (first, second) = (p.0 * q.1, p.1 * q.0);
+        let difference = first - second;
+        if difference == 0.0 {
+            return p.0.mul_add(q.1, -first) - p.1.mul_add(q.0, -second);
+        }
+        difference
+    };
+    let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
     let inside = u.min(v).min(w) >= 0.0 || u.max(v).max(w) <= 0.0;
     let det = u + v + w;
     let r = det.recip();

@@ -133,7 +133,7 @@ fn parameters_that_cannot_be_are_refused() {
     check_param(AMOUNT, "has no doc: it becomes the manual", |p| p.doc = text(null(), 0));
     check_param(AMOUNT, "has a doc that is not UTF-8", |p| p.doc = bytes(b"\xfe"));
     check_param(AMOUNT, "has a doc that stands nowhere", |p| p.doc = text(null(), 9));
-    check_param(AMOUNT, "has the unknown type 16", |p| p.ty = 16);
+    check_param(AMOUNT, "has the unknown type 17", |p| p.ty = 17);
     check_param(AMOUNT, "has the unknown type 4294967295", |p| p.ty = u32::MAX);
     check_param(AMOUNT, "has the unknown type 35", |p| p.ty = 35);
     check_param(AMOUNT, "has the unknown role 6", |p| p.role = 6);

@@ -123,11 +123,12 @@ fn sphere(case: &Case) -> String {
 /// double precision, the rest in single.
 fn octahedron(case: &Case) -> String {
     let lean = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.5, 0.7);
-    let mut points = String::new();
-    for corner in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z] {
+    let corners = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
+    let points = corners.map(|corner| {
         let p = case.centre + lean * (corner * case.size);
-        points += &format!("{:?} {:?} {:?}  ", p.x, p.y, p.z);
-    }
+        format!("{:?} {:?} {:?}", p.x, p.y, p.z)
+    });
+    let points = points.join("  ");
     format!(
         "shape mesh {{ points = #[ {points} ] m, indices = #[ 0 2 4  2 1 4  1 3 4  3 0 4
             2 0 5  1 2 5  3 1 5  0 3 5 ] }}"

@@ -1,5 +1,6 @@
 //! What comes from outside and is wrong: each mistake gets its diagnostic and nothing panics.
 
+use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -166,4 +167,21 @@ fn a_scene_without_anything_is_black() {
     assert_eq!(film.mean().0, glam::DVec3::ZERO);
     let none = Options { spp: Some(0), ..Options::default() };
     assert_eq!(render(&stage, &none, &Control::default()).0.bad_samples(), 0);
+}
+
+#[test]
+fn objects_that_double_with_every_step_are_refused() {
+    for (kind, first, next) in
+        [("shape", "sphere { radius = 1 m }", "union"), ("material", "diffuse {}", "mix")]
+    {
+        let mut body = format!("let x0 = {kind} {first}\n");
+        for i in 0..40 {
+            let _ = writeln!(body, "let x{} = {kind} {next} {{ a = x{i}, b = x{i} }}", i + 1);
+        }
+        body += match kind {
+            "shape" => "place x40",
+            _ => "shape sphere { radius = 1 m, material = x40 }",
+        };
+        check(&body, MemoryFiles::default(), "E0501");
+    }
 }

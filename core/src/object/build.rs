@@ -1,25 +1,20 @@
 //! From a node of the scene graph to an object: its template and what varies.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::abi::Class;
-use luxel_sdk::color::{RgbSpace, Spectrum};
-use luxel_sdk::kind::{Kind, Output, TextureRef};
-use luxel_sdk::params::{
-    Emission, Fault, File, Maybe, Param, Preset, Quantity, Role, Table, Text, Type,
-};
+use luxel_sdk::color::Spectrum;
+use luxel_sdk::kind::Kind;
+use luxel_sdk::params::{Emission, Fault, Param, Quantity, Role, Type};
 
 use super::Object;
-use super::asked::Asked;
 use super::block::Block;
-use super::colour::{self, Amount, Lanes};
+use super::colour::{self, Amount};
 use super::context::{Embedded, Reader};
+use super::draft::Draft;
 use super::part::{MeshParts, OWN_BITS};
-use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
-use super::resolve::SCRATCH;
-use crate::cast::{self, narrow, whole};
+use super::patch::Patches;
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::registry::Registry;
@@ -66,6 +61,8 @@ pub struct Builder<'a> {
     pub mesh_parts: Option<MeshParts>,
     /// What this build made or kept.
     pub objects: Objects,
+    /// Nodes with which something is wrong, which has been said.
+    refused: BTreeSet<(NodeId, ColorMode)>,
     /// What was found wrong.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -81,12 +78,34 @@ impl<'a> Builder<'a> {
     ) -> Self {
         let embedded = embedded_files(scene);
         let objects = Objects { alarm: before.alarm.clone(), ..Objects::default() };
-        let (mesh_parts, diagnostics) = (None, vec![]);
-        Self { registry, scene, files, mode, embedded, before, mesh_parts, objects, diagnostics }
+        Self {
+            registry,
+            scene,
+            files,
+            mode,
+            embedded,
+            before,
+            mesh_parts: None,
+            objects,
+            refused: BTreeSet::new(),
+            diagnostics: vec![],
+        }
     }
 
     /// The object of a node. `None` when something is wrong with it, which has then been said.
     pub fn build(&mut self, id: NodeId) -> Option<Arc<Object>> {
+        let place = (id, self.mode);
+        if self.refused.contains(&place) {
+            return None;
+        }
+        let built = self.build_or_keep(id);
+        if built.is_none() {
+            self.refused.insert(place);
+        }
+        built
+    }
+
+    fn build_or_keep(&mut self, id: NodeId) -> Option<Arc<Object>> {
         let node = self.scene.node(id);
         let key = (self.scene.own_hash(id), self.mode);
         if let Some(object) = self.objects.by_content.get(&key) {
@@ -128,6 +147,7 @@ impl<'a> Builder<'a> {
             owned: vec![],
             parts: vec![],
             face_bits: OWN_BITS,
+            lacks: false,
             mode: self.mode,
         };
         let watch = remote(class).map(|remote| {
@@ -143,6 +163,7 @@ impl<'a> Builder<'a> {
                 self.fault(Fault::range(param.name, message), span, node);
             }
         }
+        let lacks = draft.lacks;
         let mut object = Object {
             class: *class,
             takes_colors: draft.patches.take_colors(),
@@ -150,21 +171,17 @@ impl<'a> Builder<'a> {
             template: draft.block,
             patches: draft.patches,
             owned: draft.owned,
+            size: draft.parts.iter().fold(1, |size, part| size.saturating_add(part.size)),
             parts: draft.parts,
             face_bits: draft.face_bits,
             watch,
             needs: None,
             reads: vec![],
         };
-        if object.need > SCRATCH {
-            let message = format!(
-                "objects nested too deeply: {} bytes at a point, {} allowed",
-                object.need * super::block::CHUNK,
-                SCRATCH * super::block::CHUNK
-            );
-            self.fault(Fault { field: "", code: "E0416", message }, None, node);
+        if let Some(fault) = object.is_too_large() {
+            self.fault(fault, None, node);
         }
-        if self.diagnostics[errors..].iter().any(Diagnostic::is_error) {
+        if lacks || self.diagnostics[errors..].iter().any(Diagnostic::is_error) {
             return None;
         }
         self.complete(&mut object, node)?;
@@ -215,6 +232,13 @@ impl<'a> Builder<'a> {
         });
     }
 
+    /// The object of a node of which another one is made.
+    pub(super) fn part_of(&mut self, draft: &mut Draft, id: NodeId) -> Option<Arc<Object>> {
+        let part = self.build(id);
+        draft.lacks |= part.is_none();
+        part
+    }
+
     fn field(
         &mut self,
         draft: &mut Draft,
@@ -231,14 +255,14 @@ impl<'a> Builder<'a> {
             (Type::Object(Kind::Texture), Some(Value::Node(id))) => {
                 // What is asked for numbers says the same in every mode: a mesh keeps its form.
                 let mode = std::mem::replace(&mut self.mode, ColorMode::Rgb);
-                let texture = self.build(*id);
+                let texture = self.part_of(draft, *id);
                 self.mode = mode;
                 if let Some(texture) = texture {
                     draft.asked(param.offset, &texture);
                 }
             }
             (Type::Object(_), Some(Value::Node(id))) => {
-                if let Some(child) = self.build(*id) {
+                if let Some(child) = self.part_of(draft, *id) {
                     draft.child(param.offset, &child);
                 }
             }
@@ -248,7 +272,7 @@ impl<'a> Builder<'a> {
                 draft.child(param.offset, &child);
             }
             (_, Some(Value::Node(id))) => {
-                if let Some(texture) = self.build(*id) {
+                if let Some(texture) = self.part_of(draft, *id) {
                     draft.texture(param, texture, 1.0)?;
                 }
             }
@@ -298,7 +322,7 @@ impl<'a> Builder<'a> {
             .write(param.offset, Emission { spectrum: Spectrum::ZERO, quantity: amount.quantity });
         match value {
             Some(Value::Node(id)) => {
-                if let Some(texture) = self.build(*id) {
+                if let Some(texture) = self.part_of(draft, *id) {
                     draft.texture(param, texture, colour::texture_factor(amount))?;
                 }
             }
@@ -323,154 +347,4 @@ fn embedded_files(scene: &Scene) -> Embedded {
         _ => None,
     });
     embedded.collect()
-}
-
-/// A template in the making.
-pub(super) struct Draft {
-    pub(super) block: Block,
-    patches: Patches,
-    pub(super) owned: Vec<Arc<dyn std::any::Any + Send + Sync>>,
-    pub(super) parts: Vec<Arc<Object>>,
-    pub(super) face_bits: u32,
-    mode: ColorMode,
-}
-
-impl Draft {
-    fn lanes(&mut self, offset: usize, lanes: Lanes) -> Result<(), String> {
-        let finite = match &lanes {
-            Lanes::Constant(value) => value.is_finite(),
-            Lanes::Curve(curve) => curve.max().is_finite(),
-            Lanes::Rgb(rgb, _) => rgb.is_finite(),
-        };
-        if !finite {
-            return Err("a value beyond single precision".to_owned());
-        }
-        match lanes {
-            Lanes::Constant(value) => self.block.write(offset, value),
-            Lanes::Curve(curve) => self.patches.curves.push(CurvePatch { offset, curve }),
-            Lanes::Rgb(rgb, uplift) => self.patches.colours.push(RgbPatch { offset, rgb, uplift }),
-        }
-        Ok(())
-    }
-
-    fn child(&mut self, offset: usize, child: &Arc<Object>) {
-        // A handle is never null: where the child varies, this one is replaced at each point.
-        self.block.write_raw(offset, child.fixed().handle());
-        self.parts.push(child.clone());
-        if !child.is_constant() {
-            self.patches.children.push(ChildPatch { offset, child: child.clone() });
-        }
-    }
-
-    fn asked(&mut self, offset: usize, texture: &Arc<Object>) {
-        let asked = Arc::new(Asked::new(texture.clone()));
-        self.block.write_raw(offset, TextureRef::new(&*asked));
-        self.parts.push(texture.clone());
-        self.owned.push(asked);
-    }
-
-    fn texture(&mut self, param: &Param, texture: Arc<Object>, factor: f32) -> Result<(), String> {
-        let output = texture.fixed().texture().output();
-        let target = match param.ty {
-            Type::Float if output != Output::Value => {
-                Target::Luminance(RgbSpace::LinearSrgb.luminance_weights().as_vec3())
-            }
-            Type::Float => Target::Float,
-            Type::Vec3 => Target::Vec3,
-            Type::Spectrum | Type::Emission | Type::ComplexIor => Target::Spectrum,
-            _ => return Err(format!("`{}` cannot be textured", param.name)),
-        };
-        let uplift = match (self.mode, target, param.role) {
-            (ColorMode::Rgb, ..) | (_, Target::Float | Target::Luminance(_) | Target::Vec3, _) => {
-                Uplift::None
-            }
-            (_, _, Role::Illuminant) => Uplift::Illuminant,
-            _ => Uplift::Reflectance,
-        };
-        self.parts.push(texture.clone());
-        self.patches.textures.push(TexturePatch {
-            offset: param.offset,
-            output,
-            texture,
-            uplift,
-            factor,
-            range: [narrow(param.min), narrow(param.max)],
-            target,
-        });
-        Ok(())
-    }
-
-    fn value(&mut self, param: &Param, value: &Value) -> Result<(), String> {
-        let at = param.offset;
-        match (param.ty, value) {
-            (Type::Float | Type::MaybeFloat, Value::Number(x, _)) if narrow(*x).is_infinite() => {
-                return Err(format!("`{}` = {x:e} is beyond single precision", param.name));
-            }
-            (Type::Float, Value::Number(x, _)) => self.block.write(at, narrow(*x)),
-            (Type::Double, Value::Number(x, _)) => self.block.write(at, *x),
-            (Type::Int, Value::Number(x, _)) => self.block.write(at, whole(*x)),
-            (Type::Bool, Value::Bool(b)) => self.block.write(at, *b),
-            (Type::MaybeFloat, Value::Number(x, _)) => {
-                self.block.write(at, Maybe { given: true, value: narrow(*x) });
-            }
-            (Type::Spectrum | Type::ComplexIor, Value::Number(x, _)) => {
-                self.block.write(at, Spectrum::splat(narrow(*x)));
-            }
-            (Type::Vec2 | Type::Vec3 | Type::DVec3, Value::Vector(v)) => self.vector(param, v),
-            (Type::Choice, Value::Text(word)) => {
-                let index = param.words().position(|choice| choice == &**word);
-                let index = index.ok_or_else(|| format!("`{word}` is not among the choices"))?;
-                self.block.write_raw(at, cast::index(index));
-            }
-            (Type::Text, Value::Text(text)) => {
-                self.block.write_raw(at, Text::new(text));
-                self.owned.push(Arc::new(text.clone()));
-            }
-            (Type::File, Value::Path(path)) => self.file(at, path.to_string_lossy().into()),
-            (Type::File, Value::Bytes(name, _)) => self.file(at, name.clone()),
-            (Type::Table, Value::Table(table)) => {
-                self.block.write_raw(at, Table::new(table));
-                self.owned.push(Arc::new(table.clone()));
-            }
-            (Type::Look, Value::Look(look)) => self.block.write(at, *look),
-            _ => return Err(format!("`{}` has a value of the wrong type", param.name)),
-        }
-        Ok(())
-    }
-
-    fn file(&mut self, offset: usize, path: Arc<str>) {
-        self.block.write_raw(offset, File { path: Text::new(&path) });
-        self.owned.push(Arc::new(path));
-    }
-
-    fn vector(&mut self, param: &Param, v: &[f64]) {
-        let get = |i: usize| v.get(i).copied().unwrap_or(0.0);
-        let v = DVec3::new(get(0), get(1), get(2));
-        match param.ty {
-            Type::Vec2 => self.block.write::<Vec2>(param.offset, v.truncate().as_vec2()),
-            Type::Vec3 => self.block.write::<Vec3>(param.offset, v.as_vec3()),
-            _ => self.block.write(param.offset, v),
-        }
-    }
-
-    fn preset(&mut self, param: &Param) {
-        let at = param.offset;
-        match (param.default, param.ty) {
-            (Preset::Numbers(n), Type::Float) => self.block.write(at, narrow(n[0])),
-            (Preset::Numbers(n), Type::Double) => self.block.write(at, n[0]),
-            (Preset::Numbers(n), Type::Int) => self.block.write(at, whole(n[0])),
-            (Preset::Numbers(n), Type::Bool) => self.block.write(at, n[0] > 0.5),
-            (Preset::Numbers(n), Type::Vec2 | Type::Vec3 | Type::DVec3) => self.vector(param, &n),
-            (Preset::Numbers(n), Type::Spectrum | Type::ComplexIor) => {
-                self.block.write(at, Spectrum::splat(narrow(n[0])));
-            }
-            (Preset::Numbers(n), Type::MaybeFloat) => {
-                self.block.write(at, Maybe { given: true, value: narrow(n[0]) });
-            }
-            (Preset::Index(index), Type::Choice) => self.block.write_raw(at, index),
-            (Preset::Text(text), Type::Text) => self.block.write_raw(at, Text::new(text)),
-            // Absent: zero bytes, which every optional type takes for nothing.
-            _ => {}
-        }
-    }
 }

@@ -9,6 +9,7 @@ mod block;
 mod build;
 mod colour;
 mod context;
+mod draft;
 mod part;
 mod patch;
 mod resolve;
@@ -21,18 +22,24 @@ use std::sync::Arc;
 
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Needs;
+use luxel_sdk::params::Fault;
 
 use crate::files::Files;
 use crate::registry::Registry;
 use crate::registry::dynamic::Watch;
 use block::Block;
 use patch::Patches;
+use resolve::SCRATCH;
 
 pub use build::{Builder, ColorMode, Objects};
 pub use colour::white;
 pub use context::{Embedded, Reader};
 pub use part::MeshParts;
 pub use resolve::{Resolved, Scratch, Site};
+
+/// The most objects that one may be made of: a mixture of mixtures of the same two doubles them with
+/// every step.
+const MOST_PARTS: usize = 4096;
 
 /// A built object. Immutable; shared by everything that uses it.
 pub struct Object {
@@ -47,6 +54,8 @@ pub struct Object {
     owned: Vec<Arc<dyn Any + Send + Sync>>,
     /// Objects that this one is made of.
     parts: Vec<Arc<Object>>,
+    /// Itself and its parts with theirs, each as often as it is asked.
+    size: usize,
     /// Bits that its hits' faces may take, where it is a shape.
     face_bits: u32,
     /// What a material looks at, where that is the same everywhere.
@@ -94,6 +103,24 @@ impl Object {
     fn is_unchanged(&self, files: &dyn Files) -> bool {
         context::unchanged(&self.reads, files)
             && self.parts.iter().all(|part| part.is_unchanged(files))
+    }
+
+    /// What is to be said where it takes more room or time at one point than an object may.
+    fn is_too_large(&self) -> Option<Fault> {
+        let told = |code, message| Some(Fault { field: "", code, message });
+        if self.size > MOST_PARTS {
+            let n = self.size;
+            let message =
+                format!("made of {n} objects, each asked at every point: {MOST_PARTS} are most");
+            return told("E0501", message);
+        }
+        if self.need > SCRATCH {
+            let [need, most] = [self.need, SCRATCH].map(|chunks| chunks * block::CHUNK);
+            let message =
+                format!("objects nested too deeply: {need} bytes at a point, {most} allowed");
+            return told("E0507", message);
+        }
+        None
     }
 
     /// Whether its parameters are the same everywhere and at every wavelength.

@@ -9,7 +9,8 @@ use luxel_sdk::params::Param;
 use luxel_sdk::sampling::sobol_owen_2d;
 
 use super::Object;
-use super::build::{Builder, Draft};
+use super::build::Builder;
+use super::draft::Draft;
 use crate::cast;
 use crate::diag::Diagnostic;
 use crate::registry::common_params;
@@ -46,7 +47,7 @@ impl Builder<'_> {
                 })
             })
             .transpose()?;
-        let Some(child) = self.build(id) else { return Ok(()) };
+        let Some(child) = self.part_of(draft, id) else { return Ok(()) };
         let (body, bits) = match child.fixed().shape().mesh() {
             None => (Body::Object(child.clone()), child.face_bits),
             Some(triangles) => {

@@ -299,7 +299,7 @@ fn nesting_beyond_the_scratch_is_refused() {
     for _ in 0..64 {
         id = world.node(Kind::Material, "through", &[("base", Value::Node(id))]);
     }
-    assert_eq!(world.build(id, ColorMode::Rgb).unwrap_err(), ["E0416"]);
+    assert_eq!(world.build(id, ColorMode::Rgb).unwrap_err(), ["E0507"]);
 }
 
 #[test]

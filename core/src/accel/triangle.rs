@@ -169,7 +169,7 @@ impl Block {
         let zeros = edges.zeros();
         if (zeros & inside).any() {
             // Only where it must: what a triangle answers does not depend on its neighbours.
-            edges = Edges::exact([ax, bx, cx], [ay, by, cy]).or(edges, zeros);
+            edges = edges.decided(zeros, [ax, bx, cx], [ay, by, cy]);
             inside = edges.inside();
         }
 
@@ -195,20 +195,11 @@ impl Edges {
         self.u.cmpeq(Vec4::ZERO) | self.v.cmpeq(Vec4::ZERO) | self.w.cmpeq(Vec4::ZERO)
     }
 
-    /// These where `mask` says so, else the others.
-    #[cold]
-    fn or(self, others: Self, mask: BVec4A) -> Self {
-        Self {
-            u: Vec4::select(mask, self.u, others.u),
-            v: Vec4::select(mask, self.v, others.v),
-            w: Vec4::select(mask, self.w, others.w),
-        }
-    }
-
-    /// The same with both products exact; a sign survives the narrowing even if its value does not.
+    /// The same, where `mask` says so with both products exact; a sign survives the narrowing even if
+    /// its value does not.
     #[cold]
     #[inline(never)]
-    fn exact([ax, bx, cx]: [Vec4; 3], [ay, by, cy]: [Vec4; 3]) -> Self {
+    fn decided(self, mask: BVec4A, [ax, bx, cx]: [Vec4; 3], [ay, by, cy]: [Vec4; 3]) -> Self {
         let difference = |a: Vec4, b: Vec4, c: Vec4, d: Vec4| {
             Vec4::from_array([0, 1, 2, 3].map(|lane| {
                 let [a, b, c, d] = [a[lane], b[lane], c[lane], d[lane]].map(f64::from);
@@ -224,9 +215,9 @@ impl Edges {
             }))
         };
         Self {
-            u: difference(cx, by, cy, bx),
-            v: difference(ax, cy, ay, cx),
-            w: difference(bx, ay, by, ax),
+            u: Vec4::select(mask, difference(cx, by, cy, bx), self.u),
+            v: Vec4::select(mask, difference(ax, cy, ay, cx), self.v),
+            w: Vec4::select(mask, difference(bx, ay, by, ax), self.w),
         }
     }
 }

@@ -59,7 +59,9 @@ impl Analytic {
         }
     }
 
-    /// Parts whose boxes a ray enters, roughly near to far: each narrows how far the next may be.
+    /// Parts whose boxes a ray enters, roughly near to far: each narrows how far the next may be. Apart
+    /// from what meets other shapes, which its stack would slow down.
+    #[inline(never)]
     fn nearest<const ANY: bool>(
         &self,
         parts: &TopBvh,

@@ -163,6 +163,7 @@ impl Arrival {
     }
 
     /// The same, up to a distance in metres.
+    #[inline]
     pub fn ray_to(&self, wi: DVec3, distance: f64) -> Ray {
         Ray { o: self.origin(wi), d: wi, t_max: distance }
     }

@@ -141,15 +141,46 @@ impl Shader<'_, '_> {
         if self.wants.0 & SHADED.0 == 0 {
             return;
         }
-        let object = &self.stage.materials[at.material as usize];
-        let color = if object.takes_colors() { self.stage.color(hit) } else { None };
+        let takes_colors = self.stage.materials[at.material as usize].takes_colors();
+        if takes_colors || self.stage.features.nested {
+            self.scatter_apart(at, surface, hit, numbers);
+        } else {
+            self.scatter_with(at, surface, numbers, (None, None));
+        }
+    }
+
+    /// The same where the material asks for more than its place. Apart: what is found in between
+    /// would cost every other surface its registers.
+    #[inline(never)]
+    fn scatter_apart(
+        &mut self,
+        at: &mut Arrival,
+        surface: &Surface,
+        hit: &SceneHit,
+        numbers: &Numbers,
+    ) {
+        let color = self.stage.color(hit);
         let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette, color };
         let around = self.stage.features.nested.then(|| {
-            let (here, beyond) = (&self.path.media, &self.path.beyond);
-            self.stage.index_around((here, beyond), hit.placement, &site, self.scratch)
+            let sides = (&self.path.media, &self.path.beyond);
+            self.stage.index_around(sides, hit.placement, &site, self.scratch)
         });
+        self.scatter_with(at, surface, numbers, (color, around));
+    }
+
+    /// The same, with the surface's own colour and the index of refraction of what lies around it.
+    #[inline(always)]
+    fn scatter_with(
+        &mut self,
+        at: &mut Arrival,
+        surface: &Surface,
+        numbers: &Numbers,
+        (color, around): (Option<Vec3>, Option<Spectrum>),
+    ) {
+        let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette, color };
         self.scratch.reset();
         let scratch: &Scratch = self.scratch;
+        let object = &self.stage.materials[at.material as usize];
         let (material, needs) = match around {
             None => {
                 let material = object.resolve(&site, scratch).material();

@@ -125,23 +125,7 @@ impl Moved {
         }
     }
 
-    /// A point of the shape in the outer frame.
-    fn carried(&self, s: &Surface) -> Surface {
-        let transform = &self.transform;
-        let (p, p_err) = transform.point_with_error(s.p, s.p_err);
-        let flip = if transform.swaps_handedness() { -1.0 } else { 1.0 };
-        Surface {
-            p,
-            p_err,
-            ng: transform.normal(s.ng).normalize(),
-            ns: transform.normal(s.ns).normalize(),
-            uv: s.uv,
-            dp_du: transform.vector(s.dp_du),
-            dp_dv: transform.vector(s.dp_dv) * flip,
-        }
-    }
-
-    /// The same point in the shape's own frame.
+    /// A point of the outer frame in the shape's own.
     fn own(&self, s: &Surface) -> Surface {
         let transform = &self.transform;
         Surface {
@@ -165,7 +149,7 @@ impl Shape for Moved {
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        self.carried(&self.shape().surface(&self.transform.inverse_ray(ray), hit))
+        self.shape().surface(&self.transform.inverse_ray(ray), hit).carried(&self.transform)
     }
 
     fn area(&self) -> f64 {
@@ -184,7 +168,7 @@ impl Shape for Moved {
         let from = from.map(|p| self.transform.inverse_point(p));
         let sample = self.shape().sample(from, u)?;
         let pdf = sample.pdf / self.transform.area_scale(sample.surface.ng);
-        Some(ShapeSample { surface: self.carried(&sample.surface), pdf })
+        Some(ShapeSample { surface: sample.surface.carried(&self.transform), pdf })
     }
 
     fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {

@@ -10,7 +10,6 @@ use luxel_sdk::kind::{Arrival, Light, LightQuery, Output, ShapeSample, Surface};
 use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
-use super::placement::carried;
 use super::{Geometry, Placement, Stage};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
@@ -246,7 +245,7 @@ impl Stage {
         let sample = sample.as_mut()?;
         if let Some(transform) = &placement.transform {
             sample.pdf /= transform.area_scale(sample.surface.ng);
-            sample.surface = carried(transform, &sample.surface);
+            sample.surface = sample.surface.carried(transform);
         }
         let surface = &sample.surface;
         let ray = ray_between(from, surface);

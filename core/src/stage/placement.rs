@@ -1,7 +1,7 @@
 //! Geometry in its place: rays into its frame, points back into the world.
 
 use glam::DVec3;
-use luxel_sdk::kind::{Hit, Surface};
+use luxel_sdk::kind::Hit;
 use luxel_sdk::num::Transform;
 
 use crate::scene::NodeId;
@@ -56,20 +56,6 @@ impl Placement {
     /// How much larger an area whose local unit normal is `ng` is in the world.
     pub fn area_scale(&self, ng: DVec3) -> f64 {
         self.transform.as_ref().map_or(1.0, |transform| transform.area_scale(ng))
-    }
-}
-
-/// A surface point in the world.
-pub(super) fn carried(transform: &Transform, s: &Surface) -> Surface {
-    let (p, p_err) = transform.point_with_error(s.p, s.p_err);
-    Surface {
-        p,
-        p_err,
-        ng: transform.normal(s.ng).normalize(),
-        ns: transform.normal(s.ns).normalize(),
-        uv: s.uv,
-        dp_du: transform.vector(s.dp_du),
-        dp_dv: transform.vector(s.dp_dv),
     }
 }
 

@@ -7,7 +7,6 @@ use luxel_sdk::num::Ray;
 use crate::accel::{Direction, Processor, Room};
 
 use super::geometry::Approach;
-use super::placement::carried;
 use super::{Geometry, Leaving, Placement, SceneHit, Skin, Stage};
 
 impl Stage {
@@ -103,7 +102,7 @@ impl Stage {
             Some(transform) => {
                 let local =
                     geometry.surface(&transform.inverse_ray(ray), &hit.hit, self.film.precision);
-                carried(transform, &local)
+                local.carried(transform)
             }
         }
     }

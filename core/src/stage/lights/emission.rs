@@ -10,7 +10,6 @@ use luxel_sdk::sampling::{
     Piecewise2, cosine_hemisphere, disk_concentric, sobol_owen_2d, uniform_sphere, uniform_triangle,
 };
 
-use super::super::placement::carried;
 use super::super::{Geometry, Leaving, MediumStack, Stage};
 use super::{LightSource, emitted};
 use crate::cast::{index, narrow};
@@ -143,7 +142,7 @@ impl Stage {
         };
         if let Some(transform) = &placement.transform {
             pdf /= transform.area_scale(surface.ng);
-            surface = carried(transform, &surface);
+            surface = surface.carried(transform);
         }
         if !(pdf > 0.0 && pdf.is_finite()) {
             return None;

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, Shape, Surface};
 use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
@@ -98,15 +98,6 @@ impl Shape for GyroidWall<'_> {
     fn area(&self) -> f64 {
         let first = |ray: &Ray| Some(self.surface(ray, &self.intersect(ray)?));
         *self.area.get_or_init(|| area_by_lines(&self.bounds(), first))
-    }
-
-    /// None: as a lamp it is found by chance alone.
-    fn sample(&self, _from: Option<DVec3>, _u: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        0.0
     }
 
     fn is_closed(&self) -> bool {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
 
@@ -216,15 +216,6 @@ impl Shape for Heightfield<'_> {
 
     fn area(&self) -> f64 {
         mesh::area_of(&self.table)
-    }
-
-    /// Nothing: the host takes the triangles over.
-    fn sample(&self, _from: Option<DVec3>, _u: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        0.0
     }
 
     fn mesh(&self) -> Option<Arc<TriangleMesh>> {

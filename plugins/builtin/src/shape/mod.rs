@@ -14,6 +14,7 @@ mod implicit;
 mod mesh;
 mod plane;
 mod rectangle;
+mod root;
 mod sphere;
 mod spherical;
 #[cfg(test)]

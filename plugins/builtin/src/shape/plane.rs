@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, Shape, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
@@ -84,15 +84,6 @@ impl Shape for Plane {
 
     fn area(&self) -> f64 {
         f64::INFINITY
-    }
-
-    /// Nothing: no density is even over all of it.
-    fn sample(&self, _from: Option<DVec3>, _u: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        0.0
     }
 }
 

@@ -9,6 +9,7 @@ use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
 use super::axial::{across, frame, length_of, local, place, turn_of};
+use super::root::rising_root;
 
 /// A ring with a round tube: closed.
 ///
@@ -96,7 +97,8 @@ impl Shape for Torus {
     fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
         let [around, mean] = u.map(|u| (f64::from(u) - 0.5) * TAU);
         let k = self.minor / self.radius;
-        let v = root(-PI, PI, mean, |v, _| Some((v + k * v.sin() - mean, 1.0 + k * v.cos())));
+        let v =
+            rising_root((-PI, PI), mean, |v, _| Some((v + k * v.sin() - mean, 1.0 + k * v.cos())));
         Some(ShapeSample { surface: self.surface_at(DVec2::new(around, v)), pdf: self.pdf_all() })
     }
 
@@ -232,7 +234,7 @@ impl Line {
         }
         let sign = if is_convex { 1.0 } else { -1.0 };
         let mut found = None;
-        root(start, end, 0.5 * (start + end), |s, room| {
+        rising_root((start, end), 0.5 * (start + end), |s, room| {
             let at = self.look(s);
             found = ((at.gap > 0.0) != is_convex).then_some(at);
             // The extremum is within `room`, and the distance changes by no more than the way.
@@ -281,42 +283,11 @@ impl Line {
         };
         // From outside, as far as the tube is away at least.
         let start = if from.gap > 0.0 { from.s + from.gap } else { to.s - to.gap };
-        Some(root(from.s, to.s, start.clamp(from.s, to.s), |s, _| {
+        Some(rising_root((from.s, to.s), start.clamp(from.s, to.s), |s, _| {
             let at = self.look(s);
             Some((sign * at.gap, sign * at.slope / at.distance))
         }))
     }
-}
-
-/// The root of a function that is negative before it and positive after it, between `low` and
-/// `high`: Newton's steps where they stay between and gain enough, else halves.
-///
-/// The function is asked with how far the root may be off, gives its derivative too, and may end the
-/// search.
-fn root(low: f64, high: f64, start: f64, mut f: impl FnMut(f64, f64) -> Option<(f64, f64)>) -> f64 {
-    let (mut low, mut high, mut s) = (low, high, start);
-    let mut last = high - low;
-    // Halving alone takes 60 from a whole range to a rounding.
-    for _ in 0..128 {
-        let Some((value, slope)) = f(s, (s - low).max(high - s)) else { break };
-        if value == 0.0 {
-            break;
-        }
-        if value > 0.0 {
-            high = s;
-        } else {
-            low = s;
-        }
-        let newton = s - value / slope;
-        let good = newton > low && newton < high && (newton - s).abs() < 0.75 * last;
-        let next = if good { newton } else { 0.5 * (low + high) };
-        last = (next - s).abs();
-        s = next;
-        if last <= 2.0 * f64::EPSILON {
-            break;
-        }
-    }
-    s
 }
 
 #[cfg(test)]

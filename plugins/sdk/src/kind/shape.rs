@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use crate::num::{Bounds3, Ray};
+use crate::num::{Bounds3, Ray, Transform};
 use crate::params::Fault;
 
 /// Where a ray met a shape, in the shape's own parameters.
@@ -38,6 +38,25 @@ pub struct Surface {
     pub dp_du: DVec3,
     /// ∂p/∂v.
     pub dp_dv: DVec3,
+}
+
+impl Surface {
+    /// The same point in the frame that a transform leads to. A mirroring one turns `dp_dv`, so that
+    /// dp/du × dp/dv still points to the side of the normal.
+    #[inline(always)]
+    pub fn carried(&self, transform: &Transform) -> Self {
+        let (p, p_err) = transform.point_with_error(self.p, self.p_err);
+        let turn = if transform.swaps_handedness() { -1.0 } else { 1.0 };
+        Self {
+            p,
+            p_err,
+            ng: transform.normal(self.ng).normalize(),
+            ns: transform.normal(self.ns).normalize(),
+            uv: self.uv,
+            dp_du: transform.vector(self.dp_du),
+            dp_dv: transform.vector(self.dp_dv) * turn,
+        }
+    }
 }
 
 /// A sampled point of a surface.
@@ -114,10 +133,17 @@ pub trait Shape: Send + Sync {
     fn area(&self) -> f64;
 
     /// A point, `u` uniform in [0, 1)². With `from`, the shape may prefer what is seen from there.
-    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample>;
+    /// None, and a density of 0, where points cannot be chosen: as a lamp it is found by chance alone.
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let _ = (from, u);
+        None
+    }
 
     /// The density with which `sample` finds this point of the surface, m⁻².
-    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64;
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        let _ = (from, at);
+        0.0
+    }
 
     /// Whether the surface encloses a volume.
     fn is_closed(&self) -> bool {

@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeRef, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, Shape, ShapeRef, Surface};
 use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
@@ -200,15 +200,6 @@ macro_rules! solid {
             /// By lines along the axes, to about a thousandth.
             fn area(&self) -> f64 {
                 *self.area.get_or_init(|| self.pair().area())
-            }
-
-            /// None: as a lamp it is found by chance alone.
-            fn sample(&self, _from: Option<DVec3>, _u: [f32; 2]) -> Option<ShapeSample> {
-                None
-            }
-
-            fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-                0.0
             }
 
             fn is_closed(&self) -> bool {

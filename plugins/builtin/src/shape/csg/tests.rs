@@ -33,12 +33,6 @@ impl Shape for Solid<'_> {
     fn area(&self) -> f64 {
         self.0.area()
     }
-    fn sample(&self, _: Option<DVec3>, _: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-    fn pdf(&self, _: Option<DVec3>, _: &Surface) -> f64 {
-        0.0
-    }
     fn is_closed(&self) -> bool {
         true
     }
@@ -318,12 +312,6 @@ impl Shape for Sheet {
     }
     fn area(&self) -> f64 {
         self.0.area()
-    }
-    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
-        self.0.sample(from, u)
-    }
-    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
-        self.0.pdf(from, at)
     }
 }
 

@@ -7,6 +7,8 @@ use std::ops::{Add, Mul, Sub};
 
 use glam::{DVec3, DVec4};
 
+use crate::shape::root::rising_root;
+
 /// What can be averaged.
 pub(super) trait Vector:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
@@ -101,29 +103,10 @@ impl Range {
 }
 
 /// The root of a function that is positive before it and negative after it, between `low` and
-/// `high`: Newton's steps where they stay between, else halves. `f` gives value and slope.
+/// `high`. `f` gives value and slope.
 pub(super) fn falling_root(low: f64, high: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
-    let (mut low, mut high) = (low, high);
-    let mut s = 0.5 * (low + high);
-    let mut last = high - low;
-    for _ in 0..100 {
+    rising_root((low, high), 0.5 * (low + high), |s, _| {
         let (value, slope) = f(s);
-        if value == 0.0 {
-            break;
-        }
-        if value > 0.0 {
-            low = s;
-        } else {
-            high = s;
-        }
-        let newton = s - value / slope;
-        let good = newton > low && newton < high && (newton - s).abs() < 0.75 * last;
-        let next = if good { newton } else { 0.5 * (low + high) };
-        last = (next - s).abs();
-        s = next;
-        if last <= 2.0 * f64::EPSILON {
-            break;
-        }
-    }
-    s
+        Some((-value, -slope))
+    })
 }

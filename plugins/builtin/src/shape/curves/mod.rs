@@ -9,8 +9,8 @@ mod tube;
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use glam::DVec2;
+use luxel_sdk::kind::{Hit, Shape, Surface};
 use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared, Table};
 use luxel_sdk::{Choice, Params};
@@ -150,15 +150,6 @@ impl Shape for Curves<'_> {
 
     fn area(&self) -> f64 {
         f64::INFINITY
-    }
-
-    /// None: what of a rod is inside itself, and what a curve's length is, has no closed form.
-    fn sample(&self, _from: Option<DVec3>, _u: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        0.0
     }
 
     fn is_closed(&self) -> bool {

@@ -13,7 +13,7 @@ mod displace;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TextureRef, TriangleMesh};
+use luxel_sdk::kind::{Hit, Shape, Surface, TextureRef, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
 use luxel_sdk::{Choice, Params};
@@ -267,15 +267,6 @@ impl Shape for Mesh<'_> {
 
     fn area(&self) -> f64 {
         area_of(&self.table)
-    }
-
-    /// Nothing: the host takes the triangles over.
-    fn sample(&self, _from: Option<DVec3>, _u: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        0.0
     }
 
     fn mesh(&self) -> Option<Arc<TriangleMesh>> {

@@ -5,7 +5,7 @@ use luxel_sdk::num::gamma64;
 
 use super::Scheme;
 use super::masks::{self, Ring};
-use super::rules::{Around, Rule, SharpPoints, beta, in_the_limit};
+use super::rules::{Around, Rule, SharpPoints, beta, in_the_limit, placed};
 use super::topology::{Level, NONE};
 
 /// The limit of each point. What is still sharp for a number of levels counts as sharp for ever if
@@ -20,21 +20,11 @@ pub(super) fn points(level: &Level, scheme: Scheme) -> Vec<DVec3> {
         Scheme::Loop => Around::all(level, |_| DVec3::ZERO),
     };
     let sharp = SharpPoints::find(level, in_the_limit);
-    let points = (0..).zip(&level.points).zip(&around);
-    let place = |((i, p), around): ((u32, &DVec3), &Around)| {
-        if around.n == 0 {
-            return *p;
-        }
-        let n = f64::from(around.n);
-        let smooth = match scheme {
-            Scheme::CatmullClark => {
-                (*p * (n * n) + around.far * 4.0 + around.faces) / (n * (n + 5.0))
-            }
-            Scheme::Loop => *p + (around.far - *p * n) / (0.375 / beta(n) + n),
-        };
-        sharp.place(i, *p, smooth, |p, ends| (p * 4.0 + ends) / 6.0)
+    let smooth = |n: f64, p: DVec3, around: &Around| match scheme {
+        Scheme::CatmullClark => (p * (n * n) + around.far * 4.0 + around.faces) / (n * (n + 5.0)),
+        Scheme::Loop => p + (around.far - p * n) / (0.375 / beta(n) + n),
     };
-    let mut out: Vec<DVec3> = points.map(place).collect();
+    let mut out = placed(level, &around, &sharp, smooth, |p, ends| (p * 4.0 + ends) / 6.0);
     darts(level, scheme, &sharp, &mut out);
     out
 }

@@ -195,23 +195,33 @@ pub(super) fn of_corners(level: &Level, scheme: Scheme, middles: &[DVec3]) -> Ve
     }
 }
 
-/// Where the given points are at the next level.
-pub(super) fn moved(level: &Level, scheme: Scheme, of_corners: &[DVec3]) -> Vec<DVec3> {
-    let around = Around::all(level, |c| of_corners[c]);
-    let sharp = SharpPoints::find(level, after_a_level);
-    let points = (0..).zip(&level.points).zip(&around);
+/// Where the points of a level come to be by its sharp edges and corners, where `smooth` is told how
+/// many neighbours a point has, the point, and what lies around it.
+pub(super) fn placed(
+    level: &Level,
+    around: &[Around],
+    sharp: &SharpPoints,
+    smooth: impl Fn(f64, DVec3, &Around) -> DVec3,
+    curve: fn(DVec3, DVec3) -> DVec3,
+) -> Vec<DVec3> {
     let place = |((i, p), around): ((u32, &DVec3), &Around)| {
         if around.n == 0 {
             return *p;
         }
-        let n = f64::from(around.n);
-        let smooth = match scheme {
-            Scheme::CatmullClark => (around.faces / n + around.far / n + *p * (n - 2.0)) / n,
-            Scheme::Loop => *p + (around.far - *p * n) * beta(n),
-        };
-        sharp.place(i, *p, smooth, |p, ends| (p * 6.0 + ends) / 8.0)
+        sharp.place(i, *p, smooth(f64::from(around.n), *p, around), curve)
     };
-    points.map(place).collect()
+    (0..).zip(&level.points).zip(around).map(place).collect()
+}
+
+/// Where the given points are at the next level.
+pub(super) fn moved(level: &Level, scheme: Scheme, of_corners: &[DVec3]) -> Vec<DVec3> {
+    let around = Around::all(level, |c| of_corners[c]);
+    let sharp = SharpPoints::find(level, after_a_level);
+    let smooth = |n: f64, p: DVec3, around: &Around| match scheme {
+        Scheme::CatmullClark => (around.faces / n + around.far / n + p * (n - 2.0)) / n,
+        Scheme::Loop => p + (around.far - p * n) * beta(n),
+    };
+    placed(level, &around, &sharp, smooth, |p, ends| (p * 6.0 + ends) / 8.0)
 }
 
 /// The points that edges make at the next level.

@@ -44,6 +44,7 @@ impl Surface {
     /// The same point in the frame that a transform leads to. A mirroring one turns `dp_dv`, so that
     /// dp/du × dp/dv still points to the side of the normal.
     #[inline(always)]
+    #[must_use]
     pub fn carried(&self, transform: &Transform) -> Self {
         let (p, p_err) = transform.point_with_error(self.p, self.p_err);
         let turn = if transform.swaps_handedness() { -1.0 } else { 1.0 };

@@ -7,6 +7,7 @@ use luxel_core::accel::Processor;
 use luxel_core::diag::Diagnostic;
 use luxel_core::files::MemoryFiles;
 use luxel_core::registry::Registry;
+use luxel_core::render::{Control, Options, render};
 use luxel_core::stage::{self, Stage};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::num::{Ray, offset_origin};
@@ -158,6 +159,29 @@ fn a_lamp_that_cannot_be_sampled_shines_with_a_warning() {
     assert_eq!(warnings.len(), 1);
     assert!(warnings[0].message.contains("found by chance alone"), "{warnings:?}");
     assert!(!crossings(&stage, DVec3::X * -50.0, DVec3::X).is_empty());
+}
+
+#[test]
+fn a_stretched_lamp_that_cannot_be_sampled_shines_with_its_power() {
+    let lamp = |transform: &str| {
+        format!(
+            "film rgb {{ resolution = (16, 16) }}
+            filter box {{}}
+            integrator path {{ max_depth = 0 }}
+            light area {{ power = 8 W, transform = {transform}, shape = shape union {{
+                a = shape sphere {{ radius = 1 m }}, b = shape sphere {{ radius = 0.5 m }} }} }}"
+        )
+    };
+    let radiance = |transform: &str| {
+        let (stage, _) = build(&lamp(transform)).unwrap();
+        let (film, _) = render(&stage, &Options::default(), &Control::default());
+        film.pixels().map(|(_, pixel)| pixel.mean.y).fold(0.0, f64::max)
+    };
+    // An ellipsoid twice as long has 1/2 + 2/√3·asin(√3/2) = 1.709 times the area of a ball.
+    let ratio = radiance("scale(1)") / radiance("scale((2, 1, 1))");
+    let expected = 0.5 + 2.0 / 3f64.sqrt() * (3f64.sqrt() / 2.0).asin();
+    // Areas of unions are measured to 1e-3, and normals of all directions stand for those of a ball.
+    assert!((ratio / expected - 1.0).abs() < 5e-3, "{ratio}, not {expected}");
 }
 
 #[test]

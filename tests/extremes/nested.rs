@@ -54,26 +54,31 @@ fn water_in_glass_lets_through_what_its_faces_let_through() {
 }
 
 #[test]
-fn nested_balls_bend_light_alike_from_either_side() {
-    // A ball in another of its own index, partly outside: the picture of what they hold together.
-    let ball = |at: &str, rest: &str| {
-        format!("shape sphere {{ center = {at}, radius = 1 m, material = crown, {rest} }}\n")
-    };
+fn balls_that_overlap_bend_light_as_the_solid_that_they_make() {
+    let ball =
+        |at: &str, rest: &str| format!("shape sphere {{ center = {at}, radius = 1 m, {rest} }}\n");
+    let (left, right) = ("(-0.4, 0, 0) m", "(0.4, 0, 0) m");
     let view = |from: &str, balls: &str| {
-        camera(from, "(0, 0, 0) m", "(0, 1, 0)", "40 deg", 64)
+        let body = camera(from, "(0, 0, 0) m", "(0, 1, 0)", "40 deg", 256)
             + "light directional {
-                direction = (1, -1, 0.3), angular_size = 120 deg, spectrum = white, scale = pi
+                direction = (0.3, -1, 0), angular_size = 160 deg, spectrum = white, scale = pi
             }
             let crown = material dielectric { ior = 1.5 }\n"
-            + balls
+            + balls;
+        let (mean, error) = picture(&body).mean();
+        (mean.y, error.y)
     };
     for from in ["(0, 0, 6) m", "(0, 0, -6) m"] {
-        let [a, b] = [["", "priority = 1"], ["priority = 1", ""]].map(|[first, second]| {
-            let balls = ball("(-0.4, 0, 0) m", first) + &ball("(0.4, 0, 0) m", second);
-            picture(&view(from, &balls)).mean()
-        });
-        // Which counts does not matter where both are alike.
-        let noise = (a.1 * a.1 + b.1 * b.1).map(f64::sqrt).y;
-        assert!((a.0.y - b.0.y).abs() <= 4.0 * noise, "{from}: {a:?} {b:?}");
+        let (a, b) = (ball(left, "").replace("shape", "a = shape"), ball(right, ""));
+        let whole = format!("shape union {{ {a} b = {b} material = crown }}");
+        let (whole, error) = view(from, &whole);
+        assert!(error <= 0.02 * whole, "{from}: {whole} ± {error}");
+        for [first, second] in [["", "priority = 1"], ["priority = 1", ""], ["", ""]] {
+            let material = |rest: &str| format!("material = crown, {rest}");
+            let balls = ball(left, &material(first)) + &ball(right, &material(second));
+            let (found, its) = view(from, &balls);
+            let noise = 4.0 * error.hypot(its);
+            assert!((found - whole).abs() <= noise, "{from} {first}: {found} ± {its}, not {whole}");
+        }
     }
 }

@@ -225,7 +225,7 @@ impl Edges {
 /// `t` and the weights of the second and third corner where a line meets a triangle with t > 0.
 ///
 /// Like the lanes above, in double precision. Products round: where both round to the same number, what
-/// they lost decides, so that every sign is exact. A zero counts as inside for both triangles of an edge.
+/// they lost decides, so that signs are exact short of underflow. A zero counts as inside for both triangles of an edge.
 fn watertight(line: &Line, corners: [DVec3; 3]) -> Option<[f64; 3]> {
     let kz = line.d.abs().max_position();
     let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);

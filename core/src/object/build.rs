@@ -198,11 +198,6 @@ impl<'a> Builder<'a> {
         let built = object.build_shared(&reader);
         let (reads, warnings) = reader.finish();
         object.reads = reads;
-        if object.class.shared.is_some() {
-            // The table may be made of what they say.
-            let textures = object.parts.iter().filter(|part| part.class.kind == Kind::Texture);
-            object.reads.extend(textures.flat_map(|part| part.reads.iter().cloned()));
-        }
         for warning in warnings {
             if let Some(node) = node {
                 self.diagnostics.push(Diagnostic::warning("E0417", node.span, warning));

@@ -20,9 +20,12 @@ mod tests;
 use std::any::Any;
 use std::sync::Arc;
 
+use glam::DVec3;
 use luxel_sdk::abi::Class;
-use luxel_sdk::kind::Needs;
+use luxel_sdk::kind::{Needs, Shape};
+use luxel_sdk::num::Transform;
 use luxel_sdk::params::Fault;
+use luxel_sdk::sampling::{sobol_owen_2d, uniform_sphere};
 
 use crate::files::Files;
 use crate::registry::Registry;
@@ -40,6 +43,25 @@ pub use resolve::{Resolved, Scratch, Site};
 /// The most objects that one may be made of: a mixture of mixtures of the same two doubles them with
 /// every step.
 const MOST_PARTS: usize = 4096;
+
+/// Points at which the area scale of a transform that is no similarity is averaged.
+const AREA_POINTS: u32 = 1024;
+
+/// Area of a shape in the frame that a transform leads to. Exact for similarities; else the mean scale
+/// over points that the shape samples uniformly, or, where it samples none, over normals of all
+/// directions alike: right for what is round, a guess for what is flat.
+pub fn carried_area(shape: &dyn Shape, transform: &Transform) -> f64 {
+    if transform.is_rigid_or_uniform() {
+        return shape.area() * transform.area_scale(DVec3::Z);
+    }
+    let scale = |i: u32| {
+        let u = sobol_owen_2d(i, 0x5eed);
+        let sample = shape.sample(None, u);
+        let normal = sample.map_or_else(|| uniform_sphere(u).as_dvec3(), |it| it.surface.ng);
+        transform.area_scale(normal)
+    };
+    shape.area() * (0..AREA_POINTS).map(scale).sum::<f64>() / f64::from(AREA_POINTS)
+}
 
 /// A built object. Immutable; shared by everything that uses it.
 pub struct Object {

@@ -6,11 +6,10 @@ use glam::{DAffine3, DVec3};
 use luxel_sdk::kind::{Hit, Kind, Shape, ShapeRef, ShapeSample, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, Transform};
 use luxel_sdk::params::Param;
-use luxel_sdk::sampling::sobol_owen_2d;
 
-use super::Object;
 use super::build::Builder;
 use super::draft::Draft;
+use super::{Object, carried_area};
 use crate::cast;
 use crate::diag::Diagnostic;
 use crate::registry::common_params;
@@ -93,9 +92,6 @@ enum Body {
     Triangles(Arc<dyn Shape>),
 }
 
-/// Points at which the area scale of a transform that is no similarity is averaged.
-const AREA_POINTS: u32 = 1024;
-
 /// A shape with a transform of its own.
 struct Moved {
     body: Body,
@@ -153,15 +149,7 @@ impl Shape for Moved {
     }
 
     fn area(&self) -> f64 {
-        let area = self.shape().area();
-        if self.transform.is_rigid_or_uniform() {
-            return area * self.transform.area_scale(DVec3::Z);
-        }
-        let scales = (0..AREA_POINTS).filter_map(|i| {
-            let ng = self.shape().sample(None, sobol_owen_2d(i, 0x5eed))?.surface.ng;
-            Some(self.transform.area_scale(ng))
-        });
-        area * scales.sum::<f64>() / f64::from(AREA_POINTS)
+        carried_area(self.shape(), &self.transform)
     }
 
     fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {

@@ -65,6 +65,10 @@ pub struct Crossing {
 /// may be that much beside where it is.
 const COINCIDENT: f64 = 2.0;
 
+/// Surfaces that the ray is followed through which finds what a point is inside of: rounding may
+/// hold it at one.
+const MOST_CROSSINGS: usize = 1 << 20;
+
 impl Stage {
     /// Of the shapes that a ray is in, the one that counts, among those that `take` lets count.
     fn ruler(&self, media: &MediumStack, take: impl Fn(&Placement) -> bool) -> Option<u32> {
@@ -201,7 +205,8 @@ impl Stage {
         let mut entered: Vec<u32> = vec![];
         let mut left: Vec<u32> = vec![];
         let mut from = None;
-        while let Some(hit) = self.intersect(Processor::ANY, &ray, from, &mut 0) {
+        for _ in 0..MOST_CROSSINGS {
+            let Some(hit) = self.intersect(Processor::ANY, &ray, from, &mut 0) else { break };
             from = Some(Leaving::from(&hit));
             let surface = self.surface(&ray, &hit);
             let wide = if self.is_filled(hit.placement) { COINCIDENT } else { 1.0 };
@@ -226,9 +231,6 @@ impl Stage {
                         cross(found.placement, self.surface(&probe, found).ng);
                     }
                 });
-            }
-            if entered.len() + left.len() > self.placements.len() {
-                break;
             }
         }
         let mut media = MediumStack::default();

@@ -1,13 +1,12 @@
 //! Geometry that shines: how large it is, and whether its points can be chosen.
 
-use glam::DVec3;
 use luxel_sdk::num::Bounds3;
 use luxel_sdk::sampling::{Alias, sobol_owen_2d};
 
 use super::{Geometry, Placement};
 use crate::cast::index;
 use crate::diag::{Diagnostic, Span};
-use crate::object::Object;
+use crate::object::{Object, carried_area};
 use crate::scene::{NodeId, Scene};
 
 /// Area in the world, m², and how a triangle of a mesh is chosen.
@@ -40,29 +39,23 @@ pub(super) fn doubts(
     (!can_be_sampled(object.object())).then(|| unsampled(span, scene, shape))
 }
 
-/// Points at which the area scale of a transform that is no similarity is averaged.
-const AREA_POINTS: u32 = 1024;
-
-/// Area of an analytic shape in the world. Exact for similarities; else the mean scale over points
-/// that the shape samples uniformly.
+/// Area of an analytic shape in the world.
 fn world_area(shape: &Object, placement: &Placement) -> f64 {
     let shape = shape.fixed().shape();
-    let Some(transform) = &placement.transform else { return shape.area() };
-    if transform.is_rigid_or_uniform() {
-        return shape.area() * transform.area_scale(DVec3::Z);
+    match &placement.transform {
+        Some(transform) => carried_area(shape, transform),
+        None => shape.area(),
     }
-    let scales = (0..AREA_POINTS).filter_map(|i| {
-        let u = sobol_owen_2d(i, 0x5eed);
-        Some(transform.area_scale(shape.sample(None, u)?.surface.ng))
-    });
-    shape.area() * scales.sum::<f64>() / f64::from(AREA_POINTS)
 }
+
+/// Points that a shape is asked for before it is said to find none.
+const SAMPLES: u32 = 1024;
 
 /// Whether a shape finds points of its surface.
 fn can_be_sampled(shape: &Object) -> bool {
     let shape = shape.fixed().shape();
     let found = |i| shape.sample(None, sobol_owen_2d(i, 0x5eed));
-    (0..AREA_POINTS).any(|i| found(i).is_some())
+    (0..SAMPLES).any(|i| found(i).is_some())
 }
 
 /// A lamp whose surface no one can choose points of.

@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 
 use super::{Approach, Geometry, Mesh};
@@ -35,21 +34,9 @@ pub(in super::super) fn mesh_part(triangles: Arc<TriangleMesh>) -> Result<Arc<dy
 impl MeshPart {
     /// Where a ray enters the box, or a little before; `None` where it passes.
     fn enter(&self, ray: &Ray) -> Option<f64> {
-        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
-        for axis in 0..3 {
-            let (o, d) = (ray.o[axis], ray.d[axis]);
-            let (low, high) = (self.bounds.min[axis] - o, self.bounds.max[axis] - o);
-            if d == 0.0 {
-                if low > 0.0 || high < 0.0 {
-                    return None;
-                }
-                continue;
-            }
-            enter = enter.max((low / d).min(high / d));
-            leave = leave.min((low / d).max(high / d));
-        }
-        let room = 1.0 + gamma64(8);
-        (enter <= leave * room).then_some(enter / room)
+        let found = self.bounds.intersect_ray(ray.o, ray.d.recip(), f64::INFINITY);
+        // A difference and a product, by a rounded inverse.
+        found.map(|(near, _)| near / (1.0 + gamma64(4)))
     }
 }
 
@@ -77,14 +64,6 @@ impl Shape for MeshPart {
 
     fn area(&self) -> f64 {
         self.area
-    }
-
-    fn sample(&self, _: Option<DVec3>, _: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-
-    fn pdf(&self, _: Option<DVec3>, _: &Surface) -> f64 {
-        0.0
     }
 
     fn is_closed(&self) -> bool {

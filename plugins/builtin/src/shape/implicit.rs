@@ -74,19 +74,7 @@ pub(super) fn march<F: Field>(field: &F, bounds: &Bounds3, ray: &Ray) -> Option<
 
 /// Where a line is in a box, from its origin on; a little more than that.
 fn through(bounds: &Bounds3, o: DVec3, d: DVec3) -> Option<(f64, f64)> {
-    let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
-    for axis in 0..3 {
-        let (low, high) = (bounds.min[axis] - o[axis], bounds.max[axis] - o[axis]);
-        if d[axis] == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return None;
-            }
-            continue;
-        }
-        let (a, b) = (low / d[axis], high / d[axis]);
-        enter = enter.max(a.min(b));
-        leave = leave.min(a.max(b));
-    }
+    let (enter, leave) = bounds.intersect_ray(o, d.recip(), f64::INFINITY)?;
     let room = gamma64(8) * (enter + leave.abs());
     let (enter, leave) = ((enter - room).max(0.0), leave + room);
     (enter <= leave && leave.is_finite()).then_some((enter, leave))

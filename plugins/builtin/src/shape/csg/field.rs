@@ -38,6 +38,11 @@ impl<'s> Blend<'s> {
         }
     }
 
+    /// The distance, if both parts know theirs.
+    pub(super) fn distance(&self, p: DVec3) -> Option<f64> {
+        Some(self.of(distance_of(&self.a, p)?, distance_of(&self.b, p)?))
+    }
+
     /// Its derivatives by both.
     fn weights(&self, a: f64, b: f64) -> (f64, f64) {
         match self.op {
@@ -53,21 +58,26 @@ impl<'s> Blend<'s> {
 
 /// A part's own distance may be far less than the true one; its box says how far away it is at
 /// least, which bounds how far the blend can swell.
-fn distance_of((part, bounds): &(ShapeRef<'_>, Bounds3), p: DVec3) -> f64 {
-    part.distance(p).unwrap_or(f64::NAN).max(box_distance(bounds, p))
+fn distance_of((part, bounds): &(ShapeRef<'_>, Bounds3), p: DVec3) -> Option<f64> {
+    Some(part.distance(p)?.max(box_distance(bounds, p)))
+}
+
+/// The same of a part that has been checked to know it.
+fn known(part: &(ShapeRef<'_>, Bounds3), p: DVec3) -> f64 {
+    distance_of(part, p).expect("only parts that know their distance are blended")
 }
 
 impl Field for Blend<'_> {
     fn value(&self, p: DVec3) -> f64 {
-        self.of(distance_of(&self.a, p), distance_of(&self.b, p))
+        self.of(known(&self.a, p), known(&self.b, p))
     }
 
     /// Of each part by itself: differences do not see across the edge between them.
     fn gradient(&self, p: DVec3, step: f64) -> DVec3 {
-        let (of_a, of_b) = self.weights(distance_of(&self.a, p), distance_of(&self.b, p));
+        let (of_a, of_b) = self.weights(known(&self.a, p), known(&self.b, p));
         let part = |weight: f64, part| {
             if weight.abs() > 0.0 {
-                differences(|q| distance_of(part, q), p, step) * weight
+                differences(|q| known(part, q), p, step) * weight
             } else {
                 DVec3::ZERO
             }

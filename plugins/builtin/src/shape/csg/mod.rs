@@ -17,7 +17,7 @@ use luxel_sdk::kind::{Hit, Shape, ShapeRef, Surface};
 use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::implicit::{area_by_lines, box_distance, march, surface_of};
+use super::implicit::{area_by_lines, march, surface_of};
 use field::Blend;
 
 /// What is inside the whole, given what is inside its parts.
@@ -102,7 +102,10 @@ impl<'s> Pair<'s> {
                 "`a` and `b` are too far apart to have a part in common",
             ));
         }
-        Err(Fault::range("smooth", format!("{smooth} m: from 0 m on, and no end of the world")))
+        Err(Fault::range(
+            "smooth",
+            format!("{smooth} m: it must be 0 or more, and a length that the world has room for"),
+        ))
     }
 
     fn intersect(&self, ray: &Ray) -> Option<Hit> {
@@ -127,11 +130,7 @@ impl<'s> Pair<'s> {
     }
 
     fn distance(&self, p: DVec3) -> Option<f64> {
-        let [a, b] = [self.a, self.b].map(|part| {
-            part.distance(p).map(|distance| distance.max(box_distance(&part.bounds(), p)))
-        });
-        let (a, b) = (a?, b?);
-        Some(self.blend().of(a, b))
+        self.blend().distance(p)
     }
 }
 

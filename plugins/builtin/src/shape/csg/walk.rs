@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 use luxel_sdk::kind::{Hit, Shape, ShapeRef, Surface};
-use luxel_sdk::num::{Bounds3, Ray, gamma64, offset_origin};
+use luxel_sdk::num::{Ray, gamma64, offset_origin};
 
 use super::{Op, Pair};
 
@@ -73,7 +73,8 @@ fn crossing(part: &ShapeRef<'_>, ray: &Ray, start: f64) -> Option<Crossing> {
 fn coincide(a: &Crossing, b: &Crossing, ray: &Ray) -> bool {
     let err = |s: &Surface| s.ng.abs().dot(s.p_err);
     let cos = a.surface.ng.dot(ray.d).abs().max(b.surface.ng.dot(ray.d).abs());
-    // `t` rounds with the way and with the place.
+    // `t` rounds with the way and with the place: a difference, a product and a quotient for either
+    // crossing, and the sum that carries it to where the walk began.
     let rounds = gamma64(8) * (a.hit.t.abs() * ray.d.length() + ray.o.abs().max_element());
     let apart = (a.hit.t - b.hit.t).abs() * cos;
     apart <= err(&a.surface) + err(&b.surface) + rounds * cos / ray.d.length()
@@ -84,28 +85,10 @@ fn face_of(part: u32, face: u32) -> Option<u32> {
     face.checked_mul(2)?.checked_add(part)
 }
 
-/// Whether a line can meet a box: conservative.
-pub(super) fn meets(bounds: &Bounds3, ray: &Ray) -> bool {
-    let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
-    for axis in 0..3 {
-        let (o, d) = (ray.o[axis], ray.d[axis]);
-        let (low, high) = (bounds.min[axis] - o, bounds.max[axis] - o);
-        if d == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return false;
-            }
-            continue;
-        }
-        let (near, far) = if d > 0.0 { (low / d, high / d) } else { (high / d, low / d) };
-        enter = enter.max(near * (1.0 - gamma64(8).copysign(near)));
-        leave = leave.min(far * (1.0 + gamma64(8).copysign(far)));
-    }
-    enter <= leave
-}
-
 /// The nearest crossing of the whole.
 pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
-    if !(meets(&pair.bounds, ray) && ray.t_max > 0.0) {
+    if pair.bounds.intersect_ray(ray.o, ray.d.recip(), f64::INFINITY).is_none() || ray.t_max <= 0.0
+    {
         return None;
     }
     let mut a = Follower::new(pair.a, ray);
@@ -139,7 +122,7 @@ pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
         if pass_b {
             b.advance(ray);
         }
-        if a.t().min(b.t()) > 2.0 * ray.t_max {
+        if a.t().min(b.t()) > ray.t_max {
             return None;
         }
     }
@@ -165,6 +148,8 @@ pub(super) fn surface(pair: &Pair<'_>, ray: &Ray, hit: &Hit) -> Surface {
 fn clear_of(s: &Surface, other: &ShapeRef<'_>) -> DVec3 {
     let bounds = other.bounds();
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    // The other face may lie twice its error beside this one, which may be as wrong as this face on
+    // either side; and it is found to 64 roundings of where it is, which `Shape` promises.
     let room = 4.0 * s.ng.abs().dot(s.p_err) + gamma64(64) * reach;
     let across = Ray { t_max: 2.0 * room, ..Ray::new(s.p + s.ng * room, -s.ng) };
     let Some(hit) = other.intersect(&across) else { return s.p_err };

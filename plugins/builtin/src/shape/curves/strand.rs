@@ -325,7 +325,8 @@ impl Walk<'_> {
         far: f64,
         see: &mut dyn FnMut(u32, &Segment, f64) -> f64,
     ) -> f64 {
-        // All of it is within a ball of radius 2 about the line's origin.
+        // The strand's middle stands across from the line's origin, and its unit boxes reach √3 from
+        // there: within 2 along the line, and within 4 of where it sets out.
         let back = self.line.o - self.line.d * 4.0;
         let Some((enter, leave)) = self.strand.boxes[node].intersect_ray(back, self.recip, 8.0)
         else {
@@ -372,6 +373,7 @@ impl Line {
         // Once more: what the first shift rounded was relative to the distance.
         let rest = -near.dot(d);
         let o = near + d * rest;
+        // Beyond the corners of the unit boxes: √3.
         if !(o.length() <= 2.0) {
             return None;
         }

@@ -27,7 +27,7 @@ use crate::sniff;
 #[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub(crate) enum Shading {
-    /// As given: smooth with normals, flat without.
+    /// As given: smooth with normals, flat without; what is subdivided or displaced is smooth.
     Keep,
     /// Flat: given normals are dropped.
     Flat,

@@ -57,13 +57,15 @@ impl Net {
         drop(known);
         let place = |corner: &usize| self.places[self.triangles[corner / 3][corner % 3] as usize];
         let mesh = Axes::METRES.rebase(first.iter().map(place))?;
-        let uvs = if self.uvs.is_empty() { vec![] } else { all(&first, &self.uvs) };
-        let normals = if self.normals.is_empty() { vec![] } else { all(&first, &self.normals) };
-        let colors = if self.colors.is_empty() { vec![] } else { all(&first, &self.colors) };
-        Ok(TriangleMesh { indices, uvs, normals, colors, ..mesh })
+        let (uvs, normals) = (all(&first, &self.uvs), all(&first, &self.normals));
+        Ok(TriangleMesh { indices, uvs, normals, colors: all(&first, &self.colors), ..mesh })
     }
 }
 
+/// The values of these corners, if there are any.
 fn all<T: Copy>(corners: &[usize], values: &[T]) -> Vec<T> {
+    if values.is_empty() {
+        return vec![];
+    }
     corners.iter().map(|i| values[*i]).collect()
 }

@@ -68,7 +68,8 @@ impl Lists {
         match words.next() {
             Some("v") => {
                 let [x, y, z, r, g, b] = numbers::<6>(words, 3, f64::NAN)?;
-                let p = [x, y, z];
+                // A fourth number alone is no colour but what the point is divided by.
+                let p = if g.is_nan() && !r.is_nan() { [x / r, y / r, z / r] } else { [x, y, z] };
                 self.colors.push(color([r, g, b]));
                 self.faces.points.push(self.axes.point(DVec3::from_array(p)));
                 self.lines.push(self.n_lines);

@@ -65,11 +65,13 @@ impl Split {
         let mut out = Self { middles: HashMap::new(), places: vec![] };
         for edge in net.triangles.iter().flat_map(|t| edges(*t)) {
             let [a, b] = [edge.0, edge.1].map(|i| net.places[i as usize]);
-            // The same in both directions; NaN is not split.
-            if a.distance_squared(b) > most * most {
+            // The same in both directions. NaN is not split, nor an edge between whose ends no number
+            // lies.
+            let middle = (a + b) * 0.5;
+            if a.distance_squared(b) > most * most && middle != a && middle != b {
                 let next = net.places.len() + out.places.len();
                 out.middles.entry(edge).or_insert_with(|| {
-                    out.places.push((a + b) * 0.5);
+                    out.places.push(middle);
                     u32::try_from(next).expect("three places for each triangle")
                 });
             }

@@ -85,8 +85,25 @@ fn settle(scheme: Scheme, ring: &mut Ring, sharp: usize) -> DVec3 {
     moved
 }
 
-/// Levels after which nothing changes: surroundings shrink to two thirds or less each time.
+/// Levels after which a point no longer moves: what lies around it shrinks to two thirds or less each
+/// time.
 const SETTLED: usize = 80;
+
+/// The normal at a point in which a sharp edge ends. Along that edge is where its other end comes from in
+/// the end; across it a smooth point's sine weights serve, for they vanish on the edge, whose rule alone
+/// is another.
+fn dart_normal(scheme: Scheme, ring: &mut Ring, sharp: usize) -> DVec3 {
+    ring.far.rotate_left(sharp);
+    if !ring.across.is_empty() {
+        ring.across.rotate_left(sharp);
+    }
+    let mean = ring.mean_normal();
+    let Some([_, across]) = masks::smooth(scheme, ring) else { return mean };
+    settle(scheme, ring, 0);
+    let along = ring.far[0].try_normalize().unwrap_or_default();
+    let normal = along.cross(across.sum).try_normalize().unwrap_or(mean);
+    if normal.dot(mean) < 0.0 { -normal } else { normal }
+}
 
 /// The limit's normal for each corner: one for all corners of a point between its creases.
 pub(super) fn normals(level: &Level, scheme: Scheme) -> Vec<Vec3> {
@@ -101,13 +118,12 @@ pub(super) fn normals(level: &Level, scheme: Scheme) -> Vec<Vec3> {
         let rules = found.map(|found| (found.now, found.later, found.weight));
         let (now, later, weight) = rules.unwrap_or((Rule::Smooth, Rule::Smooth, 1.0));
         let mut by = |rule: Rule, least: f32, fan: &mut Vec<u32>| {
-            let stops =
-                |edge: u32| !matches!(rule, Rule::Smooth) && level.sharp[edge as usize] >= least;
+            let whole = matches!(rule, Rule::Smooth | Rule::Dart);
+            let stops = |edge: u32| !whole && level.sharp[edge as usize] >= least;
             ring.closed = level.walk(corner, stops, fan);
             fill(level, scheme, fan, &mut ring);
             if ring.closed && matches!(rule, Rule::Dart) {
-                settle(scheme, &mut ring, sharp_edge(level, fan));
-                return ring.mean_normal();
+                return dart_normal(scheme, &mut ring, sharp_edge(level, fan));
             }
             normal(scheme, rule, &ring)
         };

@@ -17,7 +17,7 @@ mod masks;
 use luxel_sdk::Choice;
 use luxel_sdk::params::{BuildContext, Fault};
 
-use self::topology::Level;
+use self::topology::{Level, Sides};
 use super::net::{MOST_TRIANGLES, Net};
 use super::polygons::Polygons;
 
@@ -61,7 +61,8 @@ pub(super) fn subdivide(
         colors = refine::values(&level, settings.scheme, &colors);
         level = refine::refine(&level, settings.scheme);
     }
-    if level.triangles().is_none() {
+    // Cancelled before the first level.
+    if matches!(level.sides, Sides::Each { .. }) {
         return Ok(Net::default());
     }
     let normals = limit::normals(&level, settings.scheme);
@@ -77,8 +78,10 @@ fn check(faces: &Polygons, settings: Settings<'_>) -> Result<(), Fault> {
         && let Some(i) = faces.starts.windows(2).position(|face| face[1] - face[0] != 3)
     {
         let n = faces.starts[i + 1] - faces.starts[i];
-        let message =
-            format!("face {i} has {n} corners: `loop` takes triangles, `catmull_clark` all");
+        let message = format!(
+            "a face has {n} corners, the first of them {}: `loop` takes triangles, `catmull_clark` all",
+            faces.points[faces.corners[faces.starts[i] as usize] as usize]
+        );
         return Err(Fault::mesh("scheme", message));
     }
     // Each corner becomes a quad, each triangle four; then every face becomes four.

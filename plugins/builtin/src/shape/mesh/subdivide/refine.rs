@@ -124,10 +124,7 @@ fn triangles(level: &Level, out: &mut Level) {
 
 /// Finds which sides make each edge: those of an edge at which no faces join stay apart.
 fn join(level: &Level, out: &mut Level) {
-    let apart = |edge: usize| {
-        let before = level.joins.get(edge / 2);
-        edge < 2 * level.joins.len() && before.is_some_and(|join| join[0] == NONE)
-    };
+    let apart = |edge: usize| level.joins.get(edge / 2).is_some_and(|join| join[0] == NONE);
     out.joins = vec![[NONE; 2]; out.ends.len()];
     for (side, edge) in (0..).zip(out.edges.iter().map(|edge| *edge as usize)) {
         if !apart(edge) {

@@ -284,6 +284,44 @@ fn limit_normals_are_those_of_far_subdivision() {
     }
 }
 
+/// The normals of a point, as the limit of a net has them.
+fn normals_at(net: &Net, place: DVec3) -> Vec<DVec3> {
+    let corners = net.triangles.iter().flatten().zip(&net.normals);
+    let here = corners.filter(|(i, _)| net.places[**i as usize].distance(place) < 1e-9);
+    here.map(|(_, normal)| normal.as_dvec3()).collect()
+}
+
+#[test]
+fn the_end_of_a_sharp_edge_has_one_normal_whatever_the_level() {
+    let tetrahedron = || {
+        polygons(
+            &[[1., 1., 1.5], [1., -1., -1.], [-1.2, 1., -1.], [-1., -1., 1.]],
+            &[&[0, 1, 2], &[0, 3, 1], &[0, 2, 3], &[1, 3, 2]],
+        )
+    };
+    for (scheme, faces) in [
+        (Scheme::Loop, tetrahedron()),
+        (Scheme::Loop, octahedron()),
+        (Scheme::CatmullClark, cube()),
+        (Scheme::CatmullClark, tetrahedron()),
+    ] {
+        let end = *faces.corners.first().expect("it has corners");
+        let other = faces.corners[1];
+        let creases = [f64::from(end), f64::from(other), 10.0];
+        let near = run(&faces, scheme, 1, &creases);
+        let far = run(&faces, scheme, 5, &creases);
+        // The first point of the cage stays the first.
+        let place = near.places[end as usize];
+        assert!(place.distance(far.places[end as usize]) < 1e-9, "{scheme:?}");
+        let (near, far) = (normals_at(&near, place), normals_at(&far, place));
+        assert!(near.len() > 2 && far.len() > 2);
+        for normal in near.iter().chain(&far) {
+            // Rounded to single precision, twice.
+            assert!(normal.distance(near[0]) < 1e-5, "{scheme:?}: {normal} {}", near[0]);
+        }
+    }
+}
+
 #[test]
 fn seams_of_coordinates_do_not_tear() {
     let mut faces = cube();
@@ -318,7 +356,7 @@ fn what_cannot_be_subdivided_is_refused() {
         (faults[0].field, faults[0].message.clone())
     };
     let (field, message) = refuse(cube(), settings(1, Scheme::Loop));
-    assert_eq!((field, &message[..20]), ("scheme", "face 0 has 4 corners"));
+    assert_eq!((field, &message[..20]), ("scheme", "a face has 4 corners"));
     let corner: &[u32] = &[0, 1, 2];
     let many = polygons(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[corner; 1000]);
     let (field, message) = refuse(many, settings(8, Scheme::CatmullClark));

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::{Arrival, Light, LightQuery, Output, ShapeSample, Surface};
-use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
+use luxel_sdk::num::{Ray, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
-use super::{Geometry, Placement, Stage};
+use super::{Geometry, Moment, Place, Placement};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 
@@ -35,7 +35,7 @@ pub enum LightSource {
         /// The light's object.
         object: Arc<Object>,
         /// From its frame to the world.
-        transform: Option<Box<Transform>>,
+        place: Place,
     },
 }
 
@@ -154,12 +154,12 @@ fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palett
     value
 }
 
-impl Stage {
+impl Moment<'_> {
     /// Chooses a light and light from it, as `from` sees it: its place, normals and `wo` count. `u`
     /// uniform in [0, 1).
     #[inline(always)]
     pub fn sample_light(
-        &self,
+        self,
         from: &Arrival,
         palette: &Palette,
         u: [f32; 3],
@@ -174,24 +174,26 @@ impl Stage {
                 let light = SurfaceLight { object, placement: *placement, area: *area, triangle };
                 self.sample_surface(&light, from, palette, u, scratch)
             }
-            LightSource::Free { object, transform } => {
+            LightSource::Free { object, place } => {
                 let at = Site { p: from.p + from.lift, uv: Vec2::ZERO, palette, color: None };
                 let light = object.resolve(&at, scratch).light();
-                self.sample_free(light, transform.as_deref(), from, palette, u)
+                self.sample_free(light, place, from, palette, u)
             }
         }?;
         Some(found.with_chance(chosen.chance))
     }
 
     fn sample_free(
-        &self,
+        self,
         light: &dyn Light,
-        transform: Option<&Transform>,
+        place: &Place,
         from: &Arrival,
         palette: &Palette,
         u: [f32; 2],
     ) -> Option<FoundLight> {
         let p = from.p + from.lift;
+        let mut room = None;
+        let transform = place.at(self.time, &mut room);
         let p = transform.map_or(p, |transform| transform.inverse_point(p));
         let found = light.sample(&LightQuery { p, u })?;
         let mut le = emitted(light, found.le, self.mode, palette);
@@ -217,7 +219,7 @@ impl Stage {
 
     #[inline(always)]
     fn sample_surface(
-        &self,
+        self,
         light: &SurfaceLight<'_>,
         from: &Arrival,
         palette: &Palette,
@@ -226,24 +228,28 @@ impl Stage {
     ) -> Option<FoundLight> {
         let placement = &self.placements[light.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
+        let mut room = None;
+        let transform = placement.place.at(self.time, &mut room);
         let mut sample = match (&**geometry, light.triangle) {
             (Geometry::Mesh(mesh), Some(triangle)) => {
                 let at = luxel_sdk::sampling::uniform_triangle(u);
                 let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                let surface = mesh.surface(triangle, at, self.film.precision);
-                // The world's density in the mesh's own frame.
-                let pdf = placement.area_scale(surface.ng) / light.area;
+                let surface = mesh.surface(triangle, at, self.film.precision, self.time);
+                // The world's density in the mesh's own frame, when it was chosen by its area.
+                let growth = mesh.growth(triangle, self.time);
+                let pdf = placement.area_scale(surface.ng) / (light.area * growth);
                 Some(ShapeSample { surface, pdf })
             }
             (Geometry::Analytic(shape), _) => {
-                let local = placement.point_to_local(from.p + from.lift);
+                let p = from.p + from.lift;
+                let local = transform.map_or(p, |transform| transform.inverse_point(p));
                 shape.object().fixed().shape().sample(Some(local), u)
             }
             (Geometry::Mesh(_), None) => None,
         };
         // By reference: a surface is large to copy.
         let sample = sample.as_mut()?;
-        if let Some(transform) = &placement.transform {
+        if let Some(transform) = transform {
             sample.pdf /= transform.area_scale(sample.surface.ng);
             sample.surface = sample.surface.carried(transform);
         }
@@ -268,11 +274,11 @@ impl Stage {
         })
     }
 
-    /// Radiance of a shining surface towards the point `from`, and the density with which
+    /// Radiance of a face of a shining surface towards the point `from`, and the density with which
     /// `sample_light` would have found it from there; `wo` is the unit direction of the ray that came.
     pub fn surface_emission(
-        &self,
-        placement: &Placement,
+        self,
+        (placement, face): (&Placement, u32),
         surface: &Surface,
         (from, wo): (DVec3, DVec3),
         palette: &Palette,
@@ -290,38 +296,48 @@ impl Stage {
         if le.is_black() {
             return (le, 0.0);
         }
-        let pdf_area = self.surface_pdf(placement, *area, surface, from);
+        let pdf_area = self.surface_pdf((placement, face), *area, surface, from);
         let pdf = pdf_area * surface.p.distance_squared(from) / cos_o.abs();
         (le, narrow(pdf * self.lights.chance(light)))
     }
 
     /// Area density, in the world, with which a point of a shining surface is sampled.
-    fn surface_pdf(&self, place: &Placement, area: f64, surface: &Surface, from: DVec3) -> f64 {
-        match &*self.geometries[place.geometry as usize] {
-            Geometry::Mesh(_) => 1.0 / area,
-            Geometry::Analytic(shape) => {
-                let mut local = *surface;
-                if let Some(transform) = &place.transform {
-                    local.p = transform.inverse_point(surface.p);
-                    local.ng = transform.inverse_normal(surface.ng).normalize();
-                }
-                let pdf =
-                    shape.object().fixed().shape().pdf(Some(place.point_to_local(from)), &local);
-                pdf / place.area_scale(local.ng)
+    fn surface_pdf(
+        self,
+        (placement, face): (&Placement, u32),
+        area: f64,
+        surface: &Surface,
+        from: DVec3,
+    ) -> f64 {
+        let place = &placement.place;
+        let mut room = None;
+        let transform = place.at(self.time, &mut room);
+        let shape = match &*self.geometries[placement.geometry as usize] {
+            Geometry::Analytic(shape) => shape.object().fixed().shape(),
+            Geometry::Mesh(mesh) => {
+                let area = area * mesh.growth(face, self.time);
+                let Some(now) = transform.filter(|_| place.is_moving()) else { return 1.0 / area };
+                let ng = now.inverse_normal(surface.ng).normalize();
+                return placement.area_scale(ng) / (area * now.area_scale(ng));
             }
-        }
+        };
+        let Some(transform) = transform else { return shape.pdf(Some(from), surface) };
+        let mut local = *surface;
+        local.p = transform.inverse_point(surface.p);
+        local.ng = transform.inverse_normal(surface.ng).normalize();
+        let pdf = shape.pdf(Some(transform.inverse_point(from)), &local);
+        pdf / transform.area_scale(local.ng)
     }
 
     /// What a ray that leaves the scene along `d` finds, and the density with which `sample_light`
     /// would have found it.
-    pub fn escaped(&self, d: DVec3, palette: &Palette, scratch: &Scratch) -> (Spectrum, f32) {
+    pub fn escaped(self, d: DVec3, palette: &Palette, scratch: &Scratch) -> (Spectrum, f32) {
         let (mut le, mut pdf) = (Spectrum::ZERO, 0.0);
         for &light in &self.lights.infinite {
-            let LightSource::Free { object, transform } = &self.lights.sources[light as usize]
-            else {
+            let LightSource::Free { object, place } = &self.lights.sources[light as usize] else {
                 continue;
             };
-            let local = match transform {
+            let local = match place.at(self.time, &mut None) {
                 Some(transform) => transform.inverse_vector(d).normalize(),
                 None => d,
             };

@@ -13,15 +13,15 @@ use crate::scene::{NodeId, Scene};
 pub(super) fn measured(geometry: &Geometry, placement: &Placement) -> (f64, Option<Alias>) {
     let mesh = match geometry {
         Geometry::Analytic(shape) => return (world_area(shape.object(), placement), None),
-        Geometry::Mesh(mesh) => mesh.triangles(),
+        Geometry::Mesh(mesh) => mesh,
     };
     let area = |i: u32| {
-        let [a, b, c] = mesh.corners(i);
+        let [a, b, c] = mesh.opening_corners(i);
         let normal = (b - a).cross(c - a);
         let area = normal.length() / 2.0;
         if area > 0.0 { area * placement.area_scale(normal / (2.0 * area)) } else { 0.0 }
     };
-    let areas: Vec<f64> = (0..index(mesh.indices.len())).map(area).collect();
+    let areas: Vec<f64> = (0..index(mesh.triangles().indices.len())).map(area).collect();
     (areas.iter().sum(), Alias::new(&areas).ok())
 }
 
@@ -42,7 +42,7 @@ pub(super) fn doubts(
 /// Area of an analytic shape in the world.
 fn world_area(shape: &Object, placement: &Placement) -> f64 {
     let shape = shape.fixed().shape();
-    match &placement.transform {
+    match placement.place.first() {
         Some(transform) => carried_area(shape, transform),
         None => shape.area(),
     }

@@ -10,7 +10,7 @@ use luxel_sdk::sampling::hash_combine;
 
 use super::Stop;
 use super::arrival::sight;
-use super::tile::{Jobs, Worker};
+use super::tile::{Jobs, Worker, moment};
 use crate::cast::index;
 use crate::object::ColorMode;
 use crate::stage::{EmissionNumbers, Emitted, Emitters};
@@ -63,8 +63,7 @@ impl Worker<'_> {
         if stage.mode == ColorMode::Spectral {
             self.paths[lane].palette = Palette::new(Wavelengths::sample(u));
         }
-        let u = samples.next_1d_if(stage.features.motion);
-        let moment = stage.at(stage.time_of(u));
+        let moment = moment(stage, &mut samples);
         self.paths[lane].time = moment.time;
         let palette = &self.paths[lane].palette;
         let found = moment.emit(bundle.emitters, palette, &numbers, &mut self.scratch)?;

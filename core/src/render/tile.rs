@@ -19,7 +19,7 @@ use crate::accel::{Processor, Work};
 use crate::cast;
 use crate::film::{Rect, Tile};
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Leaving, Rooms, SceneHit, Stage};
+use crate::stage::{Leaving, Moment, Rooms, SceneHit, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
 const LANES: usize = 128;
@@ -168,10 +168,9 @@ impl<'s> Worker<'s> {
         let [in_pixel, lens] = samples.next_2d_pair();
         let [dx, dy] = self.stage.filter.fixed().filter().sample(in_pixel);
         let u = samples.next_1d_if(self.stage.mode == ColorMode::Spectral);
-        let when = samples.next_1d_if(self.stage.features.motion);
+        let stage = moment(self.stage, &mut samples);
         let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
         let p = pixel.as_dvec2() + 0.5 + offset;
-        let stage = self.stage.at(self.stage.time_of(when));
         let found = stage.camera_ray(p, lens)?;
         self.paths[lane].start(cast::index(job), &found, u, stage);
         (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
@@ -393,6 +392,12 @@ impl Work for Fly<'_, '_> {
     fn run(self, _: Processor) {
         self.0.fly();
     }
+}
+
+/// The moment that a path sees. Where nothing moves no number is taken, and pictures stay as they are.
+pub(super) fn moment<'s>(stage: &'s Stage, samples: &mut Samples<'_>) -> Moment<'s> {
+    let u = if stage.features.motion { samples.next_1d() } else { 0.0 };
+    stage.at(stage.time_of(u))
 }
 
 /// What a worker is to do.

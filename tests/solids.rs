@@ -45,7 +45,9 @@ fn wrong(objects: &str) -> (&'static str, String) {
 /// Where a ray crosses the scene, with the cosine of each crossing.
 fn crossings(stage: &Stage, o: DVec3, d: DVec3) -> Vec<(DVec3, f64)> {
     let (mut from, mut found) = (o, vec![]);
-    while let Some(hit) = stage.opening().intersect(Processor::ANY, &Ray::new(from, d), None, &mut 0) {
+    while let Some(hit) =
+        stage.opening().intersect(Processor::ANY, &Ray::new(from, d), None, &mut 0)
+    {
         let s = stage.opening().surface(&Ray::new(from, d), &hit);
         from = offset_origin(s.p, s.p_err, s.ng, d);
         found.push((s.p, s.ng.dot(d)));

@@ -154,9 +154,8 @@ fn lamps_and_things_that_move_past_a_camera_that_does() {
         look = look_at(from = (0, 2, 4) m, to = (0, 0.7, 0) m, up = (0, 1, 0)), fov = 40 deg
         transform = motion([(0 s, move((-0.2, 0, 0) m)), (1 s, move((0.2, 0, 0.1) m))])
     }";
-    let scene = |integrator: &str| {
-        stage_seen(carried, integrator, &format!("{camera}\n{ROOM}\n{moving}"))
-    };
+    let scene =
+        |integrator: &str| stage_seen(carried, integrator, &format!("{camera}\n{ROOM}\n{moving}"));
     compare(&scene("light_tracer {}"), &scene("path {}"), [16, 8], ANY);
 }
 

@@ -95,9 +95,8 @@ impl MeshBvh {
             root.is_none_or(|root| is_enough_for(root.depth)),
             "builders bound the depth"
         );
-        let shift = |block: &Block| {
-            moves.map(|moves| block.shift(|id| triangles.last_corners(&moves, id)))
-        };
+        let shift =
+            |block: &Block| moves.map(|moves| block.shift(|id| triangles.last_corners(&moves, id)));
         let shifts = blocks.iter().filter_map(shift).collect();
         Self {
             nodes,

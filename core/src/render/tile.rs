@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::{DVec3, UVec2};
 use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
-    Arrival, Erased, Host, Integrator, Job, Lane, Onward, Output, Requests, Round,
-    SampleAt, Sampler, Samples, Shadow, Wants,
+    Arrival, Erased, Host, Integrator, Job, Lane, Onward, Output, Requests, Round, SampleAt,
+    Sampler, Samples, Shadow, Wants,
 };
 use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::hash_combine;
@@ -206,8 +206,7 @@ impl<'s> Worker<'s> {
             let mut samples = Samples::new(self.sampler, lane.numbers);
             let scratch = &mut self.scratch;
             let stage = self.stage.at(path.time);
-            let left =
-                shadow::passes(processor, stage, &request.ray, path, &mut samples, scratch);
+            let left = shadow::passes(processor, stage, &request.ray, path, &mut samples, scratch);
             lane.numbers = samples.at();
             if request.pixel == Shadow::OWN {
                 lane.l += request.l * left;

@@ -95,9 +95,9 @@ fn hash_pose(hasher: &mut blake3::Hasher, pose: &Pose) {
         match step {
             Step::Fixed(transform) => numbers(hasher, &transform.to_cols_array()),
             Step::Keys(keys) => {
-                let flat = keys.iter().flat_map(|key| {
-                    [key.time].into_iter().chain(key.transform.to_cols_array())
-                });
+                let flat = keys
+                    .iter()
+                    .flat_map(|key| [key.time].into_iter().chain(key.transform.to_cols_array()));
                 numbers(hasher, &flat.collect::<Vec<_>>());
             }
             Step::Spin { axis, rate } => numbers(hasher, &[axis.x, axis.y, axis.z, rate]),

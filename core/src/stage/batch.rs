@@ -141,11 +141,7 @@ impl<'s> Flight<'s> {
 
     /// Goes on until it has to wait for memory; true when it is over.
     #[inline(always)]
-    fn step<const ANY: bool>(
-        &mut self,
-        processor: Processor,
-        (top, mesh): Stacks<'_, '_>,
-    ) -> bool {
+    fn step<const ANY: bool>(&mut self, processor: Processor, (top, mesh): Stacks<'_, '_>) -> bool {
         if let Some((_, walk)) = &mut self.within {
             if !walk.step::<ANY>(processor, mesh) {
                 walk.prefetch();
@@ -167,12 +163,7 @@ impl<'s> Flight<'s> {
 
     /// Enters a placement; true if it is done with at once and was hit.
     #[inline(always)]
-    fn enter<const ANY: bool>(
-        &mut self,
-        processor: Processor,
-        index: u32,
-        t_enter: f64,
-    ) -> bool {
+    fn enter<const ANY: bool>(&mut self, processor: Processor, index: u32, t_enter: f64) -> bool {
         self.steps += 1;
         let Moment { stage, time } = self.moment;
         let placement = &stage.placements[index as usize];

@@ -341,9 +341,8 @@ impl Maker<'_> {
             self.builder.diagnostics.push(error);
         }
         let camera = scene.camera.and_then(|id| self.builder.build(id));
-        let camera_place = scene.camera.and_then(|id| {
-            self.stand(&scene.camera_pose, scene.node(id).span)
-        });
+        let camera_place =
+            scene.camera.and_then(|id| self.stand(&scene.camera_pose, scene.node(id).span));
         let outside = scene.medium.and_then(|id| self.medium(id));
         let mut pick = |id: Option<NodeId>, kind, name| match id {
             Some(id) => self.builder.build(id),

@@ -92,7 +92,6 @@ impl Eye {
         }
         Some((u32::try_from(chosen?).ok()?, sum))
     }
-
 }
 
 /// Pixels per solid angle around a place of the picture, times what its rays count for.

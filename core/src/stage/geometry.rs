@@ -7,14 +7,12 @@ mod tests;
 use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3, Vec3};
-use luxel_sdk::kind::{Hit, Later, Surface, TriangleMesh};
+use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
 use super::analytic::Analytic;
 use super::closed::is_closed;
-use crate::accel::{
-    Begun, BuildError, Direction, MeshBvh, MeshHit, Precision, Processor, Query,
-};
+use crate::accel::{Begun, BuildError, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
 
 pub(super) use part::mesh_part;
 
@@ -103,6 +101,13 @@ impl Mesh {
         open < close
     }
 
+    /// The corner points of a triangle.
+    #[inline(always)]
+    fn indices(&self, triangle: u32) -> [usize; 3] {
+        let [a, b, c] = self.triangles.indices[triangle as usize];
+        [a as usize, b as usize, c as usize]
+    }
+
     /// The triangles.
     pub fn triangles(&self) -> &TriangleMesh {
         &self.triangles
@@ -124,26 +129,24 @@ impl Mesh {
         self.triangles.later.as_ref().map_or(0.0, |later| later.share(time))
     }
 
-    /// A point when a share of the way is done, about the centre: as the tree has it, to the bit.
+    /// The corners of a triangle at a time, about the centre: as the tree has them, to the bit.
     #[inline(always)]
-    fn point(&self, i: usize, share: f32) -> DVec3 {
-        let p = self.triangles.points[i];
-        let moved = |later: &Later| p + (later.points[i] - p) * share;
-        self.triangles.later.as_ref().map_or(p, moved).as_dvec3()
+    fn corners(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
+        let points = &self.triangles.points;
+        match &self.triangles.later {
+            None => [points[a].as_dvec3(), points[b].as_dvec3(), points[c].as_dvec3()],
+            Some(later) => between(points, &later.points, [a, b, c], later.share(time)),
+        }
     }
 
-    /// A normal when a share of the way is done, not unit.
+    /// The normals at its corners at a time, unit where the mesh stands.
     #[inline(always)]
-    fn normal(&self, i: usize, share: f32) -> DVec3 {
-        let n = self.triangles.normals[i];
-        let moved = |later: &Later| n + (later.normals[i] - n) * share;
-        self.triangles.later.as_ref().map_or(n, moved).as_dvec3()
-    }
-
-    /// A corner's normal when a share of the way is done, unit.
-    fn unit_normal(&self, i: usize, share: f32) -> DVec3 {
-        let n = self.normal(i, share);
-        if self.triangles.later.is_some() { n.normalize_or_zero() } else { n }
+    fn normals(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
+        let normals = &self.triangles.normals;
+        match &self.triangles.later {
+            None => [normals[a].as_dvec3(), normals[b].as_dvec3(), normals[c].as_dvec3()],
+            Some(later) => between(normals, &later.normals, [a, b, c], later.share(time)),
+        }
     }
 
     /// Where a ray that enters the box at `t_enter` is taken up: a diagonal before, so that little is
@@ -168,7 +171,8 @@ impl Mesh {
         // What is rounded stays beyond the end: `land` looks again.
         let t_max = (ray.t_max - taken.start) * direction.scale();
         let t_max = t_max * (1.0 + f64::from(f32::EPSILON));
-        let (skip, precision, share) = (approach.from, approach.precision, self.share(approach.time));
+        let (skip, precision, share) =
+            (approach.from, approach.precision, self.share(approach.time));
         Query { o, direction, t_max, skip, precision, share }
     }
 
@@ -208,7 +212,10 @@ impl Mesh {
             return Landed::Nowhere;
         };
         let t = taken.start + hit.t * direction.per_scale();
-        if approach.from.is_some() && taken.left > 0 && self.is_behind(hit.triangle, ray, approach.time) {
+        if approach.from.is_some()
+            && taken.left > 0
+            && self.is_behind(hit.triangle, ray, approach.time)
+        {
             return Landed::Behind(Taken { start: t, left: taken.left - 1 });
         }
         let at = DVec2::new(hit.b1, hit.b2);
@@ -240,9 +247,7 @@ impl Mesh {
     /// few rays, so it stays out of the copies for each processor.
     #[inline(never)]
     fn is_behind(&self, triangle: u32, ray: &Ray, time: f64) -> bool {
-        let share = self.share(time);
-        let corners = self.triangles.indices[triangle as usize];
-        let [a, b, c] = corners.map(|i| self.point(i as usize, share));
+        let [a, b, c] = self.corners(self.indices(triangle), time);
         let normal = (b - a).cross(c - a);
         normal.dot(a + self.centre - ray.o) * normal.dot(ray.d) <= 0.0
     }
@@ -251,9 +256,8 @@ impl Mesh {
     /// seconds.
     #[inline(always)]
     pub fn surface(&self, triangle: u32, at: DVec2, precision: Precision, time: f64) -> Surface {
-        let (mesh, share) = (self.triangles(), self.share(time));
-        let corners = mesh.indices[triangle as usize].map(|i| i as usize);
-        let [a, b, c] = corners.map(|i| self.point(i, share));
+        let (mesh, corners) = (self.triangles(), self.indices(triangle));
+        let [a, b, c] = self.corners(corners, time);
         let weights = [1.0 - at.x - at.y, at.x, at.y];
         let about = a * weights[0] + b * weights[1] + c * weights[2];
         // The next ray's origin is rounded to single precision about the centre: γ(7) covers the
@@ -274,7 +278,7 @@ impl Mesh {
         };
         let (ng, _) = unit_and_length((b - a).cross(c - a));
         let ng = if ng.is_nan() { DVec3::Z } else { ng };
-        let ns = self.shading_normal(corners, weights, ng, share);
+        let ns = self.shading_normal(corners, weights, ng, time);
         let (uv, dp_du, dp_dv) = parametrisation(mesh, corners, [a, b, c], weights);
         Surface { p, p_err, ng, ns, uv, dp_du, dp_dv }
     }
@@ -288,18 +292,19 @@ impl Mesh {
     /// # Source
     /// Hanika 2021, Hacking the Shadow Terminator (Ray Tracing Gems II, ch. 4).
     pub fn lift(&self, triangle: u32, at: DVec2, outside: bool, time: f64) -> DVec3 {
-        let (mesh, share) = (self.triangles(), self.share(time));
-        if mesh.normals.is_empty() {
+        if self.triangles.normals.is_empty() {
             return DVec3::ZERO;
         }
-        let corners = mesh.indices[triangle as usize].map(|i| i as usize);
-        let [a, b, c] = corners.map(|i| self.point(i, share));
+        let corners = self.indices(triangle);
+        let [a, b, c] = self.corners(corners, time);
+        let normals = self
+            .normals(corners, time)
+            .map(|n| if self.triangles.later.is_some() { n.normalize_or_zero() } else { n });
         let weights = [1.0 - at.x - at.y, at.x, at.y];
         let p = a * weights[0] + b * weights[1] + c * weights[2];
         let ng = (b - a).cross(c - a);
         let mut lift = DVec3::ZERO;
-        for ((corner, i), weight) in [a, b, c].into_iter().zip(corners).zip(weights) {
-            let n = self.unit_normal(i, share);
+        for ((corner, n), weight) in [a, b, c].into_iter().zip(normals).zip(weights) {
             let n = if (n.dot(ng) > 0.0) == outside { n } else { -n };
             lift -= n * (weight * (p - corner).dot(n).min(0.0));
         }
@@ -307,19 +312,18 @@ impl Mesh {
     }
 
     #[inline(always)]
-    fn shading_normal(&self, corners: [usize; 3], w: [f64; 3], ng: DVec3, share: f32) -> DVec3 {
+    fn shading_normal(&self, corners: [usize; 3], w: [f64; 3], ng: DVec3, time: f64) -> DVec3 {
         if self.triangles.normals.is_empty() {
             return ng;
         }
-        let [a, b, c] = corners.map(|i| self.normal(i, share));
+        let [a, b, c] = self.normals(corners, time);
         let ns = (a * w[0] + b * w[1] + c * w[2]).normalize_or(ng);
         if ns.dot(ng) < 0.0 { -ns } else { ns }
     }
 
     /// The corners of a triangle in the frame of the shape, when the shutter opens.
     pub fn opening_corners(&self, triangle: u32) -> [DVec3; 3] {
-        let share = self.share(self.during[0]);
-        self.triangles.indices[triangle as usize].map(|i| self.centre + self.point(i as usize, share))
+        self.corners(self.indices(triangle), self.during[0]).map(|p| self.centre + p)
     }
 
     /// How many times as large a triangle is as when the shutter opened.
@@ -327,10 +331,8 @@ impl Mesh {
         if self.triangles.later.is_none() {
             return 1.0;
         }
-        let corners = self.triangles.indices[triangle as usize].map(|i| i as usize);
         let area = |time| {
-            let share = self.share(time);
-            let [a, b, c] = corners.map(|i| self.point(i, share));
+            let [a, b, c] = self.corners(self.indices(triangle), time);
             (b - a).cross(c - a).length()
         };
         area(time) / area(self.during[0])
@@ -346,6 +348,12 @@ impl Mesh {
         let at = at.as_vec2();
         Some(a * (1.0 - at.x - at.y) + b * at.x + c * at.y)
     }
+}
+
+/// Three of `first` on their way to `last`. Apart: it would take registers from meshes that stand.
+#[inline(never)]
+fn between(first: &[Vec3], last: &[Vec3], corners: [usize; 3], share: f32) -> [DVec3; 3] {
+    corners.map(|i| (first[i] + (last[i] - first[i]) * share).as_dvec3())
 }
 
 /// Surface coordinates and the derivatives of the point by them (PBR4 §6.5.3).

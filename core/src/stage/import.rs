@@ -13,7 +13,8 @@ use crate::object::{Builder, ColorMode, Embedded, Objects, Reader};
 use crate::registry::Registry;
 use crate::registry::dynamic::FAILED;
 use crate::scene::{
-    Argument, Color, Given, Group, GroupId, Node, NodeId, Placed, Pose, Scene, Target, Value, conform,
+    Argument, Color, Given, Group, GroupId, Node, NodeId, Placed, Pose, Scene, Target, Value,
+    conform,
 };
 
 /// The scene with every asset replaced by a group, and what was found wrong.
@@ -153,11 +154,7 @@ impl Import<'_> {
 
     /// The first camera among things in their places, in the frame that these stand in; kept for
     /// the group. Groups are asked for before those that hold them.
-    fn first_camera(
-        &mut self,
-        group: Option<GroupId>,
-        items: &[Placed],
-    ) -> Option<(NodeId, Pose)> {
+    fn first_camera(&mut self, group: Option<GroupId>, items: &[Placed]) -> Option<(NodeId, Pose)> {
         let found = items.iter().find_map(|item| {
             let Target::Group(inner) = item.target else { return None };
             let (id, pose) = self.cameras.get(&inner)?;

@@ -178,8 +178,10 @@ mod tests {
     use super::*;
 
     fn keys(keys: &[(f64, DAffine3)]) -> Motion {
-        let keys: Arc<[Key]> =
-            keys.iter().map(|(time, transform)| Key { time: *time, transform: *transform }).collect();
+        let keys: Arc<[Key]> = keys
+            .iter()
+            .map(|(time, transform)| Key { time: *time, transform: *transform })
+            .collect();
         Motion::new(&[Step::Keys(keys)]).unwrap()
     }
 

@@ -227,13 +227,7 @@ impl Evaluator<'_> {
     }
 
     /// A shape that shines stands where its light does: the shape's transform becomes the light's.
-    fn lifted(
-        &mut self,
-        class: &Class,
-        inner: &ObjectValue,
-        span: Span,
-        pose: Pose,
-    ) -> Pose {
+    fn lifted(&mut self, class: &Class, inner: &ObjectValue, span: Span, pose: Pose) -> Pose {
         if inner.pose.is_identity() {
             return pose;
         }

@@ -132,7 +132,8 @@ impl Moment<'_> {
             Geometry::Mesh(mesh) => {
                 let triangle = index(triangles.as_ref()?.sample(left).index);
                 let [_, b, c] = uniform_triangle(u.point).map(f64::from);
-                let surface = mesh.surface(triangle, DVec2::new(b, c), self.film.precision, self.time);
+                let surface =
+                    mesh.surface(triangle, DVec2::new(b, c), self.film.precision, self.time);
                 let area = area * mesh.growth(triangle, self.time);
                 (surface, triangle, placement.area_scale(surface.ng) / area)
             }

@@ -53,8 +53,10 @@ impl Evaluator<'_> {
     /// Whether a key may come after another.
     fn follows(&mut self, before: &Key, next: &Key, span: Span) -> Option<()> {
         if next.time.partial_cmp(&before.time) != Some(std::cmp::Ordering::Greater) {
-            let message =
-                format!("the times of a motion increase: {} s stands after {} s", next.time, before.time);
+            let message = format!(
+                "the times of a motion increase: {} s stands after {} s",
+                next.time, before.time
+            );
             self.poison("E0412", span, message);
             return None;
         }

@@ -196,11 +196,7 @@ impl Mesh<'_> {
     }
 
     /// Triangles that are made of the given faces.
-    fn refined(
-        &self,
-        context: &dyn BuildContext,
-        apart: bool,
-    ) -> Result<TriangleMesh, Vec<Fault>> {
+    fn refined(&self, context: &dyn BuildContext, apart: bool) -> Result<TriangleMesh, Vec<Fault>> {
         let faces = if self.file.path.get().is_empty() {
             inline::polygons(self)?
         } else {

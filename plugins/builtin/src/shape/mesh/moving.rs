@@ -19,7 +19,10 @@ impl Mesh<'_> {
             (!self.next.path.get().is_empty(), !self.next_points.get().is_empty());
         let fault = |field, message: &str| Err(Fault::mesh(field, message));
         if next_file && !has_file {
-            return fault("next", "`next` is a file as `file` is: beside `points` stands `next_points`");
+            return fault(
+                "next",
+                "`next` is a file as `file` is: beside `points` stands `next_points`",
+            );
         }
         if next_points && has_file {
             return fault("next_points", "beside `file` stands `next`, a file with the same faces");

@@ -17,7 +17,7 @@ use crate::scene::NodeId;
 
 /// Bits of a hit's face: what a shape that is made of others shares with them.
 const FACE_BITS: u32 = 32;
-/// Of these a shape of one piece takes at most so many.
+/// Of these a shape of one piece takes at most so many; one of parts two more than their number has.
 pub(super) const OWN_BITS: u32 = 16;
 
 impl Builder<'_> {
@@ -48,7 +48,11 @@ impl Builder<'_> {
             .transpose()?;
         let Some(child) = self.part_of(draft, id) else { return Ok(()) };
         let (body, bits) = match child.fixed().shape().mesh() {
-            None => (Body::Object(child.clone()), child.face_bits),
+            None => {
+                let parts = child.fixed().shape().parts();
+                let bits = u32::BITS - parts.leading_zeros() + 2;
+                (Body::Object(child.clone()), child.face_bits.max(bits))
+            }
             Some(triangles) => {
                 let bits = u32::BITS - cast::index(triangles.indices.len()).leading_zeros();
                 let make = self.mesh_parts.ok_or("triangles cannot be a part here")?;

@@ -6,7 +6,7 @@ use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 
 use super::{Approach, Geometry, Mesh};
-use crate::accel::{Direction, MeshBvh, Precision, Processor};
+use crate::accel::{Direction, MeshBvh, Precision, Processor, Watch};
 
 /// A mesh that intersects itself: its triangles in double precision, as analytic shapes are.
 struct MeshPart {
@@ -19,8 +19,12 @@ struct MeshPart {
 ///
 /// # Errors
 /// Why there is no tree.
-pub(in super::super) fn mesh_part(triangles: Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String> {
-    let bvh = MeshBvh::build(&triangles.points, &triangles.indices).map_err(|e| e.to_string())?;
+pub(in super::super) fn mesh_part(
+    triangles: Arc<TriangleMesh>,
+    watch: &Watch,
+) -> Result<Arc<dyn Shape>, String> {
+    let bvh = MeshBvh::build_watched(&triangles.points, &triangles.indices, watch);
+    let bvh = bvh.map_err(|e| e.to_string())?;
     let area = |i: u32| {
         let [a, b, c] = triangles.corners(i);
         0.5 * (b - a).cross(c - a).length()

@@ -54,7 +54,7 @@ impl Clusters {
             order.extend(0..narrow(prims.len()));
             let (distance, sort) = (PlocSearchDistance::VeryLow, SortPrecision::U64);
             self.builder.build_with_bvh(&mut self.bvh, distance, prims, order, sort, 0);
-            if self.walk.over(&self.bvh.nodes) <= PART_DEPTH {
+            if self.walk.down(&self.bvh.nodes) <= PART_DEPTH {
                 self.optimizer.run(&mut self.bvh, REINSERTION, None);
                 if self.walk.over(&self.bvh.nodes) <= PART_DEPTH {
                     return Binary { nodes: &self.bvh.nodes, order: &self.walk.order };
@@ -108,6 +108,21 @@ pub(super) struct Walk {
 }
 
 impl Walk {
+    /// How many nodes the longest path has, where children come after their parents.
+    fn down(&mut self, nodes: &[Bvh2Node]) -> usize {
+        let levels = &mut self.order;
+        levels.clear();
+        levels.resize(nodes.len(), 1);
+        let mut deepest = 1;
+        for (at, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+            let level = levels[at] + 1;
+            let first = node.first_index as usize;
+            levels[first..first + 2].fill(level);
+            deepest = deepest.max(level);
+        }
+        deepest as usize
+    }
+
     /// Finds the order, and how many nodes the longest path has.
     pub(super) fn over(&mut self, nodes: &[Bvh2Node]) -> usize {
         self.order.clear();

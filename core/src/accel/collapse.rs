@@ -6,7 +6,7 @@
 use obvhs::bvh2::node::Bvh2Node;
 
 use super::cluster::bounds;
-use super::node::{Child, WIDTH};
+use super::node::{Child, WIDTH, narrow};
 
 /// Relative costs of a step; only their ratio matters.
 #[derive(Clone, Copy, Debug)]
@@ -39,17 +39,19 @@ pub(super) struct Root<B> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Plan {
     cost: [f32; WIDTH],
-    /// For 2..=8 slots: those of the left child, 0 for "as with one slot less".
+    /// For 2..=8 slots: those of the left child, 0 for "as with one".
     left: [u8; WIDTH],
-    /// As a node of its own: the slots of its children.
-    split: [u8; 2],
+    /// As a node of its own: the slots of its left child.
+    split: u8,
     leaf: bool,
     /// Primitives below; `MANY` for as many or more.
     n: u8,
 }
 
-/// One more than slots: more slots than primitives are of no use, nor are leaves of so many.
-const MANY: u8 = 9;
+const SLOTS: u8 = 8;
+
+/// Leaves never hold so many primitives.
+const MANY: u8 = SLOTS + 1;
 
 /// Room for plans, used again for the next tree.
 #[derive(Debug, Default)]
@@ -87,43 +89,45 @@ fn plan(node: &Bvh2Node, plans: &[Plan], costs: Costs) -> Plan {
     }
     let first = node.first_index as usize;
     let (l, r) = (&plans[first], &plans[first + 1]);
-    let n = (l.n + r.n).min(MANY);
-    // The cheapest way to give so many slots to the children, and what the left one gets.
-    let mut best = [(f32::INFINITY, 0); MANY as usize];
-    for a in 1..=l.n.min(MANY - 2) {
-        for b in 1..=r.n.min(MANY - 1 - a) {
-            let cost = l.cost[usize::from(a) - 1] + r.cost[usize::from(b) - 1];
-            let way = &mut best[usize::from(a + b)];
-            if cost < way.0 {
-                *way = (cost, a);
-            }
+    // The cheapest way to give so many slots to the children, and what the left one gets. More slots
+    // than primitives cost as much as those, so every way may be tried for every number.
+    let mut shifted = [f32::INFINITY; 2 * WIDTH];
+    shifted[WIDTH..].copy_from_slice(&r.cost);
+    let (mut best, mut ways) = ([f32::INFINITY; WIDTH], [0u32; WIDTH]);
+    for (a, left) in (1..WIDTH).zip(&l.cost).take(usize::from(l.n)) {
+        let right = &shifted[WIDTH - a..2 * WIDTH - a];
+        for slot in 0..WIDTH {
+            let cost = left + right[slot];
+            let better = cost < best[slot];
+            best[slot] = if better { cost } else { best[slot] };
+            ways[slot] = if better { narrow(a) } else { ways[slot] };
         }
     }
-    let whole = (3..MANY).fold(2, |whole, slots| {
-        if best[usize::from(slots)].0 < best[usize::from(whole)].0 { slots } else { whole }
-    });
-    let (cost, k) = best[usize::from(whole)];
-    let node_cost = cost + area * costs.node;
+    let node_cost = best[WIDTH - 1] + area * costs.node;
+    let n = (l.n + r.n).min(MANY);
     let leaf_cost = if n < MANY && n <= costs.max_leaf {
         area * costs.block * f32::from(n.div_ceil(4))
     } else {
         f32::INFINITY
     };
-    let mut plan = Plan {
-        cost: [leaf_cost.min(node_cost); WIDTH],
-        left: [0; WIDTH],
-        split: [k, whole - k],
+    let one = leaf_cost.min(node_cost);
+    let (mut cost, mut left) = ([one; WIDTH], [0; WIDTH]);
+    for slot in 1..WIDTH {
+        cost[slot] = if best[slot] < one { best[slot] } else { one };
+        left[slot] = if best[slot] < one { ways[slot] } else { 0 };
+    }
+    Plan {
+        cost,
+        left: left.map(slots),
+        split: slots(ways[WIDTH - 1]),
         leaf: leaf_cost <= node_cost,
         n,
-    };
-    for (slot, &(cost, k)) in (1..WIDTH).zip(&best[2..]) {
-        plan.cost[slot] = plan.cost[slot - 1];
-        if cost < plan.cost[slot] {
-            plan.cost[slot] = cost;
-            plan.left[slot] = k;
-        }
     }
-    plan
+}
+
+/// A number of slots.
+fn slots(n: u32) -> u8 {
+    n.to_le_bytes()[0]
 }
 
 struct Collapse<'a, S> {
@@ -161,8 +165,8 @@ impl<S: Sink> Collapse<'_, S> {
         }
         let first = self.nodes[index as usize].first_index;
         let mut members = Few::default();
-        self.expand(first, plan.split[0], &mut members);
-        self.expand(first + 1, plan.split[1], &mut members);
+        self.expand(first, plan.split, &mut members);
+        self.expand(first + 1, SLOTS - plan.split, &mut members);
         let mut slots = Few::default();
         let mut depth = 0;
         for &member in members.get() {
@@ -176,15 +180,13 @@ impl<S: Sink> Collapse<'_, S> {
 
     /// The subtrees that take the slots planned for this one.
     fn expand(&self, index: u32, slots: u8, members: &mut Few<u32>) {
-        let plan = &self.plans[index as usize];
-        match (2..=slots).rev().find(|&used| plan.left[usize::from(used) - 1] != 0) {
-            None => members.push(index),
-            Some(used) => {
-                let k = plan.left[usize::from(used) - 1];
-                let first = self.nodes[index as usize].first_index;
-                self.expand(first, k, members);
-                self.expand(first + 1, used - k, members);
-            }
+        let k = self.plans[index as usize].left[usize::from(slots) - 1];
+        if k == 0 {
+            members.push(index);
+        } else {
+            let first = self.nodes[index as usize].first_index;
+            self.expand(first, k, members);
+            self.expand(first + 1, slots - k, members);
         }
     }
 

@@ -20,7 +20,11 @@ pub(super) const PART: usize = 2048;
 /// Cuts by area this deep, then by count, which bounds the depth at 12 + log₂ n.
 const AREA_DEPTH: usize = 12;
 
+/// A power of two.
 const BINS: usize = 16;
+
+/// The last bin.
+const LAST: f32 = 15.0;
 
 /// A primitive as a builder sees it; coordinates are finite and at most 2 in size.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +60,11 @@ impl Prim {
     /// Twice the centre of the box.
     pub(super) fn centre(&self) -> Vec3A {
         Vec3A::from_vec4(self.low + self.high)
+    }
+
+    /// The same along one axis.
+    pub(super) fn centre_along(&self, axis: usize) -> f32 {
+        self.low.as_ref()[axis & 3] + self.high.as_ref()[axis & 3]
     }
 }
 
@@ -173,26 +182,29 @@ struct Binning {
 
 impl Binning {
     fn of(&self, p: &Prim) -> usize {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the bin below; the cast saturates at both ends"
-        )]
-        let bin = ((p.centre()[self.axis] - self.origin) * self.scale) as usize;
-        bin.min(BINS - 1)
+        let at = (p.centre_along(self.axis) - self.origin) * self.scale - 0.5;
+        let at = if at > 0.0 { at } else { 0.0 };
+        let at = if at < LAST { at } else { LAST };
+        // Rounds to an integer, which then stands in the last bits: a cast would cost more.
+        (at + 8_388_608.0).to_bits() as usize % BINS
     }
 
     fn fill(&self, prims: &[Prim], watch: &Watch) -> Bins {
-        let put = |mut bins: Bins, prims: &[Prim]| {
-            for p in prims {
-                let bin = &mut bins[self.of(p)];
-                bin.n += 1;
-                bin.bounds = bin.bounds.union(p.bounds());
-                bin.centres = bin.centres.grow(p.centre());
-            }
-            bins
-        };
         let join = |a: Bins, b: Bins| std::array::from_fn(|i| a[i].join(b[i]));
+        let put = |bins: Bins, prims: &[Prim]| {
+            // Neighbours often share a bin; with two sets neither waits for the other.
+            let mut sides = [bins, [Bin::EMPTY; BINS]];
+            for pair in prims.chunks(2) {
+                for (p, bins) in pair.iter().zip(&mut sides) {
+                    let bin = &mut bins[self.of(p)];
+                    bin.n += 1;
+                    bin.bounds = bin.bounds.union(p.bounds());
+                    bin.centres = bin.centres.grow(p.centre());
+                }
+            }
+            let [a, b] = sides;
+            join(a, b)
+        };
         fold(prims, watch, || [Bin::EMPTY; BINS], put, join)
     }
 }

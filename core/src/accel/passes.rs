@@ -102,13 +102,13 @@ pub(super) fn median(prims: &mut [Prim], axis: usize, watch: &Watch) -> usize {
     }
     if prims.len() <= STRIDE {
         prims.select_nth_unstable_by(middle, |a, b| {
-            let key = |p: &Prim| p.centre()[axis];
+            let key = |p: &Prim| p.centre_along(axis);
             key(a).total_cmp(&key(b)).then(a.index().cmp(&b.index()))
         });
         return middle;
     }
     // A radix select; of equal ones any may come first, in an order that threads do not change.
-    let key = |p: &Prim| ordered(p.centre()[axis]);
+    let key = |p: &Prim| ordered(p.centre_along(axis));
     let (mut nth, mut known) = (middle, 0u64);
     for shift in [2 * DIGIT, DIGIT, 0] {
         let digit = |p: &Prim| {

@@ -47,7 +47,7 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last is not among `all`: it takes long.
-const BENCHES: [Bench; 12] = [
+const BENCHES: [Bench; 13] = [
     of_crates("parse", |_| {
         parse::run();
         Ok(())
@@ -58,6 +58,10 @@ const BENCHES: [Bench; 12] = [
     of_program("plugins", |plan| boundary::run(&plan.luxel)),
     of_crates("rays", |plan| {
         rays::run(plan.embree.as_deref(), plan.python.as_deref());
+        Ok(())
+    }),
+    of_crates("builds", |plan| {
+        rays::builds(plan.embree.as_deref(), plan.python.as_deref());
         Ok(())
     }),
     of_crates("errors", |_| errors::run()),

@@ -12,16 +12,16 @@ use super::partition::{Part, Prim};
 use super::slabs::Boxes;
 use super::watch::Watch;
 
-/// Parts built before their results are joined: enough to keep threads busy, few enough that what
-/// they hold stays small beside the tree.
-pub(super) const BATCH: usize = 128;
+/// Parts for each thread that are built before their results are joined: enough to keep threads busy,
+/// few enough that they are moved in a few milliseconds. No bit of the tree depends on it.
+pub(super) const BATCH: usize = 32;
 
 /// What a tree is made of.
 pub(super) trait Timber: Sync {
     /// What the boxes of its nodes are made of.
-    type Number: Copy + Send + Sync;
+    type Number: Copy + Send + Sync + 'static;
     /// What its leaves refer to.
-    type Block: Copy + Send + Sync;
+    type Block: Copy + Send + Sync + 'static;
     /// A box in the precision of the tree.
     type Bounds: Copy + Default + Send + Sync;
 
@@ -57,24 +57,36 @@ impl<T: Timber> Default for Tree<T> {
 /// The tree over these primitives; `None` once the watch is cancelled.
 pub(super) fn build<T: Timber>(timber: &T, mut prims: Vec<Prim>, watch: &Watch) -> Option<Tree<T>> {
     let mut tree = Tree::default();
-    if prims.is_empty() {
-        return (!watch.is_cancelled()).then_some(tree);
+    if !prims.is_empty() {
+        fill(&mut tree, timber, &mut prims, watch);
     }
-    let upper = Part::cut(&mut prims, watch);
+    if !watch.is_cancelled() {
+        return Some(tree);
+    }
+    // The system takes many milliseconds to take back as much memory: nobody waits for it.
+    let Tree { nodes, blocks, .. } = tree;
+    rayon::spawn(move || drop((nodes, blocks, prims)));
+    None
+}
+
+/// Becomes the tree over these primitives, at least one; left off when the watch is cancelled.
+fn fill<T: Timber>(tree: &mut Tree<T>, timber: &T, prims: &mut [Prim], watch: &Watch) {
+    let upper = Part::cut(prims, watch);
     if watch.is_cancelled() {
-        return None;
+        return;
     }
-    let mut parts = slices(&mut prims, &upper);
+    let mut parts = slices(prims, &upper);
     if let [part] = parts.as_mut_slice() {
-        tree.grow(timber, part, &mut Tools::default(), watch);
-        return (!watch.is_cancelled()).then_some(tree);
+        return tree.grow(timber, part, &mut Tools::default(), watch);
     }
     let mut roots = Vec::with_capacity(parts.len());
     let mut around = Vec::with_capacity(parts.len());
-    let tools: Vec<_> = (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect();
-    let mut grown: Vec<Tree<T>> = (0..parts.len().min(BATCH)).map(|_| Tree::default()).collect();
+    let n_threads = rayon::current_num_threads();
+    let tools: Vec<_> = (0..n_threads).map(|_| Mutex::default()).collect();
+    let batch = parts.len().min(BATCH * n_threads);
+    let mut grown: Vec<Tree<T>> = (0..batch).map(|_| Tree::default()).collect();
     let n_parts = parts.len();
-    for batch in parts.chunks_mut(BATCH) {
+    for batch in parts.chunks_mut(batch) {
         let grown = &mut grown[..batch.len()];
         batch.par_iter_mut().zip(grown.par_iter_mut()).for_each(|(part, tree)| {
             // A thread's own: nobody waits.
@@ -83,7 +95,7 @@ pub(super) fn build<T: Timber>(timber: &T, mut prims: Vec<Prim>, watch: &Watch) 
             tree.grow(timber, part, &mut tools, watch);
         });
         if watch.is_cancelled() {
-            return None;
+            return;
         }
         around.extend(grown.iter().map(|part| part.around));
         tree.take(grown, n_parts, &mut roots);
@@ -100,7 +112,6 @@ pub(super) fn build<T: Timber>(timber: &T, mut prims: Vec<Prim>, watch: &Watch) 
     tree.root = Some(root);
     tree.nodes.shrink_to_fit();
     tree.blocks.shrink_to_fit();
-    (!watch.is_cancelled()).then_some(tree)
 }
 
 /// What a thread needs for one part after another.

@@ -11,6 +11,9 @@ use super::partition::Prim;
 use super::passes::fold;
 use super::watch::{STRIDE, Watch};
 
+/// Strides of primitives that are made at once.
+const FEW: usize = 16;
+
 /// The triangles in the scaled frame of the tree.
 #[derive(Clone, Copy)]
 pub(super) struct Triangles<'a> {
@@ -92,7 +95,11 @@ impl<'a> Triangles<'a> {
         }
         let none = Prim::new(Bounds::EMPTY, 0);
         let one = |triangle: usize| if watch.is_over() { none } else { prim(triangle) };
-        let mut prims: Vec<Prim> = (0..n).into_par_iter().map(one).collect();
+        let mut prims: Vec<Prim> = Vec::with_capacity(n);
+        while prims.len() < n && !watch.is_cancelled() {
+            let end = n.min(prims.len() + FEW * STRIDE);
+            prims.par_extend((prims.len()..end).into_par_iter().map(one));
+        }
         let flat = |n: usize, prims: &[Prim]| n + prims.iter().filter(|p| !p.is_real()).count();
         if fold(&prims, watch, || 0, flat, |a, b| a + b) > 0 {
             prims.retain(Prim::is_real);

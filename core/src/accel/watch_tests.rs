@@ -36,7 +36,7 @@ fn stop_anywhere(n: usize, seed: u64, build: impl Fn(&Watch) -> bool) {
         assert!(!build(&watch), "it went on after look {look} of {total}");
         let seen = watch.looks.seen.lock().unwrap();
         // Each task of the pass in hand looks once, and does nothing.
-        let most = look + n.div_ceil(STRIDE).max(BATCH) + 2 * threads + 16;
+        let most = look + n.div_ceil(STRIDE).max(BATCH * threads) + 2 * threads + 16;
         assert!(seen.len() <= most, "{} looks, stopped at {look}", seen.len());
         let more = watch.standing().done - seen[look - 1];
         assert!(more <= (threads * PART) as u64, "{more} more after look {look}");

@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use luxel_core::accel::Watch;
 
 use crate::exit::{Exit, Failure};
-use crate::load::CANCELLED;
 use crate::report;
 
 /// Interrupts within this time of the first are taken for the same one (a double press, a signal
@@ -17,6 +16,10 @@ const SAME: Duration = Duration::from_secs(2);
 
 /// So long a scene that is being made ready has to end in order.
 const LEAVE: Duration = Duration::from_millis(200);
+
+/// What is told of a load that was cancelled.
+pub(crate) const CANCELLED: &str =
+    "interrupted before anything was measured: no picture was written";
 
 /// What an interrupt runs.
 pub(crate) type Interrupt = Arc<dyn Fn() + Send + Sync>;

@@ -12,6 +12,7 @@ use luxel_core::stage::{self, Stage, Unbuilt};
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure, blaming};
 use crate::files::DiskFiles;
+use crate::interrupt::CANCELLED;
 use crate::isolate::{Beat, Phase};
 use crate::libraries::{Plugins, Session, Surroundings};
 use crate::progress;
@@ -68,10 +69,6 @@ pub(crate) struct Course {
     /// Whether a line tells of it on a terminal.
     pub(crate) line: bool,
 }
-
-/// What is told of a load that was cancelled.
-pub(crate) const CANCELLED: &str =
-    "interrupted before anything was measured: no picture was written";
 
 /// Reads a scene and makes it ready to trace, at `size` if one is given, keeping what has not
 /// changed since `before`.

@@ -49,7 +49,7 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last is not among `all`: it takes long.
-const BENCHES: [Bench; 13] = [
+const BENCHES: [Bench; 14] = [
     of_crates("parse", |_| {
         parse::run();
         Ok(())
@@ -63,6 +63,10 @@ const BENCHES: [Bench; 13] = [
         Ok(())
     }),
     of_crates("pictures", |_| pictures::run()),
+    of_crates("builds", |plan| {
+        rays::builds(plan.embree.as_deref(), plan.python.as_deref());
+        Ok(())
+    }),
     of_crates("errors", |_| errors::run()),
     of_crates("strands", |_| strands::run()),
     of_crates("leaks", |plan| {

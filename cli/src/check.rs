@@ -6,8 +6,7 @@ use luxel_core::diag::Diagnostic;
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure};
-use crate::isolate::Beat;
-use crate::load;
+use crate::load::{self, Course};
 use crate::report::{self, Form, Stream};
 
 /// Tell everything that is wrong with scenes
@@ -43,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     plugins.notes.tell(form, stream)?;
     let mut exit = Exit::Fine;
     for file in &args.files {
-        let loaded = load::load(file, &args.load, None, &plugins, None, &Beat::silent())?;
+        let loaded = load::load(file, &args.load, None, &plugins, None, &Course::default())?;
         report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream)?;
         if loaded.stage.is_none() || loaded.diagnostics.iter().any(Diagnostic::is_error) {
             exit = Exit::Input;

@@ -5,12 +5,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use luxel_core::accel::Watch;
+
 use crate::exit::{Exit, Failure};
 use crate::report;
 
 /// Interrupts within this time of the first are taken for the same one (a double press, a signal
 /// sent to the whole group as well): most renders have ended in order by then.
 const SAME: Duration = Duration::from_secs(2);
+
+/// So long a scene that is being made ready has to end in order.
+const LEAVE: Duration = Duration::from_millis(200);
+
+/// What is told of a load that was cancelled.
+pub(crate) const CANCELLED: &str =
+    "interrupted before anything was measured: no picture was written";
 
 /// What an interrupt runs.
 pub(crate) type Interrupt = Arc<dyn Fn() + Send + Sync>;
@@ -41,6 +50,8 @@ enum Phase {
     /// It is in memory only.
     #[default]
     Measuring,
+    /// There is nothing of it yet: the scene is being read or made ready.
+    Loading,
     /// It is on its way to the disk.
     Saving,
     /// It is on the disk.
@@ -53,17 +64,23 @@ enum Answer {
     First,
     Again,
     Wait,
+    Leave,
     GiveUp(&'static str),
 }
 
 #[derive(Debug, Default)]
 struct State {
     phase: Phase,
+    /// Of the scene that is made ready.
+    loading: Arc<Watch>,
     first: Option<Instant>,
 }
 
 impl State {
     fn answer(&mut self, now: Instant) -> Answer {
+        if self.phase == Phase::Loading {
+            return Answer::Leave;
+        }
         let Some(first) = self.first else {
             self.first = Some(now);
             return Answer::First;
@@ -71,7 +88,7 @@ impl State {
         match self.phase {
             Phase::Saving => Answer::Wait,
             _ if now.duration_since(first) < SAME => Answer::Again,
-            Phase::Measuring => Answer::GiveUp(
+            Phase::Measuring | Phase::Loading => Answer::GiveUp(
                 "interrupted again: what was measured is lost, the files are as they were",
             ),
             Phase::Saved => Answer::GiveUp("interrupted again: the picture has been written"),
@@ -97,6 +114,12 @@ impl Guard {
         Saving(self)
     }
 
+    /// A scene is about to be read and made ready, followed by `watch`: there is nothing to be saved.
+    pub(crate) fn loading(&self, watch: &Arc<Watch>) {
+        let mut state = self.state();
+        (state.phase, state.loading) = (Phase::Loading, watch.clone());
+    }
+
     /// The next picture is about to be measured.
     pub(crate) fn measuring(&self) {
         self.state().phase = Phase::Measuring;
@@ -119,18 +142,30 @@ impl Guard {
             match state.answer(Instant::now()) {
                 Answer::First => first(),
                 Answer::Again => {}
-                Answer::Wait => report::note("the picture is being written: one moment"),
-                Answer::GiveUp(word) => {
-                    report::note(word);
-                    #[expect(clippy::disallowed_methods, reason = "asked for twice")]
-                    std::process::exit(Exit::Incomplete as i32);
+                Answer::Leave => {
+                    state.loading.cancel();
+                    // Whatever is not reached by it, a plugin perhaps, is left where it is.
+                    std::thread::sleep(LEAVE);
+                    leave(CANCELLED);
                 }
+                Answer::Wait => report::note("the picture is being written: one moment"),
+                Answer::GiveUp(word) => leave(word),
             }
         });
         let heard = handler.clone();
         on_each(move || heard())?;
         Ok(handler)
     }
+}
+
+fn leave(word: &str) -> ! {
+    report::note(word);
+    #[expect(
+        clippy::disallowed_methods,
+        clippy::exit,
+        reason = "asked for, and nothing is left to save"
+    )]
+    std::process::exit(Exit::Incomplete as i32)
 }
 
 impl Drop for Saving<'_> {
@@ -158,5 +193,7 @@ mod tests {
         assert!(lost(after(9), "has been written"));
         guard.measuring();
         assert!(lost(after(9), "lost"));
+        guard.loading(&Arc::default());
+        assert_eq!(after(0), Answer::Leave);
     }
 }

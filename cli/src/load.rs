@@ -1,17 +1,21 @@
 //! From a scene file to a stage: the registry, the language, and what may be changed from outside.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::UVec2;
+use luxel_core::accel::Watch;
 use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::scene::Scene;
-use luxel_core::stage::{self, Stage};
+use luxel_core::stage::{self, Stage, Unbuilt};
 
 use crate::args::{LoadArgs, PluginArgs};
-use crate::exit::{Failure, blaming};
+use crate::exit::{Exit, Failure, blaming};
 use crate::files::DiskFiles;
+use crate::interrupt::CANCELLED;
 use crate::isolate::{Beat, Phase};
 use crate::libraries::{Plugins, Session, Surroundings};
+use crate::progress;
 
 /// A scene file as far as it could be read, with everything that was found.
 pub(crate) struct Loaded {
@@ -55,20 +59,32 @@ pub(crate) fn look_at_libraries(args: &PluginArgs) -> Result<Plugins, Failure> {
     Session::looking().refresh(&args, &Surroundings::of_process())
 }
 
+/// How a load is followed and stopped.
+#[derive(Clone, Default)]
+pub(crate) struct Course {
+    /// Tells another process.
+    pub(crate) beat: Beat,
+    /// Ends the building of trees.
+    pub(crate) watch: Arc<Watch>,
+    /// Whether a line tells of it on a terminal.
+    pub(crate) line: bool,
+}
+
 /// Reads a scene and makes it ready to trace, at `size` if one is given, keeping what has not
 /// changed since `before`.
 ///
 /// # Errors
-/// A panic below, as our fault. The author's mistakes are in `diagnostics`.
+/// A panic below, as our fault; that the course's watch was cancelled. The author's mistakes are in
+/// `diagnostics`.
 pub(crate) fn load(
     path: &Path,
     args: &LoadArgs,
     size: Option<UVec2>,
     plugins: &Plugins,
     before: Option<&Stage>,
-    beat: &Beat,
+    Course { beat, watch, line }: &Course,
 ) -> Result<Loaded, Failure> {
-    blaming(&path.display().to_string(), || {
+    let loaded = blaming(&path.display().to_string(), || {
         let files = DiskFiles::new(path, &args.allow_path);
         beat.reading(files.shared());
         beat.phase(Phase::Loading);
@@ -86,20 +102,29 @@ pub(crate) fn load(
         if let (Some(scene), Some(precision)) = (&mut scene, args.precision) {
             scene.set_precision(precision);
         }
-        beat.phase(Phase::Building);
-        let built = scene.as_ref().map(|scene| stage::build(scene, registry, &files, before));
+        beat.building(watch);
+        let build = |scene: &Scene| {
+            let told = |_| progress::building(&watch.standing());
+            let build = || stage::build_watched(scene, registry, &files, before, watch);
+            progress::shown_while(told, *line, build)
+        };
+        let built = scene.as_ref().map(build);
         let stage = match built {
             Some(Ok(built)) => {
                 diagnostics.extend(built.warnings);
                 Some(built.stage)
             }
-            Some(Err(found)) => {
+            Some(Err(Unbuilt::Faulty(found))) => {
                 diagnostics.extend(found);
                 None
             }
-            None => None,
+            Some(Err(Unbuilt::Cancelled)) | None => None,
         };
         let stage = stage.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
         Loaded { scene, stage, diagnostics, sources: read.sources, files }
-    })
+    })?;
+    if watch.is_cancelled() {
+        return Err(Failure::new(Exit::Incomplete, CANCELLED));
+    }
+    Ok(loaded)
 }

@@ -55,7 +55,8 @@ pub(crate) fn measure(
     let total = window.area() as u64 * u64::from(options.samples(stage));
     let start = Instant::now();
     let rendered = blaming(&scene.display().to_string(), || {
-        progress::shown_while(control, total, line, || render(stage, options, control))
+        let told = |seconds| progress::line(control.samples_done(), total, seconds);
+        progress::shown_while(told, line, || render(stage, options, control))
     });
     let (film, outcome) = rendered?;
     Ok(Measured { film, outcome, seconds: start.elapsed().as_secs_f64() })

@@ -5,18 +5,17 @@ use std::io::IsTerminal;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use luxel_core::render::Control;
+use luxel_core::accel::Standing;
 
 use crate::report;
 
 /// Between two redraws.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Runs `work` while a line shows how far `control` has come of `total` samples. No line is shown
-/// unless standard error is a terminal and `shown` is true.
+/// Runs `work` while a line is shown, which may depend on the seconds since the beginning. No line is
+/// shown unless standard error is a terminal and `shown` is true.
 pub(crate) fn shown_while<T>(
-    control: &Control,
-    total: u64,
+    line: impl Fn(f64) -> String + Send,
     shown: bool,
     work: impl FnOnce() -> T,
 ) -> T {
@@ -29,8 +28,7 @@ pub(crate) fn shown_while<T>(
         scope.spawn(move || {
             let start = Instant::now();
             while ended.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
-                let seconds = start.elapsed().as_secs_f64();
-                report::progress(&line(control.samples_done(), total, seconds));
+                report::progress(&line(start.elapsed().as_secs_f64()));
             }
             report::progress("");
         });
@@ -86,8 +84,27 @@ fn step(done: usize, total: usize, what: &str, seconds: f64) -> String {
     format!("{} of {total}  {what}  {left} left", done + 1)
 }
 
+/// `building big.ply: 3.1 M of 7.0 M triangles`
+pub(crate) fn building(standing: &Standing) -> String {
+    let Standing { what, unit, done, total } = standing;
+    match total {
+        0 if what.is_empty() => "building the scene".to_owned(),
+        0 => format!("building {what}"),
+        _ => format!("building {what}: {} of {} {unit}", count(*done), count(*total)),
+    }
+}
+
+/// `999`, `7.5 k`, `3.1 M`
+fn count(n: u64) -> String {
+    match n {
+        0..1000 => n.to_string(),
+        1000..1_000_000 => format!("{:.1} k", n as f64 / 1e3),
+        _ => format!("{:.1} M", n as f64 / 1e6),
+    }
+}
+
 /// ` 42 %  3.20 Msamples/s  110.1 of 262.1 Msamples  48 s left`
-fn line(done: u64, total: u64, seconds: f64) -> String {
+pub(crate) fn line(done: u64, total: u64, seconds: f64) -> String {
     let share = if total == 0 { 1.0 } else { done as f64 / total as f64 };
     let rate = done as f64 / seconds.max(f64::MIN_POSITIVE);
     let left =
@@ -124,6 +141,22 @@ mod tests {
         assert_eq!(told, " 25 %  0.50 Msamples/s  1.0 of 4.0 Msamples  6.00 s left");
         assert!(line(0, 10, 0.0).contains("… left"));
         assert!(line(11, 10, 1.0).starts_with("100 %"));
+    }
+
+    #[test]
+    fn a_build_tells_what_is_built_and_how_far_it_is() {
+        let mut standing = Standing {
+            what: "big.ply".to_owned(),
+            unit: "triangles",
+            done: 3_140_000,
+            total: 7_000_000,
+        };
+        assert_eq!(building(&standing), "building big.ply: 3.1 M of 7.0 M triangles");
+        (standing.done, standing.total) = (12, 7500);
+        assert_eq!(building(&standing), "building big.ply: 12 of 7.5 k triangles");
+        standing.total = 0;
+        assert_eq!(building(&standing), "building big.ply");
+        assert_eq!(building(&Standing::default()), "building the scene");
     }
 
     #[test]

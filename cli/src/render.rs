@@ -8,7 +8,7 @@ use luxel_core::render::{Control, Outcome};
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
 use crate::exit::{Exit, Failure};
 use crate::isolate::{self, Beat, IsolateArgs, Phase};
-use crate::load::{self, Loaded};
+use crate::load::{self, Course, Loaded};
 use crate::measure::{self, Measured};
 use crate::output::Output;
 use crate::report::{self, Form, Stream};
@@ -68,7 +68,16 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let (plugins, form) = (load::registry_telling(&args.plugins, beat)?, args.form());
     plugins.notes.tell(form, Stream::Error)?;
-    let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, None, beat)?;
+    let control = Arc::new(Control::default());
+    let stop = control.clone();
+    let guard = interrupt::Guard::default();
+    let course = Course { beat: beat.clone(), line: !args.quiet, ..Course::default() };
+    guard.loading(&course.watch);
+    let interrupt = guard.on_ctrl_c(move || {
+        stop.cancel();
+        report::aside("interrupted: what was measured will be written; Ctrl-C again gives it up");
+    })?;
+    let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, None, &course)?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
     let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
         return Ok(Exit::Input);
@@ -78,13 +87,7 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     measure::window(&stage, &options)?;
     let film_file = stage.film.file.as_deref();
     let output = Output::choose(args.render.output.as_deref(), film_file, &args.file)?;
-    let control = Arc::new(Control::default());
-    let stop = control.clone();
-    let guard = interrupt::Guard::default();
-    let interrupt = guard.on_ctrl_c(move || {
-        stop.cancel();
-        report::aside("interrupted: what was measured will be written; Ctrl-C again gives it up");
-    })?;
+    guard.measuring();
     beat.rendering(&control, interrupt);
     output.check(&files)?;
     beat.phase(Phase::Rendering);

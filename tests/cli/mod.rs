@@ -194,6 +194,54 @@ fn a_second_interrupt_still_leaves_a_whole_picture() {
     assert!(since.elapsed() < Duration::from_secs(10));
 }
 
+/// A mesh whose tree takes seconds to build.
+#[cfg(target_os = "linux")]
+fn large_ply() -> Vec<u8> {
+    let side = 1400u16;
+    let n = u32::from(side);
+    let mut ply = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n\
+         property float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        n * n,
+        2 * (n - 1) * (n - 1),
+    )
+    .into_bytes();
+    for i in 0..side {
+        for j in 0..side {
+            let (x, y) = (f32::from(i), f32::from(j));
+            [x, y, (x * 0.3).sin() * (y * 0.2).cos()]
+                .into_iter()
+                .for_each(|c| ply.extend(c.to_le_bytes()));
+        }
+    }
+    for (i, j) in (0..n - 1).flat_map(|i| (0..n - 1).map(move |j| (i, j))) {
+        let at = i * n + j;
+        for triangle in [[at, at + n, at + 1], [at + n, at + n + 1, at + 1]] {
+            ply.push(3);
+            triangle.into_iter().for_each(|i| ply.extend(i.to_le_bytes()));
+        }
+    }
+    ply
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupt_while_a_mesh_is_read_or_built_ends_and_leaves_no_file() {
+    let mesh = "shape mesh { file = \"big.ply\", unit = 1 mm }\n";
+    let folder = Folder::new("cancel").with("a.scene", &format!("{SCENE}{mesh}"));
+    folder.write_bytes("big.ply", &large_ply());
+    for milliseconds in [0, 600, 1200] {
+        let mut running = folder.start(&["render", "a.scene", "--spp", "4000000000"]);
+        running.listens();
+        std::thread::sleep(Duration::from_millis(milliseconds));
+        running.interrupt();
+        let done = running.end();
+        assert_eq!((done.code, done.out.as_str()), (3, ""), "{done:?}");
+        assert!(done.err.contains("before anything was measured: no picture"), "{done:?}");
+        assert_eq!(folder.names(), ["a.scene", "big.ply"]);
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_that_is_full_is_told_and_a_reader_who_leaves_is_not() {

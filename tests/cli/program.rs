@@ -81,6 +81,11 @@ impl Folder {
         self
     }
 
+    pub(crate) fn write_bytes(&self, name: &str, bytes: &[u8]) -> &Self {
+        fs::write(self.0.join(name), bytes).unwrap();
+        self
+    }
+
     /// The bytes of a file; none if it is not there.
     pub(crate) fn read(&self, name: &str) -> Vec<u8> {
         fs::read(self.0.join(name)).unwrap_or_default()
@@ -163,6 +168,20 @@ impl Running {
     pub(crate) fn interrupt(&mut self) {
         let id = self.0.as_ref().unwrap().id().to_string();
         assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    }
+
+    /// Waits until Ctrl-C is answered by the program itself.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn listens(&self) {
+        let status = format!("/proc/{}/status", self.0.as_ref().unwrap().id());
+        let caught = || {
+            let status = fs::read_to_string(&status).unwrap();
+            let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+            u64::from_str_radix(mask.trim(), 16).unwrap() >> 1 & 1 == 1
+        };
+        while !caught() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
     }
 
     pub(crate) fn end(mut self) -> Done {

@@ -3,7 +3,7 @@
 //! Source: its C interface, `embree4/rtcore_*.h`.
 #![expect(unsafe_code, reason = "calls a C library")]
 
-use std::ffi::c_void;
+use std::ffi::{CString, c_char, c_void};
 use std::path::Path;
 use std::ptr;
 use std::sync::atomic::{AtomicIsize, Ordering};
@@ -116,9 +116,22 @@ type Count = extern "C" fn(Handle, isize, bool) -> bool;
 type Share = unsafe extern "C" fn(Handle, u32, u32, u32, *const c_void, usize, usize, usize);
 
 impl<'a> Embree<'a> {
-    /// Builds; `None` for another version's library.
+    /// Builds on all cores; `None` for another version's library.
     pub(crate) fn new(library: &'a Library, soup: &'a Soup, flags: Flags) -> Option<Self> {
-        let device = call!(function!(library, b"rtcNewDevice", New), ptr::null_mut());
+        Self::with_threads(library, soup, flags, 0)
+    }
+
+    /// The same on so many threads; on all cores for 0.
+    pub(crate) fn with_threads(
+        library: &'a Library,
+        soup: &'a Soup,
+        flags: Flags,
+        threads: usize,
+    ) -> Option<Self> {
+        let config = CString::new(format!("threads={threads}")).ok()?;
+        let new =
+            function!(library, b"rtcNewDevice", unsafe extern "C" fn(*const c_char) -> Handle);
+        let device = call!(new, config.as_ptr());
         let monitor = function!(
             library,
             b"rtcSetDeviceMemoryMonitorFunction",

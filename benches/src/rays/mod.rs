@@ -1,5 +1,6 @@
 //! Rays per second through one mesh, side by side: ours, obvhs's own traversal, and Embree.
 
+mod builds;
 mod embree;
 mod knot;
 mod leaks;
@@ -76,6 +77,12 @@ fn embree_path(given: Option<&Path>, python: Option<&Path>) -> PathBuf {
 /// Prints how many rays get out of a closed mesh; `n` for each of eleven cases.
 pub(crate) fn leaks(given: Option<&Path>, python: Option<&Path>, n: usize) {
     leaks::run(embree::load(&embree_path(given, python)).as_ref(), n);
+}
+
+/// Prints how long trees take to build.
+pub(crate) fn builds(given: Option<&Path>, python: Option<&Path>) {
+    println!("\n== builds: the least seconds of several");
+    builds::run(embree::load(&embree_path(given, python)).as_ref());
 }
 
 /// Prints rays per second, build times and bytes per triangle for three meshes.

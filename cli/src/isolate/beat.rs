@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use luxel_core::accel::Watch;
 use luxel_core::render::Control;
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +57,8 @@ impl Phase {
 pub(super) struct Told {
     pub(super) phase: Phase,
     pub(super) samples: u64,
+    /// Primitives that are in their place in the tree being built.
+    pub(super) built: u64,
     /// Libraries that were opened, for people.
     pub(super) libraries: Vec<String>,
     /// Files that were asked for, with the hash of what was found. Names that are no Unicode are
@@ -79,6 +82,7 @@ struct State {
     written: Option<Told>,
     watched: Watched,
     asked: Option<Asked>,
+    watch: Option<Arc<Watch>>,
     control: Option<Arc<Control>>,
     interrupt: Option<Interrupt>,
 }
@@ -130,6 +134,14 @@ impl Beat {
     /// Files are asked for here from now on.
     pub(crate) fn reading(&self, asked: &Asked) {
         self.tell(|state| state.asked = Some(asked.clone()));
+    }
+
+    /// The scene is made ready to trace, followed here.
+    pub(crate) fn building(&self, watch: &Arc<Watch>) {
+        self.tell(|state| {
+            state.told.phase = Phase::Building;
+            state.watch = Some(watch.clone());
+        });
     }
 
     /// Samples are counted here, and this answers a wish to stop.
@@ -213,6 +225,9 @@ impl State {
     fn refresh(&mut self) {
         if let Some(control) = &self.control {
             self.told.samples = control.samples_done();
+        }
+        if let Some(watch) = &self.watch {
+            self.told.built = watch.standing().done;
         }
         let mut all = self.watched.clone();
         if let Some(asked) = &self.asked {

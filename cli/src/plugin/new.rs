@@ -128,7 +128,6 @@ fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
 mod tests {
     use super::*;
     use crate::args::{LoadArgs, PluginArgs};
-    use crate::isolate::Beat;
     use crate::libraries::{Session, Surroundings};
     use crate::load;
     use crate::testing::Folder;
@@ -158,8 +157,14 @@ mod tests {
             }
             // Nothing but its own class is missing.
             let scene = dir.join("my_own.scene");
-            let loaded =
-                load::load(&scene, &LoadArgs::default(), None, &plugins, None, &Beat::silent());
+            let loaded = load::load(
+                &scene,
+                &LoadArgs::default(),
+                None,
+                &plugins,
+                None,
+                &load::Course::default(),
+            );
             let told = loaded.unwrap().diagnostics;
             let one = matches!(&told[..], [only] if only.message.contains("`my_own`"));
             assert!(one, "{word}: {told:?}");

@@ -27,7 +27,8 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let plugins = load::registry_telling(&args.plugins, beat)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
     let size = args.render.size;
-    let loaded = load::load(&args.file, &args.load, size, &plugins, None, beat)?;
+    let course = load::Course { beat: beat.clone(), line: !args.quiet, ..Default::default() };
+    let loaded = load::load(&args.file, &args.load, size, &plugins, None, &course)?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, args.form(), Stream::Error)?;
     let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
         return Ok(Exit::Input);

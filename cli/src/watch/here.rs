@@ -28,9 +28,12 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let (mut changes, waker) = Changes::new()?;
     let current = Current::default();
     let stopped = current.clone();
+    let course = load::Course { line: !args.quiet, ..load::Course::default() };
+    let loading = course.watch.clone();
     let guard = Guard::default();
     guard.on_ctrl_c(move || {
         let _ = waker.send(Wake::Stop);
+        loading.cancel();
         stopped.lock().unwrap_or_else(PoisonError::into_inner).cancel();
     })?;
     let mut last_good: Option<Stage> = None;
@@ -42,9 +45,10 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
             args.render.size,
             &plugins,
             last_good.as_ref(),
-            &Beat::silent(),
+            &course,
         ) {
             Ok(loaded) => take(loaded, &plugins, &mut last_good, &mut changes, args.form())?,
+            Err(_) if course.watch.is_cancelled() => None,
             // A panic in a plugin ends this attempt, not the watch.
             Err(failure) => {
                 report::failure(&failure);

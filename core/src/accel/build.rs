@@ -1,195 +1,245 @@
-//! Building a mesh tree: check, cut into parts, cluster each with obvhs, collapse, join.
+//! Building trees: cut into parts, cluster each with obvhs, collapse, join.
+#![expect(unsafe_code, reason = "threads fill one array side by side")]
 
-use glam::Vec3;
+use std::sync::{Mutex, PoisonError};
+
 use rayon::prelude::*;
 
-use super::cluster::{cluster, join, slices};
-use super::collapse::{Costs, Root, Sink, collapse};
-use super::node::{Block, Bounds, Child, LANES, Node, narrow};
-use super::partition::{PART, Part, Prim};
+use super::cluster::{Clusters, Walk, bounds, join, slices};
+use super::collapse::{Binary, Costs, Plans, Root, Sink, collapse};
+use super::node::{Bounds, Child};
+use super::partition::{Part, Prim};
+use super::slabs::Boxes;
+use super::watch::Watch;
 
-const COSTS: Costs = Costs { node: 1.0, block: 0.6, max_leaf: 8 };
+/// Parts for each thread that are built before their results are joined: enough to keep threads busy,
+/// few enough that they are moved in a few milliseconds. No bit of the tree depends on it.
+pub(super) const BATCH: usize = 32;
 
-/// Parts built before their results are joined: enough to keep threads busy, few enough that what
-/// they hold stays small beside the tree.
-const BATCH: usize = 128;
+/// What a tree is made of.
+pub(super) trait Timber: Sync {
+    /// What the boxes of its nodes are made of.
+    type Number: Copy + Send + Sync + 'static;
+    /// What its leaves refer to.
+    type Block: Copy + Send + Sync + 'static;
+    /// A box in the precision of the tree.
+    type Bounds: Copy + Default + Send + Sync;
+
+    /// What steps cost.
+    const COSTS: Costs;
+
+    /// A leaf of primitives, at most `COSTS.max_leaf`, whose blocks are put behind the others.
+    fn leaf<'p>(
+        &self,
+        prims: impl ExactSizeIterator<Item = &'p Prim>,
+        blocks: &mut Vec<Self::Block>,
+    ) -> (Child, Self::Bounds);
+
+    /// A node and the box around it.
+    fn node(slots: &[(Child, Self::Bounds)]) -> (Boxes<Self::Number>, Self::Bounds);
+}
 
 /// Nodes and blocks, and where a ray starts.
-pub(super) struct Tree {
-    pub(super) nodes: Vec<Node>,
-    pub(super) blocks: Vec<Block>,
-    pub(super) root: Option<Root<Bounds>>,
+pub(super) struct Tree<T: Timber> {
+    pub(super) nodes: Vec<Boxes<T::Number>>,
+    pub(super) blocks: Vec<T::Block>,
+    pub(super) root: Option<Root<T::Bounds>>,
+    /// The box of the root as builders see it.
+    around: Bounds,
 }
 
-/// The triangles in the scaled frame of the tree.
-#[derive(Clone, Copy)]
-pub(super) struct Triangles<'a> {
-    pub(super) points: &'a [Vec3],
-    pub(super) indices: &'a [[u32; 3]],
-    pub(super) unit: f32,
-    pub(super) moves: Option<Moves<'a>>,
-}
-
-/// Where points move to, and the shares of the way between which they are met.
-#[derive(Clone, Copy)]
-pub(super) struct Moves<'a> {
-    pub(super) last: &'a [Vec3],
-    pub(super) shares: [f32; 2],
-}
-
-impl Triangles<'_> {
-    pub(super) fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.indices[triangle as usize].map(|i| self.points[i as usize] * self.unit)
+impl<T: Timber> Default for Tree<T> {
+    fn default() -> Self {
+        Self { nodes: vec![], blocks: vec![], root: None, around: Bounds::EMPTY }
     }
+}
 
-    /// The corners when all of the way is done.
-    pub(super) fn last_corners(&self, moves: &Moves<'_>, triangle: u32) -> [Vec3; 3] {
-        self.indices[triangle as usize].map(|i| moves.last[i as usize] * self.unit)
+/// The tree over these primitives; `None` once the watch is cancelled.
+pub(super) fn build<T: Timber>(timber: &T, mut prims: Vec<Prim>, watch: &Watch) -> Option<Tree<T>> {
+    let mut tree = Tree::default();
+    if !prims.is_empty() {
+        fill(&mut tree, timber, &mut prims, watch);
     }
+    if !watch.is_cancelled() {
+        return Some(tree);
+    }
+    // The system takes many milliseconds to take back as much memory: nobody waits for it.
+    let Tree { nodes, blocks, .. } = tree;
+    rayon::spawn(move || drop((nodes, blocks, prims)));
+    None
+}
 
-    /// The box of a triangle, wherever it moves to, or `None` if it never has an area: that of one
-    /// whose corners move evenly is a square of the time, which is zero at three times or always.
-    fn bounds(&self, triangle: u32) -> Option<Bounds> {
-        let first = self.corners(triangle);
-        let Some(moves) = &self.moves else { return standing_bounds(first) };
-        let last = self.last_corners(moves, triangle);
-        let [open, close] = moves.shares;
-        let at = |share: f32| [0, 1, 2].map(|i| first[i] + (last[i] - first[i]) * share);
-        let middle = 0.5 * open + 0.5 * close;
-        if [open, middle, close].into_iter().all(|share| standing_bounds(at(share)).is_none()) {
-            return None;
+/// Becomes the tree over these primitives, at least one; left off when the watch is cancelled.
+fn fill<T: Timber>(tree: &mut Tree<T>, timber: &T, prims: &mut [Prim], watch: &Watch) {
+    let upper = Part::cut(prims, watch);
+    if watch.is_cancelled() {
+        return;
+    }
+    let mut parts = slices(prims, &upper);
+    if let [part] = parts.as_mut_slice() {
+        return tree.grow(timber, part, &mut Tools::default(), watch);
+    }
+    let mut roots = Vec::with_capacity(parts.len());
+    let mut around = Vec::with_capacity(parts.len());
+    let n_threads = rayon::current_num_threads();
+    let tools: Vec<_> = (0..n_threads).map(|_| Mutex::default()).collect();
+    let batch = parts.len().min(BATCH * n_threads);
+    let mut grown: Vec<Tree<T>> = (0..batch).map(|_| Tree::default()).collect();
+    let n_parts = parts.len();
+    for batch in parts.chunks_mut(batch) {
+        let grown = &mut grown[..batch.len()];
+        batch.par_iter_mut().zip(grown.par_iter_mut()).for_each(|(part, tree)| {
+            // A thread's own: nobody waits.
+            let own = rayon::current_thread_index().unwrap_or(0);
+            let mut tools = tools[own].lock().unwrap_or_else(PoisonError::into_inner);
+            tree.grow(timber, part, &mut tools, watch);
+        });
+        if watch.is_cancelled() {
+            return;
         }
-        let corners = at(open).into_iter().chain(at(close));
-        Some(corners.fold(Bounds::EMPTY, Bounds::grow))
+        around.extend(grown.iter().map(|part| part.around));
+        tree.take(grown, n_parts, &mut roots);
     }
+    let binary = join(&upper, &around);
+    let mut walk = Walk::default();
+    walk.over(&binary);
+    let binary = Binary { nodes: &binary, order: &walk.order };
+    let costs = Costs { max_leaf: 1, ..T::COSTS };
+    let depth = roots.iter().map(|root| root.depth).max().unwrap_or(0);
+    let mut joint = Joint::<T> { nodes: &mut tree.nodes, roots: &roots };
+    let mut root = collapse(binary, costs, &mut Plans::default(), &mut joint);
+    root.depth += depth;
+    tree.root = Some(root);
+    tree.nodes.shrink_to_fit();
+    tree.blocks.shrink_to_fit();
 }
 
-/// The box of a triangle, or `None` if it has no area.
-fn standing_bounds([a, b, c]: [Vec3; 3]) -> Option<Bounds> {
-    let ab = b.as_dvec3() - a.as_dvec3();
-    let ac = c.as_dvec3() - a.as_dvec3();
-    let area = ab.cross(ac);
-    let bounds = Bounds { min: a.min(b).min(c), max: a.max(b).max(c) };
-    (area.x != 0.0 || area.y != 0.0 || area.z != 0.0).then_some(bounds)
+/// What a thread needs for one part after another.
+#[derive(Default)]
+struct Tools {
+    clusters: Clusters,
+    plans: Plans,
 }
 
-impl Triangles<'_> {
-    /// The triangles that have an area.
-    pub(super) fn prims(&self) -> Vec<Prim> {
-        let prim = |triangle: usize| {
-            let index = narrow(triangle);
-            Prim { bounds: self.bounds(index).unwrap_or(Bounds::EMPTY), index }
-        };
-        let n = self.indices.len();
-        let mut prims: Vec<Prim> = if n > PART {
-            (0..n).into_par_iter().map(prim).collect()
-        } else {
-            (0..n).map(prim).collect()
-        };
-        prims.retain(|p| p.bounds != Bounds::EMPTY);
-        prims
-    }
-
-    /// The tree over these primitives.
-    pub(super) fn tree(&self, mut prims: Vec<Prim>) -> Tree {
-        if prims.is_empty() {
-            return Tree { nodes: Vec::new(), blocks: Vec::new(), root: None };
+impl<T: Timber> Tree<T> {
+    /// Becomes the tree of one part.
+    fn grow(&mut self, timber: &T, prims: &mut [Prim], tools: &mut Tools, watch: &Watch) {
+        self.nodes.clear();
+        self.blocks.clear();
+        if watch.is_cancelled() {
+            return;
         }
-        let upper = Part::cut(&mut prims);
-        let mut parts = slices(&mut prims, &upper);
-        if parts.len() == 1 {
-            return self.part(parts[0]);
-        }
-        let mut tree = Tree { nodes: Vec::new(), blocks: Vec::new(), root: None };
-        let mut roots = Vec::with_capacity(parts.len());
-        for batch in parts.chunks_mut(BATCH) {
-            let built: Vec<Tree> = batch.par_iter_mut().map(|part| self.part(part)).collect();
-            roots.extend(built.into_iter().filter_map(|part| tree.append(part)));
-        }
-        let bounds: Vec<Bounds> = roots.iter().map(|root| root.bounds).collect();
-        let binary = join(&upper, &bounds);
-        let costs = Costs { max_leaf: 1, ..COSTS };
-        let depth = roots.iter().map(|root| root.depth).max().unwrap_or(0);
-        let nodes = &mut tree.nodes;
-        let mut root = collapse(&binary, costs, &mut Joint { nodes, roots: &roots });
-        root.depth += depth;
-        tree.root = Some(root);
-        tree.nodes.shrink_to_fit();
-        tree.blocks.shrink_to_fit();
-        tree
+        let Tools { clusters, plans } = tools;
+        let binary = clusters.of(prims);
+        self.around = bounds(&binary.nodes[0]);
+        let Self { nodes, blocks, .. } = self;
+        let mut leaves = Leaves { timber, prims, nodes, blocks };
+        self.root = Some(collapse(binary, T::COSTS, plans, &mut leaves));
+        watch.add(prims.len());
     }
 
-    fn part(&self, prims: &mut [Prim]) -> Tree {
-        let binary = cluster(prims);
-        let (nodes, blocks) = (Vec::new(), Vec::with_capacity(prims.len() / 2));
-        let mut leaves = Leaves { triangles: *self, prims, nodes, blocks };
-        let root = collapse(&binary, COSTS, &mut leaves);
-        Tree { nodes: leaves.nodes, blocks: leaves.blocks, root: Some(root) }
+    /// Takes what some of `n_parts` parts hold behind what it has; their roots are put to the others.
+    fn take(&mut self, parts: &mut [Self], n_parts: usize, roots: &mut Vec<Root<T::Bounds>>) {
+        let mut at = (self.nodes.len(), self.blocks.len());
+        let mut moves = Vec::with_capacity(parts.len());
+        for part in &mut *parts {
+            roots.extend(part.root.take().map(|root| {
+                let child = root.child.shifted(at.0, at.1);
+                Root { child, ..root }
+            }));
+            moves.push(at);
+            at = (at.0 + part.nodes.len(), at.1 + part.blocks.len());
+        }
+        // Parts are alike: room for all of them, of which only what is written takes memory.
+        let room = |n: usize| n + n * (n_parts - roots.len()) / roots.len() / 50 * 51;
+        append(
+            &mut self.nodes,
+            room(at.0),
+            parts,
+            |part| &part.nodes,
+            |i, mut node| {
+                node.children = node.children.map(|child| child.shifted(moves[i].0, moves[i].1));
+                node
+            },
+        );
+        append(&mut self.blocks, room(at.1), parts, |part| &part.blocks, |_, block| block);
     }
 }
 
-impl Tree {
-    /// Takes the nodes of another tree; returns its root as it is numbered here.
-    fn append(&mut self, part: Self) -> Option<Root<Bounds>> {
-        let (nodes, blocks) = (self.nodes.len(), self.blocks.len());
-        self.blocks.extend(part.blocks);
-        self.nodes.extend(part.nodes.into_iter().map(|mut node| {
-            node.children = node.children.map(|child| child.shifted(nodes, blocks));
-            node
-        }));
-        part.root.map(|root| Root { child: root.child.shifted(nodes, blocks), ..root })
+/// Puts what parts hold behind what is there, in parallel, after it has been changed by `map`, which
+/// is told the number of the part.
+fn append<P: Sync, X: Copy + Send + Sync>(
+    all: &mut Vec<X>,
+    room: usize,
+    parts: &[P],
+    get: impl Fn(&P) -> &[X] + Sync,
+    map: impl Fn(usize, X) -> X + Sync,
+) {
+    let n: usize = parts.iter().map(|part| get(part).len()).sum();
+    if all.capacity() < all.len() + n {
+        all.reserve_exact(room.max(all.len() + n) - all.len());
     }
+    let mut spare = &mut all.spare_capacity_mut()[..n];
+    let mut places = Vec::with_capacity(parts.len());
+    for part in parts {
+        let (place, rest) = spare.split_at_mut(get(part).len());
+        places.push(place);
+        spare = rest;
+    }
+    places.into_par_iter().zip(parts).enumerate().for_each(|(i, (place, part))| {
+        for (slot, one) in place.iter_mut().zip(get(part)) {
+            slot.write(map(i, *one));
+        }
+    });
+    let len = all.len() + n;
+    // SAFETY: the places cover the n slots behind the old end, and every slot of each was written.
+    unsafe { all.set_len(len) };
 }
 
-/// Fills leaf blocks with triangles.
-struct Leaves<'a> {
-    triangles: Triangles<'a>,
+/// Fills leaf blocks.
+struct Leaves<'a, T: Timber> {
+    timber: &'a T,
     prims: &'a [Prim],
-    nodes: Vec<Node>,
-    blocks: Vec<Block>,
+    nodes: &'a mut Vec<Boxes<T::Number>>,
+    blocks: &'a mut Vec<T::Block>,
 }
 
-impl Sink for Leaves<'_> {
-    type Bounds = Bounds;
+impl<T: Timber> Sink for Leaves<'_, T> {
+    type Bounds = T::Bounds;
 
-    fn leaf(&mut self, prims: &[u32]) -> (Child, Bounds) {
-        let first = self.blocks.len();
-        let mut bounds = Bounds::EMPTY;
-        for block in prims.chunks(LANES) {
-            let members = block.iter().map(|&p| &self.prims[p as usize]);
-            bounds = members.clone().fold(bounds, |b, p| b.union(p.bounds));
-            let corners = members.map(|p| (p.index, self.triangles.corners(p.index)));
-            self.blocks.push(Block::of(corners));
-        }
-        (Child::leaf(first, self.blocks.len() - first), bounds)
+    fn leaf(&mut self, prims: &[u32]) -> (Child, T::Bounds) {
+        self.timber.leaf(prims.iter().map(|&p| &self.prims[p as usize]), self.blocks)
     }
 
-    fn node(&mut self, slots: &[(Child, Bounds)]) -> (Child, Bounds) {
-        push_node(&mut self.nodes, slots)
+    fn node(&mut self, slots: &[(Child, T::Bounds)]) -> (Child, T::Bounds) {
+        push_node::<T>(self.nodes, slots)
     }
 }
 
 /// Joins the roots of parts.
-struct Joint<'a> {
-    nodes: &'a mut Vec<Node>,
-    roots: &'a [Root<Bounds>],
+struct Joint<'a, T: Timber> {
+    nodes: &'a mut Vec<Boxes<T::Number>>,
+    roots: &'a [Root<T::Bounds>],
 }
 
-impl Sink for Joint<'_> {
-    type Bounds = Bounds;
+impl<T: Timber> Sink for Joint<'_, T> {
+    type Bounds = T::Bounds;
 
-    fn leaf(&mut self, parts: &[u32]) -> (Child, Bounds) {
+    fn leaf(&mut self, parts: &[u32]) -> (Child, T::Bounds) {
         let root = self.roots[parts[0] as usize];
         (root.child, root.bounds)
     }
 
-    fn node(&mut self, slots: &[(Child, Bounds)]) -> (Child, Bounds) {
-        push_node(self.nodes, slots)
+    fn node(&mut self, slots: &[(Child, T::Bounds)]) -> (Child, T::Bounds) {
+        push_node::<T>(self.nodes, slots)
     }
 }
 
-fn push_node(nodes: &mut Vec<Node>, slots: &[(Child, Bounds)]) -> (Child, Bounds) {
-    let bounds = slots.iter().fold(Bounds::EMPTY, |b, slot| b.union(slot.1));
-    nodes.push(Node::of(slots));
+fn push_node<T: Timber>(
+    nodes: &mut Vec<Boxes<T::Number>>,
+    slots: &[(Child, T::Bounds)],
+) -> (Child, T::Bounds) {
+    let (node, bounds) = T::node(slots);
+    nodes.push(node);
     (Child::node(nodes.len() - 1), bounds)
 }

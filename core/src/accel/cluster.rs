@@ -2,14 +2,16 @@
 //!
 //! Source: Meister and Bittner 2018 (parallel locally-ordered clustering, reinsertion), in obvhs.
 
-use glam::Vec3;
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
+use super::collapse::Binary;
 use super::node::{Bounds, narrow};
-use super::partition::{Part, Prim, halve};
+use super::partition::{Part, Prim, centres, halve};
+use super::watch::Watch;
 
 /// Binary levels a clustered part may have. With the at most 12 + 18 levels above it the stack
 /// need stays at 3·78 + 4 entries or fewer, and a stack of 256 is always enough.
@@ -22,33 +24,6 @@ const MAX_EQUAL: usize = 8;
 /// Share of the nodes that obvhs tries to place better, per round.
 const REINSERTION: f32 = 0.02;
 
-/// The binary tree over all primitives; leaves hold positions in `prims`, which is reordered.
-pub(super) fn binary(prims: &mut [Prim]) -> Vec<Bvh2Node> {
-    let upper = Part::cut(prims);
-    let parts = slices(prims, &upper);
-    let sizes: Vec<usize> = parts.iter().map(|part| part.len()).collect();
-    let lower: Vec<Vec<Bvh2Node>> = parts.into_iter().map(cluster).collect();
-    let bounds: Vec<Bounds> = lower.iter().map(|tree| bounds(&tree[0])).collect();
-    let mut nodes = join(&upper, &bounds);
-    for at in 0..nodes.len() {
-        if !nodes[at].is_leaf() {
-            continue;
-        }
-        // The root of the part replaces this leaf; its other nodes follow at the end.
-        let part = nodes[at].first_index as usize;
-        let first: usize = sizes[..part].iter().sum();
-        let base = nodes.len() - 1;
-        let tree = lower[part].iter().map(|node| {
-            let by = if node.is_leaf() { first } else { base };
-            Bvh2Node { first_index: node.first_index + narrow(by), ..*node }
-        });
-        let mut tree = tree.collect::<Vec<_>>().into_iter();
-        nodes[at] = tree.next().expect("a part has at least one primitive");
-        nodes.extend(tree);
-    }
-    nodes
-}
-
 /// The parts themselves.
 pub(super) fn slices<'a>(mut prims: &'a mut [Prim], upper: &Part) -> Vec<&'a mut [Prim]> {
     let mut parts = Vec::new();
@@ -60,52 +35,122 @@ pub(super) fn slices<'a>(mut prims: &'a mut [Prim], upper: &Part) -> Vec<&'a mut
     parts
 }
 
-/// The binary tree of one part, of bounded depth.
-pub(super) fn cluster(prims: &mut [Prim]) -> Vec<Bvh2Node> {
-    if most_equal(prims) <= MAX_EQUAL {
-        let order = (0..narrow(prims.len())).collect();
-        let mut builder = PlocBuilder::new();
-        let mut bvh =
-            builder.build(PlocSearchDistance::VeryLow, prims, order, SortPrecision::U64, 0);
-        if is_within(PART_DEPTH, &bvh.nodes) {
-            ReinsertionOptimizer::default().run(&mut bvh, REINSERTION, None);
-            if is_within(PART_DEPTH, &bvh.nodes) {
-                return bvh.nodes;
-            }
-        }
-    }
-    let mut nodes = vec![Bvh2Node::default()];
-    halves(prims, 0, &mut Halves { nodes: &mut nodes, first: 0 }, 0);
-    nodes
+/// Clusters one part after another in the same memory.
+#[derive(Default)]
+pub(super) struct Clusters {
+    builder: PlocBuilder,
+    optimizer: ReinsertionOptimizer,
+    bvh: Bvh2,
+    walk: Walk,
+    groups: Vec<u8>,
 }
 
-/// The size of the largest group with the same box centre.
-fn most_equal(prims: &[Prim]) -> usize {
-    if prims.len() <= MAX_EQUAL {
-        return prims.len().min(1);
+impl Clusters {
+    /// The binary tree of one part, of bounded depth.
+    pub(super) fn of(&mut self, prims: &mut [Prim]) -> Binary<'_> {
+        if self.has_few_equal(prims) {
+            let mut order = std::mem::take(&mut self.bvh.primitive_indices);
+            order.clear();
+            order.extend(0..narrow(prims.len()));
+            let (distance, sort) = (PlocSearchDistance::VeryLow, SortPrecision::U64);
+            self.builder.build_with_bvh(&mut self.bvh, distance, prims, order, sort, 0);
+            if self.walk.down(&self.bvh.nodes) <= PART_DEPTH {
+                self.optimizer.run(&mut self.bvh, REINSERTION, None);
+                if self.walk.over(&self.bvh.nodes) <= PART_DEPTH {
+                    return Binary { nodes: &self.bvh.nodes, order: &self.walk.order };
+                }
+            }
+        }
+        let nodes = &mut self.bvh.nodes;
+        nodes.clear();
+        nodes.push(Bvh2Node::default());
+        halves(prims, 0, &mut Halves { nodes, first: 0, watch: Watch::default() }, 0);
+        self.walk.over(nodes);
+        Binary { nodes, order: &self.walk.order }
     }
-    let mut keys: Vec<u64> = prims
-        .iter()
-        .map(|p| {
-            // Adding zero makes one key of both zeros; unequal centres may share a key, harmlessly.
-            let [x, y, z] = (p.bounds.min + p.bounds.max + Vec3::ZERO)
-                .to_array()
-                .map(|c| u64::from(c.to_bits()));
-            (x | y << 32).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29) ^ z << 16
-        })
-        .collect();
-    keys.sort_unstable();
-    keys.chunk_by(|a, b| a == b).map(<[u64]>::len).max().unwrap_or(0)
+
+    /// Whether no group with the same box centre is large.
+    fn has_few_equal(&mut self, prims: &[Prim]) -> bool {
+        if prims.len() <= MAX_EQUAL {
+            return true;
+        }
+        // Adding zero makes one key of both zeros.
+        let key = |p: &Prim| (p.centre() + 0.0).to_array().map(f32::to_bits);
+        // Groups by some bits that are mixed of the key are at least as large.
+        self.groups.clear();
+        self.groups.resize(GROUPS, 0);
+        let most = prims.iter().fold(0, |most, p| {
+            let [x, y, z] = key(p);
+            let mixed = x.wrapping_mul(0x9E37_79B1).rotate_left(11) ^ y;
+            let mixed = mixed.wrapping_mul(0x85EB_CA77).rotate_left(13) ^ z;
+            let mixed = (mixed ^ mixed >> 15).wrapping_mul(0xC2B2_AE3D);
+            let group = &mut self.groups[(mixed >> (u32::BITS - GROUPS.ilog2())) as usize];
+            *group = group.saturating_add(1);
+            most.max(*group)
+        });
+        if usize::from(most) <= MAX_EQUAL {
+            return true;
+        }
+        let mut keys: Vec<[u32; 3]> = prims.iter().map(key).collect();
+        keys.sort_unstable();
+        keys.chunk_by(|a, b| a == b).all(|equal| equal.len() <= MAX_EQUAL)
+    }
+}
+
+/// So many that groups of unequal centres are rarely large.
+const GROUPS: usize = 1 << 12;
+
+/// The nodes of a tree, parents before their children.
+#[derive(Default)]
+pub(super) struct Walk {
+    pub(super) order: Vec<u32>,
+    stack: Vec<(u32, usize)>,
+}
+
+impl Walk {
+    /// How many nodes the longest path has, where children come after their parents.
+    fn down(&mut self, nodes: &[Bvh2Node]) -> usize {
+        let levels = &mut self.order;
+        levels.clear();
+        levels.resize(nodes.len(), 1);
+        let mut deepest = 1;
+        for (at, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+            let level = levels[at] + 1;
+            let first = node.first_index as usize;
+            levels[first..first + 2].fill(level);
+            deepest = deepest.max(level);
+        }
+        deepest as usize
+    }
+
+    /// Finds the order, and how many nodes the longest path has.
+    pub(super) fn over(&mut self, nodes: &[Bvh2Node]) -> usize {
+        self.order.clear();
+        self.stack.push((0, 1));
+        let mut deepest = 0;
+        while let Some((index, level)) = self.stack.pop() {
+            self.order.push(index);
+            deepest = deepest.max(level);
+            let node = &nodes[index as usize];
+            if !node.is_leaf() {
+                self.stack
+                    .extend([(node.first_index, level + 1), (node.first_index + 1, level + 1)]);
+            }
+        }
+        deepest
+    }
 }
 
 struct Halves<'a> {
     nodes: &'a mut Vec<Bvh2Node>,
     first: usize,
+    /// Nobody's: parts are small.
+    watch: Watch,
 }
 
 /// Builds `nodes[at]` by cutting down to single primitives.
 fn halves(prims: &mut [Prim], at: usize, out: &mut Halves<'_>, depth: usize) {
-    let all = prims.iter().fold(Bounds::EMPTY, |b, p| b.union(p.bounds));
+    let all = prims.iter().fold(Bounds::EMPTY, |b, p| b.union(p.bounds()));
     if prims.len() == 1 {
         out.nodes[at] = binary_node(all, 1, out.first);
         out.first += 1;
@@ -114,7 +159,8 @@ fn halves(prims: &mut [Prim], at: usize, out: &mut Halves<'_>, depth: usize) {
     let children = out.nodes.len();
     out.nodes[at] = binary_node(all, 0, children);
     out.nodes.extend([Bvh2Node::default(); 2]);
-    let (left, right) = halve(prims, depth);
+    let (middle, _) = halve(prims, centres(prims, &out.watch), depth, &out.watch);
+    let (left, right) = prims.split_at_mut(middle);
     halves(left, children, out, depth + 1);
     halves(right, children + 1, out, depth + 1);
 }
@@ -157,24 +203,9 @@ impl Upper<'_> {
 /// A node's box in our type.
 pub(super) fn bounds(node: &Bvh2Node) -> Bounds {
     let aabb = node.aabb();
-    Bounds { min: Vec3::from(aabb.min), max: Vec3::from(aabb.max) }
+    Bounds { min: aabb.min, max: aabb.max }
 }
 
 fn binary_node(bounds: Bounds, n_prims: u32, first: usize) -> Bvh2Node {
-    Bvh2Node::new(Aabb::new(bounds.min.into(), bounds.max.into()), n_prims, narrow(first))
-}
-
-/// True if no path of the tree has more nodes than this.
-fn is_within(depth: usize, nodes: &[Bvh2Node]) -> bool {
-    let mut stack = vec![(0u32, 1usize)];
-    while let Some((index, level)) = stack.pop() {
-        if level > depth {
-            return false;
-        }
-        let node = &nodes[index as usize];
-        if !node.is_leaf() {
-            stack.extend([(node.first_index, level + 1), (node.first_index + 1, level + 1)]);
-        }
-    }
-    true
+    Bvh2Node::new(Aabb::new(bounds.min, bounds.max), n_prims, narrow(first))
 }

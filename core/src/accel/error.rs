@@ -27,6 +27,8 @@ pub enum BuildError {
         /// How many there may be.
         limit: usize,
     },
+    /// The [`Watch`](super::Watch) was cancelled.
+    Cancelled,
 }
 
 impl fmt::Display for BuildError {
@@ -39,6 +41,7 @@ impl fmt::Display for BuildError {
             Self::TooManyTriangles { n_triangles, limit } => {
                 write!(f, "{n_triangles} triangles in one mesh, the limit is {limit}")
             }
+            Self::Cancelled => f.write_str("cancelled"),
         }
     }
 }

@@ -1,18 +1,18 @@
 //! The triangles of one mesh, ready to trace.
 
-use glam::{DVec3, Vec3};
-use rayon::prelude::*;
+use glam::{DVec3, Vec3, Vec3A};
 
-use super::build::{Moves, Tree, Triangles};
+use super::build::{Tree, build};
 use super::error::BuildError;
 use super::node::{Block, Bounds, Child, Node, Shift};
-use super::partition::PART;
 use super::precision::Precision;
 use super::processor::{Processor, prefetch};
 use super::ray::{Direction, Line, Shear};
 use super::slabs::Slabs;
 use super::stack::{Room, Stack, is_enough_for};
 use super::triangle::Nearest;
+use super::triangles::Triangles;
+use super::watch::Watch;
 
 /// A mesh's triangles in an eight-wide tree, in f32 about the mesh's own centre.
 ///
@@ -63,42 +63,52 @@ impl MeshBvh {
     /// A point that is not finite (used or not), an index past the points, or more than 2²⁹
     /// triangles.
     pub fn build(points: &[Vec3], indices: &[[u32; 3]]) -> Result<Self, BuildError> {
-        check(points, indices)?;
-        Ok(Self::of((points, indices), None))
+        Self::build_watched(points, indices, &Watch::default())
+    }
+
+    /// The same, followed and perhaps stopped by `watch`.
+    ///
+    /// # Errors
+    /// As `build`; that the watch was cancelled.
+    pub fn build_watched(
+        points: &[Vec3],
+        indices: &[[u32; 3]],
+        watch: &Watch,
+    ) -> Result<Self, BuildError> {
+        watch.begin(indices.len(), "triangles");
+        Self::of(&Triangles::new(points, indices, watch)?, indices.len(), watch)
     }
 
     /// The same over triangles whose points move evenly to those of `last`, of which there are as
     /// many. Rays meet them between the two `shares` of the way.
     ///
     /// # Errors
-    /// As `build`.
+    /// As `build_watched`.
     pub fn build_moving(
         (points, last): (&[Vec3], &[Vec3]),
         indices: &[[u32; 3]],
         shares: [f32; 2],
+        watch: &Watch,
     ) -> Result<Self, BuildError> {
-        check(points, indices)?;
-        check(last, indices)?;
-        Ok(Self::of((points, indices), Some(Moves { last, shares })))
+        watch.begin(indices.len(), "triangles");
+        let triangles = Triangles::new(points, indices, watch)?.moving(last, shares, watch)?;
+        Self::of(&triangles, indices.len(), watch)
     }
 
-    fn of((points, indices): (&[Vec3], &[[u32; 3]]), moves: Option<Moves<'_>>) -> Self {
-        let all = points.iter().chain(moves.iter().flat_map(|moves| moves.last));
-        let largest = all.fold(Vec3::ZERO, |m, p| m.max(p.abs())).max_element();
-        let unit = 1.0 / power_of_two_below(largest);
-        let triangles = Triangles { points, indices, unit, moves };
-        let prims = triangles.prims();
-        let dropped = indices.len() - prims.len();
-        let Tree { nodes, blocks, root } = triangles.tree(prims);
-        let size = root.map_or(Bounds { min: Vec3::ZERO, max: Vec3::ZERO }, |root| root.bounds);
+    fn of(triangles: &Triangles<'_>, n: usize, watch: &Watch) -> Result<Self, BuildError> {
+        let prims = triangles.prims(watch);
+        let dropped = n - prims.len();
+        let Tree { nodes, blocks, root, .. } =
+            build(triangles, prims, watch).ok_or(BuildError::Cancelled)?;
+        watch.add(dropped);
+        let size = root.map_or(Bounds { min: Vec3A::ZERO, max: Vec3A::ZERO }, |root| root.bounds);
         debug_assert!(
             root.is_none_or(|root| is_enough_for(root.depth)),
             "builders bound the depth"
         );
-        let shift =
-            |block: &Block| moves.map(|moves| block.shift(|id| triangles.last_corners(&moves, id)));
-        let shifts = blocks.iter().filter_map(shift).collect();
-        Self {
+        let shifts = blocks.iter().filter_map(|block| triangles.shift(block)).collect();
+        let unit = triangles.unit;
+        Ok(Self {
             nodes,
             blocks,
             shifts,
@@ -106,9 +116,30 @@ impl MeshBvh {
             unit,
             per_unit: 1.0 / unit,
             reach: size.min.abs().max(size.max.abs()).max_element(),
-            bounds: root.map(|_| (size.min / unit, size.max / unit)),
+            bounds: root.map(|_| ((size.min / unit).into(), (size.max / unit).into())),
             dropped,
+        })
+    }
+
+    /// Every bit of the tree, mixed.
+    #[cfg(test)]
+    pub(super) fn fingerprint(&self) -> u64 {
+        use std::hash::{DefaultHasher, Hash, Hasher};
+        let mut all = DefaultHasher::new();
+        for node in &self.nodes {
+            for plane in node.planes.as_flattened() {
+                plane.map(f32::to_bits).hash(&mut all);
+            }
+            format!("{:?} {:?}", node.children, node.order).hash(&mut all);
         }
+        for block in &self.blocks {
+            for points in block.points.as_flattened() {
+                points.to_array().map(f32::to_bits).hash(&mut all);
+            }
+            block.ids.hash(&mut all);
+        }
+        format!("{:?} {:?} {}", self.root, self.bounds, self.dropped).hash(&mut all);
+        all.finish()
     }
 
     /// How many triangles were left out because they have no area.
@@ -337,32 +368,4 @@ impl MeshWalk<'_> {
     pub fn hit(&self) -> Option<MeshHit> {
         self.tree.found(&self.best, self.probe.precision)
     }
-}
-
-/// The power of two at or below `x`, within 2^±100; 1 for zero.
-fn power_of_two_below(x: f32) -> f32 {
-    let power = f32::from_bits(x.to_bits() & 0x7f80_0000);
-    if x > 0.0 { power.clamp(f32::from_bits(27 << 23), f32::from_bits(227 << 23)) } else { 1.0 }
-}
-
-fn check(points: &[Vec3], indices: &[[u32; 3]]) -> Result<(), BuildError> {
-    let limit = Child::BLOCK_LIMIT;
-    if indices.len() >= limit {
-        return Err(BuildError::TooManyTriangles { n_triangles: indices.len(), limit });
-    }
-    if let Some(point) = points.iter().position(|p| !p.is_finite()) {
-        return Err(BuildError::NonFinitePoint { point });
-    }
-    let n_points = points.len();
-    let outside = |t: &[u32; 3]| t.iter().any(|&i| i as usize >= n_points);
-    let bad = if indices.len() > PART {
-        indices.par_iter().position_first(outside)
-    } else {
-        indices.iter().position(outside)
-    };
-    bad.map_or(Ok(()), |triangle| {
-        let index = indices[triangle].into_iter().find(|&i| i as usize >= n_points);
-        let index = index.expect("this triangle was found by having one");
-        Err(BuildError::IndexOutOfRange { triangle, index, n_points })
-    })
 }

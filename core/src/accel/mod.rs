@@ -21,6 +21,9 @@ mod cluster;
 mod collapse;
 mod error;
 mod partition;
+mod passes;
+mod triangles;
+mod watch;
 
 mod top;
 
@@ -30,6 +33,8 @@ mod leak_tests;
 mod mesh_tests;
 #[cfg(test)]
 mod soup;
+#[cfg(test)]
+mod watch_tests;
 
 pub use error::BuildError;
 pub use mesh::{Begun, MeshBvh, MeshHit, MeshWalk, Query};
@@ -38,3 +43,4 @@ pub use processor::{Processor, Work};
 pub use ray::Direction;
 pub use stack::{Room, Stack};
 pub use top::{Box64, TopBvh, TopWalk};
+pub use watch::{Standing, Watch};

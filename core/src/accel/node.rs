@@ -1,6 +1,6 @@
 //! The wide tree in memory: nodes of eight boxes, blocks of four triangles, references between them.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec3A, Vec3Swizzles, Vec4};
 
 use super::slabs::Boxes;
 
@@ -70,25 +70,31 @@ pub(super) fn narrow(index: usize) -> u32 {
 /// An axis-aligned box; empty if `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
-    pub(super) min: Vec3,
-    pub(super) max: Vec3,
+    pub(super) min: Vec3A,
+    pub(super) max: Vec3A,
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::EMPTY
+    }
 }
 
 impl Bounds {
-    pub(super) const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+    pub(super) const EMPTY: Self = Self { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
 
     pub(super) fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    pub(super) fn grow(self, p: Vec3) -> Self {
+    pub(super) fn grow(self, p: Vec3A) -> Self {
         Self { min: self.min.min(p), max: self.max.max(p) }
     }
 
     /// Half the surface; 0 for an empty box. Coordinates are at most 2, so nothing overflows.
     pub(super) fn half_area(self) -> f32 {
-        let e = (self.max - self.min).max(Vec3::ZERO);
-        e.x * e.y + e.y * e.z + e.z * e.x
+        let e = (self.max - self.min).max(Vec3A::ZERO);
+        e.dot(e.yzx())
     }
 }
 
@@ -100,17 +106,23 @@ impl Bounds {
 pub(super) struct Order(pub(super) [u32; 8]);
 
 impl Order {
-    pub(super) fn of(centres: &[[f64; 3]; WIDTH]) -> Self {
+    /// By the centres of the boxes of the first slots; empty ones lie anywhere.
+    pub(super) fn of(centres: &[[f64; 3]]) -> Self {
         let mut orders = [0; 8];
-        for (octant, order) in orders.iter_mut().enumerate() {
-            let key = |slot: u32| -> f64 {
-                let sign = |axis: usize| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 };
-                let c = centres[slot as usize];
-                (0..3).map(|axis| c[axis] * sign(axis)).sum()
-            };
-            let mut slots = [0u32, 1, 2, 3, 4, 5, 6, 7];
-            slots.sort_by(|&a, &b| key(a).total_cmp(&key(b)));
-            *order = slots.iter().fold(0, |bits, slot| bits << 3 | slot);
+        for octant in 0..4 {
+            let mut keys = [0; WIDTH];
+            for (key, c) in keys.iter_mut().zip(centres) {
+                let sign = |axis: usize| if octant >> axis & 1 == 0 { c[axis] } else { -c[axis] };
+                *key = ordered(sign(0) + sign(1) + sign(2));
+            }
+            for slot in 0..WIDTH {
+                // Its place is how many are before it; of equal ones the earlier slots.
+                let before = |i: usize| keys[i] < keys[slot] || keys[i] == keys[slot] && i < slot;
+                let place: u32 = (0..WIDTH).map(|i| u32::from(before(i))).sum();
+                orders[octant] |= narrow(slot) << (3 * (7 - place));
+                // The opposite direction meets them the other way round.
+                orders[7 - octant] |= narrow(slot) << (3 * place);
+            }
         }
         Self(orders)
     }
@@ -129,6 +141,12 @@ impl Order {
     }
 }
 
+/// Maps numbers to integers of the same order; NaN lies at an end.
+fn ordered(x: f64) -> i64 {
+    let bits = x.to_bits().cast_signed();
+    bits ^ ((bits >> 63) & i64::MAX)
+}
+
 /// Eight boxes around triangles.
 pub(super) type Node = Boxes<f32>;
 
@@ -138,7 +156,7 @@ impl Node {
         debug_assert!((1..=WIDTH).contains(&slots.len()));
         let mut planes = [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3];
         let mut children = [Child(0); WIDTH];
-        let mut centres = [[f64::INFINITY; 3]; WIDTH];
+        let mut centres = [[0.0; 3]; WIDTH];
         for (slot, (child, bounds)) in slots.iter().enumerate() {
             children[slot] = *child;
             for axis in 0..3 {
@@ -147,7 +165,7 @@ impl Node {
                 centres[slot][axis] = f64::from(bounds.min[axis]) + f64::from(bounds.max[axis]);
             }
         }
-        Self { planes, children, order: Order::of(&centres) }
+        Self { planes, children, order: Order::of(&centres[..slots.len()]) }
     }
 }
 

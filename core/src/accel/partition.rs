@@ -3,11 +3,13 @@
 //! Parts bound the memory and the depth of a build, give rayon its tasks, and are small enough that
 //! clustering stays in cache. Source: Wald 2007, "On fast Construction of SAH-based BVHs".
 
-use glam::Vec3;
+use glam::{Vec3A, Vec4};
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 
 use super::node::Bounds;
+use super::passes::{fold, median, partition};
+use super::watch::Watch;
 
 /// Primitives that one clustering takes; larger parts are cut, and cut in parallel.
 ///
@@ -18,25 +20,58 @@ pub(super) const PART: usize = 2048;
 /// Cuts by area this deep, then by count, which bounds the depth at 12 + log₂ n.
 const AREA_DEPTH: usize = 12;
 
+/// A power of two.
 const BINS: usize = 16;
+
+/// The last bin.
+const LAST: f32 = 15.0;
 
 /// A primitive as a builder sees it; coordinates are finite and at most 2 in size.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prim {
-    pub(super) bounds: Bounds,
-    pub(super) index: u32,
+    /// The least corner, and the number in the bits of a float that is neither subnormal nor NaN.
+    low: Vec4,
+    high: Vec4,
 }
 
+/// Beside a number below 2²⁹ it makes a normal float.
+const NORMAL: u32 = 1 << 30;
+
 impl Prim {
+    /// A primitive and its number, below 2²⁹.
+    pub(super) fn new(bounds: Bounds, index: u32) -> Self {
+        let low = bounds.min.extend(f32::from_bits(NORMAL | index));
+        Self { low, high: bounds.max.extend(1.0) }
+    }
+
+    pub(super) fn index(&self) -> u32 {
+        self.low.w.to_bits() & !NORMAL
+    }
+
+    pub(super) fn bounds(&self) -> Bounds {
+        Bounds { min: Vec3A::from_vec4(self.low), max: Vec3A::from_vec4(self.high) }
+    }
+
+    /// Whether its box holds anything.
+    pub(super) fn is_real(&self) -> bool {
+        self.low.x <= self.high.x
+    }
+
     /// Twice the centre of the box.
-    fn centre(&self) -> Vec3 {
-        self.bounds.min + self.bounds.max
+    pub(super) fn centre(&self) -> Vec3A {
+        Vec3A::from_vec4(self.low + self.high)
+    }
+
+    /// The same along one axis.
+    pub(super) fn centre_along(&self, axis: usize) -> f32 {
+        self.low.as_ref()[axis & 3] + self.high.as_ref()[axis & 3]
     }
 }
 
 impl Boundable for Prim {
     fn aabb(&self) -> Aabb {
-        Aabb::new(self.bounds.min.into(), self.bounds.max.into())
+        let Bounds { min, max } = self.bounds();
+        Aabb::new(min, max)
     }
 }
 
@@ -48,18 +83,23 @@ pub(super) enum Part {
 }
 
 impl Part {
-    /// Reorders the primitives so that each part is contiguous.
-    pub(super) fn cut(prims: &mut [Prim]) -> Self {
-        Self::cut_at(prims, 0)
+    /// Reorders the primitives so that each part is contiguous. Parts are of any size once the watch
+    /// is cancelled.
+    pub(super) fn cut(prims: &mut [Prim], watch: &Watch) -> Self {
+        let centres = if prims.len() > PART { centres(prims, watch) } else { Bounds::EMPTY };
+        Self::cut_at(prims, centres, 0, watch)
     }
 
-    fn cut_at(prims: &mut [Prim], depth: usize) -> Self {
-        if prims.len() <= PART {
+    fn cut_at(prims: &mut [Prim], centres: Bounds, depth: usize, watch: &Watch) -> Self {
+        if prims.len() <= PART || watch.is_cancelled() {
             return Self::Leaf(prims.len());
         }
-        let (left, right) = halve(prims, depth);
-        let (left, right) =
-            rayon::join(|| Self::cut_at(left, depth + 1), || Self::cut_at(right, depth + 1));
+        let (middle, sides) = halve(prims, centres, depth, watch);
+        let (left, right) = prims.split_at_mut(middle);
+        let (left, right) = rayon::join(
+            || Self::cut_at(left, sides[0], depth + 1, watch),
+            || Self::cut_at(right, sides[1], depth + 1, watch),
+        );
         Self::Split(Box::new([left, right]))
     }
 
@@ -72,32 +112,67 @@ impl Part {
     }
 }
 
-/// Reorders at least two primitives into two halves, neither empty.
-pub(super) fn halve(prims: &mut [Prim], depth: usize) -> (&mut [Prim], &mut [Prim]) {
-    let centres = prims.iter().fold(Bounds::EMPTY, |b, p| b.grow(p.centre()));
+/// The box around all centres.
+pub(super) fn centres(prims: &[Prim], watch: &Watch) -> Bounds {
+    let grow = |all: Bounds, prims: &[Prim]| prims.iter().fold(all, |b, p| b.grow(p.centre()));
+    fold(prims, watch, || Bounds::EMPTY, grow, Bounds::union)
+}
+
+/// Reorders at least two primitives, given the box around their centres, into two halves, neither
+/// empty. How many the first has, and the centres' boxes of both.
+pub(super) fn halve(
+    prims: &mut [Prim],
+    centres: Bounds,
+    depth: usize,
+    watch: &Watch,
+) -> (usize, [Bounds; 2]) {
     let extent = centres.max - centres.min;
     let axis = extent.max_position();
     let scale = BINS as f32 / extent[axis];
-    let bin = Binning { axis, origin: centres.min[axis], scale };
+    let binning = Binning { axis, origin: centres.min[axis], scale };
     // Without an extent, or with one that vanishes in the scale, no plane separates anything.
-    let cut = if extent[axis] > 0.0 && scale.is_finite() && depth < AREA_DEPTH {
-        bin.cheapest(prims).map(|plane| bin.sort(prims, plane))
-    } else {
-        None
-    };
-    let middle = match cut {
-        Some(middle) if (1..prims.len()).contains(&middle) => middle,
-        _ => {
-            let middle = prims.len() / 2;
-            prims.select_nth_unstable_by(middle, |a, b| {
-                let key = |p: &Prim| p.centre()[axis];
-                key(a).total_cmp(&key(b)).then(a.index.cmp(&b.index))
-            });
-            middle
+    if extent[axis] > 0.0 && scale.is_finite() && depth < AREA_DEPTH {
+        let bins = binning.fill(prims, watch);
+        if let Some(plane) = cheapest(&bins) {
+            let middle = partition(prims, watch, |p| binning.of(p) < plane);
+            if (1..prims.len()).contains(&middle) {
+                let around = |bins: &[Bin]| {
+                    bins.iter().fold(Bounds::EMPTY, |all, bin| all.union(bin.centres))
+                };
+                return (middle, [around(&bins[..plane]), around(&bins[plane..])]);
+            }
         }
-    };
-    prims.split_at_mut(middle)
+    }
+    let middle = median(prims, axis, watch);
+    let (left, right) = prims.split_at(middle);
+    (middle, [self::centres(left, watch), self::centres(right, watch)])
 }
+
+/// Primitives whose centres lie between two planes.
+#[derive(Clone, Copy)]
+struct Bin {
+    n: usize,
+    bounds: Bounds,
+    centres: Bounds,
+}
+
+impl Bin {
+    const EMPTY: Self = Self { n: 0, bounds: Bounds::EMPTY, centres: Bounds::EMPTY };
+
+    fn join(self, other: Self) -> Self {
+        Self {
+            n: self.n + other.n,
+            bounds: self.bounds.union(other.bounds),
+            centres: self.centres.union(other.centres),
+        }
+    }
+
+    fn cost(&self) -> f32 {
+        self.n as f32 * self.bounds.half_area()
+    }
+}
+
+type Bins = [Bin; BINS];
 
 struct Binning {
     axis: usize,
@@ -107,54 +182,51 @@ struct Binning {
 
 impl Binning {
     fn of(&self, p: &Prim) -> usize {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the bin below; the cast saturates at both ends"
-        )]
-        let bin = ((p.centre()[self.axis] - self.origin) * self.scale) as usize;
-        bin.min(BINS - 1)
+        let at = (p.centre_along(self.axis) - self.origin) * self.scale - 0.5;
+        let at = if at > 0.0 { at } else { 0.0 };
+        let at = if at < LAST { at } else { LAST };
+        // Rounds to an integer, which then stands in the last bits: a cast would cost more.
+        (at + 8_388_608.0).to_bits() as usize % BINS
     }
 
-    /// The first bin of the right half where count × area is least.
-    fn cheapest(&self, prims: &[Prim]) -> Option<usize> {
-        let mut bins = [(0usize, Bounds::EMPTY); BINS];
-        for p in prims {
-            let bin = &mut bins[self.of(p)];
-            *bin = (bin.0 + 1, bin.1.union(p.bounds));
-        }
-        let cost = |(n, bounds): (usize, Bounds)| n as f32 * bounds.half_area();
-        let join = |a: (usize, Bounds), b: (usize, Bounds)| (a.0 + b.0, a.1.union(b.1));
-        let mut right = [0.0; BINS];
-        let mut sum = (0, Bounds::EMPTY);
-        for i in (1..BINS).rev() {
-            sum = join(sum, bins[i]);
-            right[i] = cost(sum);
-        }
-        let mut best = None;
-        let mut least = f32::INFINITY;
-        let mut sum = (0, Bounds::EMPTY);
-        for i in 1..BINS {
-            sum = join(sum, bins[i - 1]);
-            let total = cost(sum) + right[i];
-            if sum.0 > 0 && sum.0 < prims.len() && total < least {
-                (best, least) = (Some(i), total);
+    fn fill(&self, prims: &[Prim], watch: &Watch) -> Bins {
+        let join = |a: Bins, b: Bins| std::array::from_fn(|i| a[i].join(b[i]));
+        let put = |bins: Bins, prims: &[Prim]| {
+            // Neighbours often share a bin; with two sets neither waits for the other.
+            let mut sides = [bins, [Bin::EMPTY; BINS]];
+            for pair in prims.chunks(2) {
+                for (p, bins) in pair.iter().zip(&mut sides) {
+                    let bin = &mut bins[self.of(p)];
+                    bin.n += 1;
+                    bin.bounds = bin.bounds.union(p.bounds());
+                    bin.centres = bin.centres.grow(p.centre());
+                }
             }
-        }
-        best
+            let [a, b] = sides;
+            join(a, b)
+        };
+        fold(prims, watch, || [Bin::EMPTY; BINS], put, join)
     }
+}
 
-    /// Moves what lies before the plane to the front; returns how many that are.
-    fn sort(&self, prims: &mut [Prim], plane: usize) -> usize {
-        let (mut first, mut end) = (0, prims.len());
-        while first < end {
-            if self.of(&prims[first]) < plane {
-                first += 1;
-            } else {
-                end -= 1;
-                prims.swap(first, end);
-            }
-        }
-        first
+/// The first bin of the right half where count × area is least.
+fn cheapest(bins: &Bins) -> Option<usize> {
+    let mut right = [0.0; BINS];
+    let mut sum = Bin::EMPTY;
+    for i in (1..BINS).rev() {
+        sum = sum.join(bins[i]);
+        right[i] = sum.cost();
     }
+    let all = sum.join(bins[0]).n;
+    let mut best = None;
+    let mut least = f32::INFINITY;
+    let mut sum = Bin::EMPTY;
+    for i in 1..BINS {
+        sum = sum.join(bins[i - 1]);
+        let total = sum.cost() + right[i];
+        if sum.n > 0 && sum.n < all && total < least {
+            (best, least) = (Some(i), total);
+        }
+    }
+    best
 }

@@ -2,21 +2,20 @@
 //!
 //! Boxes are given by the caller, who makes them hold what they stand for.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3A};
 
-use super::cluster::binary;
-use super::collapse::{Costs, Sink, collapse};
+use super::build::{Timber, Tree, build};
+use super::collapse::Costs;
 use super::node::{Bounds, Child, Order, WIDTH, narrow};
 use super::partition::Prim;
+use super::passes::fold;
 use super::processor::Processor;
 use super::slabs::{Boxes, Slabs};
 use super::stack::{Stack, is_enough_for};
+use super::watch::{STRIDE, Watch};
 
 /// Unit roundoff of f64.
 const U: f64 = f64::EPSILON / 2.0;
-
-/// Visiting one placement costs several box tests.
-const COSTS: Costs = Costs { node: 1.0, block: 2.0, max_leaf: 1 };
 
 /// Boxes in world space in an eight-wide tree.
 #[derive(Debug)]
@@ -39,21 +38,30 @@ impl TopBvh {
     ///
     /// # Panics
     /// With more boxes than that.
-    pub fn build(boxes: &[(DVec3, DVec3)]) -> Self {
+    pub fn build(boxes: &[Box64]) -> Self {
+        Self::build_watched(boxes, &Watch::default()).expect("nobody has cancelled it")
+    }
+
+    /// The same, followed by `watch`; `None` once that is cancelled.
+    ///
+    /// # Panics
+    /// As `build`.
+    pub fn build_watched(boxes: &[Box64], watch: &Watch) -> Option<Self> {
         assert!(boxes.len() < Child::BLOCK_LIMIT, "at most 2^29 placements");
-        let mut prims = prims(boxes);
-        if prims.is_empty() {
-            return Self { nodes: Vec::new(), root: None };
-        }
-        let binary = binary(&mut prims);
-        let mut sink = TopSink { boxes, prims: &prims, nodes: Vec::new() };
-        let mut root = collapse(&binary, COSTS, &mut sink);
-        if root.child.is_leaf() {
-            root.child = sink.node(&[(root.child, root.bounds)]).0;
-            root.depth = 1;
-        }
-        debug_assert!(is_enough_for(root.depth), "builders bound the depth");
-        Self { nodes: sink.nodes, root: Some(root.child) }
+        watch.begin(boxes.len(), "parts");
+        let prims = prims(boxes, watch);
+        let ignored = boxes.len() - prims.len();
+        let Tree { mut nodes, root, .. } = build(&Boxed(boxes), prims, watch)?;
+        watch.add(ignored);
+        let root = root.map(|root| {
+            debug_assert!(is_enough_for(root.depth.max(1)), "builders bound the depth");
+            if !root.child.is_leaf() {
+                return root.child;
+            }
+            nodes.push(Boxed::node(&[(root.child, root.bounds)]).0);
+            Child::node(0)
+        });
+        Some(Self { nodes, root })
     }
 
     /// A ray that looks for the boxes it enters at or before a limit.
@@ -99,21 +107,26 @@ impl TopWalk<'_> {
 
 /// The boxes in f32 within [−1, 1], for the builder alone: only the shape of the tree depends on
 /// them, so rounding is harmless and what is infinite is clamped.
-fn prims(boxes: &[Box64]) -> Vec<Prim> {
-    let real = |b: &&Box64| b.0.cmple(b.1).all();
-    let finite = |c: f64| if c.is_finite() { c } else { 0.0 };
-    let largest = boxes.iter().filter(real).flat_map(|b| [b.0, b.1]).flat_map(|p| p.to_array());
-    let largest = largest.map(|c| finite(c).abs()).fold(f64::MIN_POSITIVE, f64::max);
-    let narrow_point = |p: DVec3| -> Vec3 { p.map(|c| (c / largest).clamp(-1.0, 1.0)).as_vec3() };
-    boxes
-        .iter()
-        .enumerate()
-        .filter(|(_, b)| real(b))
-        .map(|(index, b)| {
-            let bounds = Bounds { min: narrow_point(b.0), max: narrow_point(b.1) };
-            Prim { bounds, index: narrow(index) }
-        })
-        .collect()
+fn prims(boxes: &[Box64], watch: &Watch) -> Vec<Prim> {
+    let real = |b: &Box64| b.0.cmple(b.1).all();
+    let finite = |c: f64| if c.is_finite() { c.abs() } else { 0.0 };
+    let reach = |all: f64, boxes: &[Box64]| {
+        let corners = boxes.iter().filter(|b| real(b)).flat_map(|b| [b.0, b.1]);
+        corners.flat_map(|p| p.to_array()).map(finite).fold(all, f64::max)
+    };
+    let largest = fold(boxes, watch, || f64::MIN_POSITIVE, reach, f64::max);
+    let narrowed = |p: DVec3| Vec3A::from(p.map(|c| (c / largest).clamp(-1.0, 1.0)).as_vec3());
+    let mut prims = Vec::with_capacity(boxes.len());
+    for (stride, boxes) in boxes.chunks(STRIDE).enumerate() {
+        if watch.is_cancelled() {
+            break;
+        }
+        prims.extend((stride * STRIDE..).zip(boxes).filter(|(_, b)| real(b)).map(|(index, b)| {
+            let bounds = Bounds { min: narrowed(b.0), max: narrowed(b.1) };
+            Prim::new(bounds, narrow(index))
+        }));
+    }
+    prims
 }
 
 /// The box moved outward by 8u of its own coordinates, for the roundings of whoever computed it.
@@ -123,24 +136,31 @@ fn widened((min, max): Box64) -> Box64 {
     (min - slack, max + slack)
 }
 
-struct TopSink<'a> {
-    boxes: &'a [Box64],
-    prims: &'a [Prim],
-    nodes: Vec<TopNode>,
-}
+/// Boxes as what a tree is built of.
+struct Boxed<'a>(&'a [Box64]);
 
-impl Sink for TopSink<'_> {
+impl Timber for Boxed<'_> {
+    type Number = f64;
+    /// Leaves are the boxes' own numbers.
+    type Block = ();
     type Bounds = Box64;
 
-    fn leaf(&mut self, prims: &[u32]) -> (Child, Box64) {
-        let index = self.prims[prims[0] as usize].index as usize;
-        (Child::leaf(index, 1), widened(self.boxes[index]))
+    /// Visiting one placement costs several box tests.
+    const COSTS: Costs = Costs { node: 1.0, block: 2.0, max_leaf: 1 };
+
+    fn leaf<'p>(
+        &self,
+        prims: impl ExactSizeIterator<Item = &'p Prim>,
+        _: &mut Vec<()>,
+    ) -> (Child, Box64) {
+        let index = prims.last().expect("a leaf has one").index() as usize;
+        (Child::leaf(index, 1), widened(self.0[index]))
     }
 
-    fn node(&mut self, slots: &[(Child, Box64)]) -> (Child, Box64) {
+    fn node(slots: &[(Child, Box64)]) -> (TopNode, Box64) {
         let mut planes = [[[f64::INFINITY; WIDTH], [f64::NEG_INFINITY; WIDTH]]; 3];
         let mut children = [slots[0].0; WIDTH];
-        let mut centres = [[f64::INFINITY; 3]; WIDTH];
+        let mut centres = [[0.0; 3]; WIDTH];
         for (slot, (child, (min, max))) in slots.iter().enumerate() {
             children[slot] = *child;
             for axis in 0..3 {
@@ -148,11 +168,11 @@ impl Sink for TopSink<'_> {
                 centres[slot][axis] = 0.5 * min[axis] + 0.5 * max[axis];
             }
         }
-        self.nodes.push(TopNode { planes, children, order: Order::of(&centres) });
+        let node = TopNode { planes, children, order: Order::of(&centres[..slots.len()]) };
         let all = slots.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |all, (_, b)| {
             (all.0.min(b.0), all.1.max(b.1))
         });
-        (Child::node(self.nodes.len() - 1), all)
+        (node, all)
     }
 }
 

@@ -58,7 +58,7 @@ pub struct Builder<'a> {
     embedded: Embedded,
     before: &'a Objects,
     /// How triangles become a part of another shape; without it they cannot.
-    pub mesh_parts: Option<MeshParts>,
+    pub mesh_parts: Option<MeshParts<'a>>,
     /// What this build made or kept.
     pub objects: Objects,
     /// Nodes with which something is wrong, which has been said.

@@ -88,7 +88,7 @@ impl Draft {
 ///
 /// # Errors
 /// Why they cannot.
-pub type MeshParts = fn(Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String>;
+pub type MeshParts<'a> = &'a dyn Fn(Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String>;
 
 /// What a part is.
 enum Body {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use luxel_sdk::kind::Hit;
 use luxel_sdk::num::Ray;
 
-use crate::accel::{Processor, Room, TopBvh};
+use crate::accel::{Processor, Room, TopBvh, Watch};
 use crate::object::Object;
 
 /// A shape that intersects itself, in double precision.
@@ -22,7 +22,8 @@ const MOST: u32 = 1 << 24;
 impl Analytic {
     /// Takes over a shape, and builds the tree over its parts. One of more than 2²⁴ parts is asked
     /// for all of them at once, and so is one of a single part.
-    pub fn new(object: Arc<Object>) -> Self {
+    /// Followed by `watch`: `None` once that is cancelled.
+    pub fn new(object: Arc<Object>, watch: &Watch) -> Option<Self> {
         let shape = object.fixed().shape();
         let n = shape.parts();
         let boxes = |n: u32| {
@@ -32,8 +33,12 @@ impl Analytic {
             };
             (0..n).map(corners).collect::<Vec<_>>()
         };
-        let parts = (2..=MOST).contains(&n).then(|| TopBvh::build(&boxes(n)));
-        Self { object, parts }
+        let parts = if (2..=MOST).contains(&n) {
+            Some(TopBvh::build_watched(&boxes(n), watch)?)
+        } else {
+            None
+        };
+        Some(Self { object, parts })
     }
 
     /// The shape itself.

@@ -16,14 +16,14 @@ use super::{
     Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Place, Placement, Skin, Stage,
 };
 use super::{failures, features, import, nesting, shining};
-use crate::accel::{BuildError, TopBvh};
+use crate::accel::{BuildError, TopBvh, Watch};
 use crate::cast::{index, whole};
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Object, Objects};
 use crate::registry::Registry;
 use crate::registry::dynamic::{FAILED, remote};
-use crate::scene::{Hash, NodeId, Pose, Scene, Value};
+use crate::scene::{Hash, Node, NodeId, Pose, Scene, Value};
 
 /// A stage with the warnings that arose.
 #[derive(Debug)]
@@ -44,36 +44,71 @@ pub fn build(
     files: &dyn Files,
     before: Option<&Stage>,
 ) -> Result<Built, Vec<Diagnostic>> {
+    match build_watched(scene, registry, files, before, &Watch::default()) {
+        Ok(built) => Ok(built),
+        Err(Unbuilt::Faulty(found)) => Err(found),
+        Err(Unbuilt::Cancelled) => unreachable!("nobody has cancelled it"),
+    }
+}
+
+/// Why there is no stage.
+#[derive(Debug)]
+pub enum Unbuilt {
+    /// Everything that was found wrong, warnings included.
+    Faulty(Vec<Diagnostic>),
+    /// The watch was cancelled.
+    Cancelled,
+}
+
+/// The same, followed and perhaps stopped by `watch`, which tells the mesh whose tree is built. What
+/// plugins do while they are built is not reached.
+///
+/// # Errors
+/// As `build`; that the watch was cancelled.
+pub fn build_watched(
+    scene: &Scene,
+    registry: &Registry,
+    files: &dyn Files,
+    before: Option<&Stage>,
+    watch: &Watch,
+) -> Result<Built, Unbuilt> {
     let (scene, mut diagnostics) = import::expand(scene, registry, files);
     let film = Film::of_node(scene.film.map(|id| scene.node(id)));
     let mode = features::color_mode(&scene, film.color);
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
+    let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
-    builder.mesh_parts = Some(mesh_part);
+    builder.mesh_parts = Some(&mesh_part);
     let shutter = (film.time, film.shutter);
-    let mut maker = Maker { scene: &scene, shutter, builder, cache, made: Made::default() };
+    let mut maker = Maker { scene: &scene, shutter, builder, cache, made: Made::default(), watch };
     match flatten(&scene) {
-        Ok(flats) => flats.iter().for_each(|flat| maker.place(flat)),
+        Ok(flats) => {
+            flats.iter().take_while(|_| !watch.is_cancelled()).for_each(|flat| maker.place(flat));
+        }
         Err(diagnostic) => diagnostics.push(*diagnostic),
+    }
+    if watch.is_cancelled() {
+        return Err(Unbuilt::Cancelled);
     }
     let settings = maker.settings();
     diagnostics.append(&mut maker.builder.diagnostics);
     let (made, objects) = (maker.made, maker.builder.objects);
     match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
-            let stage = finish(made, settings, objects, (scene, film, mode));
+            let stage = finish(made, settings, objects, (scene, film, mode), watch);
+            let stage = stage.ok_or(Unbuilt::Cancelled)?;
             let mut found = stage.failures();
             found.extend(unseen(&stage));
             if found.is_empty() {
                 return Ok(Built { stage, warnings: diagnostics });
             }
             diagnostics.extend(found);
-            Err(diagnostics)
+            Err(Unbuilt::Faulty(diagnostics))
         }
         _ => {
             diagnostics.extend(failures(&objects, &scene));
-            Err(diagnostics)
+            Err(Unbuilt::Faulty(diagnostics))
         }
     }
 }
@@ -111,6 +146,7 @@ struct Maker<'a> {
     builder: Builder<'a>,
     cache: &'a Cache,
     made: Made,
+    watch: &'a Watch,
 }
 
 impl Maker<'_> {
@@ -240,12 +276,13 @@ impl Maker<'_> {
     }
 
     fn new_geometry(&mut self, id: NodeId, object: &Arc<Object>) -> Option<Geometry> {
+        self.watch.name(&name(self.scene.node(id)));
         let shape = object.fixed().shape();
         let Some(triangles) = shape.mesh() else {
-            return Some(Geometry::Analytic(Analytic::new(object.clone())));
+            return Some(Geometry::Analytic(Analytic::new(object.clone(), self.watch)?));
         };
         let span = self.scene.node(id).span;
-        match Mesh::build(triangles, self.during()) {
+        match Mesh::build(triangles, self.during(), self.watch) {
             Ok(mesh) => {
                 if mesh.dropped() > 0 {
                     let message = format!("{} triangles without area left out", mesh.dropped());
@@ -253,6 +290,7 @@ impl Maker<'_> {
                 }
                 Some(Geometry::Mesh(Arc::new(mesh)))
             }
+            Err(BuildError::Cancelled) => None,
             Err(error) => {
                 self.builder.diagnostics.push(mesh_error(error, span));
                 None
@@ -362,6 +400,16 @@ impl Maker<'_> {
     }
 }
 
+/// What people call a shape: by its file, its label or its class.
+fn name(node: &Node) -> String {
+    let file = node.params.iter().find_map(|argument| match &argument.value {
+        Value::Path(path) => Some(path.file_name()?.to_string_lossy().into_owned()),
+        _ => None,
+    });
+    let label = || node.label.as_ref().map(|label| format!("`{label}`"));
+    file.or_else(label).unwrap_or_else(|| node.class.to_string())
+}
+
 fn mesh_error(error: BuildError, span: Span) -> Diagnostic {
     Diagnostic::error("E0411", span, error.to_string())
 }
@@ -371,7 +419,8 @@ fn finish(
     settings: Settings,
     objects: Objects,
     (scene, film, mode): (Scene, Film, ColorMode),
-) -> Stage {
+    watch: &Watch,
+) -> Option<Stage> {
     let during = [film.time, film.time + film.shutter];
     let boxed = |placement: &Placement| {
         let local = made.geometries[placement.geometry as usize].bounds();
@@ -401,9 +450,11 @@ fn finish(
         || shapes.iter().any(|shape| shape.is_moving())
         || made.lights.iter().any(moves);
     let features = Features { media, open_surfaces, nested, motion };
+    watch.name("the scene");
+    let top = TopBvh::build_watched(&boxes, watch)?;
     let mut stage = Stage {
         lights: Lights::new(made.lights, sphere.1, mode),
-        top: TopBvh::build(&boxes),
+        top,
         geometries: made.geometries,
         placements: made.placements,
         materials: made.materials,
@@ -434,7 +485,7 @@ fn finish(
             stage.camera_media = stage.opening().media_at(eye);
         }
     }
-    stage
+    Some(stage)
 }
 
 /// An integrator that looks for the camera from where light is, and a camera that is no point.

@@ -12,7 +12,9 @@ use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
 use super::analytic::Analytic;
 use super::closed::is_closed;
-use crate::accel::{Begun, BuildError, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
+use crate::accel::{
+    Begun, BuildError, Direction, MeshBvh, MeshHit, Precision, Processor, Query, Watch,
+};
 
 pub(super) use part::mesh_part;
 
@@ -85,14 +87,18 @@ impl Mesh {
     /// Takes over the triangles of a shape and builds their tree, for an interval of time in seconds.
     ///
     /// # Errors
-    /// What is wrong with the triangles.
-    pub fn build(triangles: Arc<TriangleMesh>, during: [f64; 2]) -> Result<Self, BuildError> {
+    /// What is wrong with the triangles; that the watch was cancelled.
+    pub fn build(
+        triangles: Arc<TriangleMesh>,
+        during: [f64; 2],
+        watch: &Watch,
+    ) -> Result<Self, BuildError> {
         let bvh = match &triangles.later {
-            None => MeshBvh::build(&triangles.points, &triangles.indices)?,
+            None => MeshBvh::build_watched(&triangles.points, &triangles.indices, watch)?,
             Some(later) => {
                 let points = (&*triangles.points, &*later.points);
                 let shares = during.map(|time| later.share(time));
-                MeshBvh::build_moving(points, &triangles.indices, shares)?
+                MeshBvh::build_moving(points, &triangles.indices, shares, watch)?
             }
         };
         let diagonal = bvh.bounds().map_or(0.0, |(min, max)| (max - min).as_dvec3().length());
@@ -219,10 +225,7 @@ impl Mesh {
         };
         let t = taken.start + hit.t * direction.per_scale();
         let near = approach.from.is_some() || t <= self.near * direction.per_scale();
-        if near
-            && taken.left > 0
-            && self.is_behind(hit.triangle, ray, approach.time)
-        {
+        if near && taken.left > 0 && self.is_behind(hit.triangle, ray, approach.time) {
             return Landed::Behind(Taken { start: t, left: taken.left - 1 });
         }
         let at = DVec2::new(hit.b1, hit.b2);

@@ -36,7 +36,7 @@ use crate::scene::{Hash, NodeId, Scene};
 
 pub use analytic::Analytic;
 pub use batch::{Asked, Rooms};
-pub use build::{Built, build};
+pub use build::{Built, Unbuilt, build, build_watched};
 pub use eye::{Eye, Seen};
 pub use features::Features;
 pub use geometry::{Geometry, Mesh};

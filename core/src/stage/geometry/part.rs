@@ -6,7 +6,7 @@ use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 
 use super::{Approach, Geometry, Mesh};
-use crate::accel::{Direction, Precision, Processor};
+use crate::accel::{Direction, Precision, Processor, Watch};
 
 /// A mesh that intersects itself: its triangles in double precision, as analytic shapes are.
 struct MeshPart {
@@ -19,7 +19,10 @@ struct MeshPart {
 ///
 /// # Errors
 /// Why there is no tree.
-pub(in super::super) fn mesh_part(triangles: Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String> {
+pub(in super::super) fn mesh_part(
+    triangles: Arc<TriangleMesh>,
+    watch: &Watch,
+) -> Result<Arc<dyn Shape>, String> {
     if triangles.later.is_some() {
         return Err("a mesh whose points move is no part of a solid".to_owned());
     }
@@ -28,7 +31,7 @@ pub(in super::super) fn mesh_part(triangles: Arc<TriangleMesh>) -> Result<Arc<dy
         0.5 * (b - a).cross(c - a).length()
     };
     let area = (0..crate::cast::index(triangles.indices.len())).map(area).sum();
-    let mesh = Mesh::build(triangles, [0.0; 2]).map_err(|e| e.to_string())?;
+    let mesh = Mesh::build(triangles, [0.0; 2], watch).map_err(|e| e.to_string())?;
     let mesh = Geometry::Mesh(Arc::new(mesh));
     let bounds = mesh.bounds();
     Ok(Arc::new(MeshPart { mesh, bounds, area }))

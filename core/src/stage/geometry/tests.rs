@@ -12,7 +12,7 @@ use luxel_sdk::params::{Build, BuildContext, Fault, Shared, Table};
 use luxel_sdk::sampling::Rng;
 
 use super::{Approach, Mesh};
-use crate::accel::{Direction, Precision, Processor};
+use crate::accel::{Direction, Precision, Processor, Watch};
 use crate::diag::{SourceId, Span};
 use crate::files::MemoryFiles;
 use crate::object::{Builder, ColorMode, Objects};
@@ -93,7 +93,7 @@ fn mesh_of(corners: [DVec3; 3]) -> Mesh {
     let object =
         Builder::new(&registry, &scene, &files, ColorMode::Rgb, &before).build(id).unwrap();
     let mesh = object.fixed().shape().mesh().unwrap();
-    Mesh::build(mesh, [0.0; 2]).unwrap()
+    Mesh::build(mesh, [0.0; 2], &Watch::default()).unwrap()
 }
 
 #[test]

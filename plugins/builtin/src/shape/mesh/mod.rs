@@ -149,10 +149,11 @@ pub(crate) struct Mesh<'a> {
 impl Build<Arc<TriangleMesh>> for Mesh<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
         self.warn_of_idle(context);
-        let moving = self.is_moving();
-        let mut mesh = self.triangles(context, moving)?;
-        if moving {
-            mesh.later = Some(self.later(&mesh, context)?);
+        self.warn_of_idle_motion(context);
+        let motion = self.motion();
+        let mut mesh = self.triangles(context, motion.is_some())?;
+        if let Some(field) = motion {
+            mesh.later = Some(self.later(&mesh, field, context)?);
         }
         Ok(mesh.into())
     }

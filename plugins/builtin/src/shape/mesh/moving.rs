@@ -7,52 +7,52 @@ use luxel_sdk::params::{BuildContext, Fault};
 use super::Mesh;
 
 impl Mesh<'_> {
-    /// Whether its corners move.
-    pub(super) fn is_moving(&self) -> bool {
-        !self.next.path.get().is_empty() || !self.next_points.get().is_empty()
+    /// Where the parameter stands that says where the corners move to, if they do.
+    pub(super) fn motion(&self) -> Option<&'static str> {
+        let of_file = !self.file.path.get().is_empty();
+        match (of_file, self.next.path.get().is_empty(), self.next_points.get().is_empty()) {
+            (true, false, _) => Some("next"),
+            (false, _, false) => Some("next_points"),
+            _ => None,
+        }
+    }
+
+    /// Tells of what is given of a motion and does nothing.
+    pub(super) fn warn_of_idle_motion(&self, context: &dyn BuildContext) {
+        let moves = self.motion();
+        if moves != Some("next") && !self.next.path.get().is_empty() {
+            context.warn("`next` does nothing without `file`: `points` move to `next_points`");
+        }
+        if moves != Some("next_points") && !self.next_points.get().is_empty() {
+            context.warn("`next_points` does nothing beside `file`, which moves to `next`");
+        }
     }
 
     /// Rules between the parameters of motion.
     pub(super) fn check_motion(&self) -> Result<(), Fault> {
-        let has_file = !self.file.path.get().is_empty();
-        let (next_file, next_points) =
-            (!self.next.path.get().is_empty(), !self.next_points.get().is_empty());
-        let fault = |field, message: &str| Err(Fault::mesh(field, message));
-        if next_file && !has_file {
-            return fault(
-                "next",
-                "`next` is a file as `file` is: beside `points` stands `next_points`",
-            );
-        }
-        if next_points && has_file {
-            return fault("next_points", "beside `file` stands `next`, a file with the same faces");
-        }
-        if !self.is_moving() {
-            return Ok(());
-        }
+        let Some(field) = self.motion() else { return Ok(()) };
         if !(self.next_at > self.at) {
             let message = "`next_at`, when the corners are there, is later than `at`";
-            return fault("next_at", message);
+            return Err(Fault::mesh("next_at", message));
         }
         if self.displace.is_given() {
-            let field = if next_file { "next" } else { "next_points" };
-            return fault(field, "a mesh that is displaced cannot move its corners");
+            let message = "a mesh that is displaced cannot move its corners";
+            return Err(Fault::mesh(field, message));
         }
         Ok(())
     }
 
-    /// Where the corners of `mesh` are later.
+    /// Where the corners of `mesh` are later, as a parameter says.
     ///
     /// # Errors
     /// What is wrong with the second mesh, or that its faces are others.
     pub(super) fn later(
         &self,
         mesh: &TriangleMesh,
+        field: &'static str,
         context: &dyn BuildContext,
     ) -> Result<Later, Vec<Fault>> {
-        let in_file = !self.next.path.get().is_empty();
         let next = Mesh { file: self.next, points: self.next_points, ..*self };
-        let field = if in_file { "next" } else { "next_points" };
         let renamed = |faults: Vec<Fault>| {
             let of = |fault: Fault| match fault.field {
                 "file" | "points" => Fault { field, ..fault },

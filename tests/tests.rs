@@ -20,6 +20,8 @@ mod extremes;
 #[cfg(test)]
 mod house;
 #[cfg(test)]
+mod lamps;
+#[cfg(test)]
 mod load;
 #[cfg(test)]
 mod manual;

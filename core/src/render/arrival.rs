@@ -112,8 +112,9 @@ impl Shader<'_, '_> {
             self.scratch.reset();
             let from = self.path.from;
             let palette = &self.path.palette;
+            let met = (surface, hit.hit.face);
             let (le, pdf) =
-                stage.surface_emission(placement, surface, (from, wo), palette, self.scratch);
+                stage.surface_emission(placement, met, (from, wo), palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
         let outside = wo.dot(surface.ng) > 0.0;

@@ -1,15 +1,17 @@
 //! Which light is looked for, and what it sends.
 
 mod emission;
+mod triangle;
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::{Arrival, Light, LightQuery, Output, ShapeSample, Surface};
 use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
+use self::triangle::Lit;
 use super::{Geometry, Placement, Stage};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
@@ -169,9 +171,8 @@ impl Stage {
         let u = [u[1], u[2]];
         let found = match chosen.source {
             LightSource::Surface { object, placement, area, triangles } => {
-                let triangle =
-                    triangles.as_ref().map(|choice| index(choice.sample(chosen.u).index));
-                let light = SurfaceLight { object, placement: *placement, area: *area, triangle };
+                let triangles = triangles.as_ref().map(|choice| (choice, chosen.u));
+                let light = SurfaceLight { object, placement: *placement, area: *area, triangles };
                 self.sample_surface(&light, from, palette, u, scratch)
             }
             LightSource::Free { object, transform } => {
@@ -226,11 +227,14 @@ impl Stage {
     ) -> Option<FoundLight> {
         let placement = &self.placements[light.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
-        let mut sample = match (&**geometry, light.triangle) {
-            (Geometry::Mesh(mesh), Some(triangle)) => {
-                let at = luxel_sdk::sampling::uniform_triangle(u);
-                let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                let surface = mesh.surface(triangle, at, self.film.precision);
+        // Density per solid angle, where that is how a point is found.
+        let mut direct = None;
+        let mut sample = match (&**geometry, light.triangles) {
+            (Geometry::Mesh(mesh), Some((choice, choose))) => {
+                let (transform, from) = (placement.transform.as_deref(), from.p + from.lift);
+                let point = Lit { mesh, choice, transform, from }.sample(u, choose);
+                direct = point.pdf;
+                let surface = mesh.surface(point.triangle, point.at, self.film.precision);
                 // The world's density in the mesh's own frame.
                 let pdf = placement.area_scale(surface.ng) / light.area;
                 Some(ShapeSample { surface, pdf })
@@ -252,11 +256,13 @@ impl Stage {
         let to = surface.p - (from.p + from.lift);
         let distance2 = to.length_squared();
         let cos_o = -surface.ng.dot(ray.d);
-        let pdf = sample.pdf * distance2 / cos_o.abs();
+        let (pdf, per_pdf) = match direct {
+            Some(pdf) => (pdf, pdf.recip()),
+            None => (sample.pdf * distance2 / cos_o.abs(), cos_o.abs() / (sample.pdf * distance2)),
+        };
         if !(pdf > 0.0 && pdf.is_finite()) {
             return None;
         }
-        let per_pdf = cos_o.abs() / (sample.pdf * distance2);
         let uv = surface.uv.as_vec2();
         let at = Site { p: surface.p, uv, palette, color: None };
         let resolved = light.object.resolve(&at, scratch).light();
@@ -269,17 +275,19 @@ impl Stage {
     }
 
     /// Radiance of a shining surface towards the point `from`, and the density with which
-    /// `sample_light` would have found it from there; `wo` is the unit direction of the ray that came.
+    /// `sample_light` would have found it from there; `wo` is the unit direction of the ray that came,
+    /// `face` what it met.
     pub fn surface_emission(
         &self,
         placement: &Placement,
-        surface: &Surface,
+        (surface, face): (&Surface, u32),
         (from, wo): (DVec3, DVec3),
         palette: &Palette,
         scratch: &Scratch,
     ) -> (Spectrum, f32) {
         let Some(light) = placement.light else { return (Spectrum::ZERO, 0.0) };
-        let LightSource::Surface { object, area, .. } = &self.lights.sources[light as usize] else {
+        let source = &self.lights.sources[light as usize];
+        let LightSource::Surface { object, area, .. } = source else {
             return (Spectrum::ZERO, 0.0);
         };
         let uv = surface.uv.as_vec2();
@@ -290,15 +298,30 @@ impl Stage {
         if le.is_black() {
             return (le, 0.0);
         }
-        let pdf_area = self.surface_pdf(placement, *area, surface, from);
-        let pdf = pdf_area * surface.p.distance_squared(from) / cos_o.abs();
+        let pdf = self
+            .surface_pdf(placement, source, (surface, face), from)
+            .unwrap_or_else(|area| area * surface.p.distance_squared(from) / cos_o.abs());
         (le, narrow(pdf * self.lights.chance(light)))
     }
 
-    /// Area density, in the world, with which a point of a shining surface is sampled.
-    fn surface_pdf(&self, place: &Placement, area: f64, surface: &Surface, from: DVec3) -> f64 {
+    /// Density per solid angle with which a point of a shining surface is sampled from there.
+    ///
+    /// # Errors
+    /// The density per area of the world, where that is how it is sampled.
+    fn surface_pdf(
+        &self,
+        place: &Placement,
+        source: &LightSource,
+        (surface, face): (&Surface, u32),
+        from: DVec3,
+    ) -> Result<f64, f64> {
+        let LightSource::Surface { area, triangles, .. } = source else { return Ok(0.0) };
         match &*self.geometries[place.geometry as usize] {
-            Geometry::Mesh(_) => 1.0 / area,
+            Geometry::Mesh(mesh) => {
+                let Some(choice) = triangles else { return Ok(0.0) };
+                let transform = place.transform.as_deref();
+                Lit { mesh, choice, transform, from }.pdf(face).ok_or(1.0 / area)
+            }
             Geometry::Analytic(shape) => {
                 let mut local = *surface;
                 if let Some(transform) = &place.transform {
@@ -307,7 +330,7 @@ impl Stage {
                 }
                 let pdf =
                     shape.object().fixed().shape().pdf(Some(place.point_to_local(from)), &local);
-                pdf / place.area_scale(local.ng)
+                Err(pdf / place.area_scale(local.ng))
             }
         }
     }
@@ -340,8 +363,8 @@ struct SurfaceLight<'a> {
     object: &'a Object,
     placement: u32,
     area: f64,
-    /// The chosen triangle of a mesh.
-    triangle: Option<u32>,
+    /// For meshes: how a triangle is chosen by its area, and a random number to choose by.
+    triangles: Option<(&'a Alias, f64)>,
 }
 
 impl FoundLight {

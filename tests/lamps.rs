@@ -191,3 +191,47 @@ fn a_lamp_of_two_triangles_lights_as_the_rectangle_does() {
         assert!(da.y.hypot(db.y) <= 0.005 * a.y, "too noisy to tell");
     }
 }
+
+/// A rectangle that its placement stretches along a diagonal, and the same as two triangles.
+fn stretched(ratio: f64) -> [String; 2] {
+    let (p, q) = (0.5 * (ratio + 1.0), 0.5 * (ratio - 1.0));
+    let size = ratio.sqrt().recip();
+    let corner = |x: f64, z: f64| {
+        let (x, z) = (0.5 * size * x, 0.5 * size * z);
+        DVec3::new(p * x + q * z, 0.3, q * x + p * z)
+    };
+    let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    let rectangle = format!(
+        "rectangle {{ u = ({size}, 0, 0) m, v = (0, 0, {size}) m,
+           transform = matrix([{p}, 0, {q}, 0, 0, 1, 0, 0.3, {q}, 0, {p}, 0, 0, 0, 0, 1]) }}"
+    );
+    [rectangle, quad(corners, "")]
+}
+
+#[test]
+fn a_sheared_rectangle_is_found_by_its_solid_angle_in_the_world() {
+    for ratio in [1.0, 3.0, 10.0] {
+        let [rectangle, triangles] = stretched(ratio);
+        let direct = "integrator path { max_depth = 2 }";
+        let [a, b] = [floor(&rectangle, direct, 1024), floor(&triangles, direct, 1024)];
+        let ((x, dx), (y, dy)) = (a.mean(), b.mean());
+        let noise = dx.y.hypot(dy.y);
+        assert!((x.y - y.y).abs() <= 4.0 * noise, "{ratio}: {x} {y}");
+        assert!(noise <= 0.005 * x.y, "too noisy to tell");
+        let variance = |film: &Film| film.pixels().map(|(_, p)| p.variance().y).sum::<f64>();
+        let worse = variance(&a) / variance(&b);
+        assert!((worse - 1.0).abs() <= 0.1, "{ratio}: {worse} times the variance");
+    }
+}
+
+#[test]
+fn who_meets_a_sheared_rectangle_is_told_the_density_of_finding_it() {
+    let direct = "integrator path { max_depth = 2 }";
+    let [rectangle, _] = stretched(3.0);
+    let both = floor(&rectangle, direct, 1024).mean();
+    let blind = "integrator path { max_depth = 2, light_sampling = false }";
+    let met = floor(&rectangle, blind, 8192).mean();
+    let noise = both.1.y.hypot(met.1.y);
+    assert!((both.0.y - met.0.y).abs() <= 4.0 * noise, "{} {}", both.0, met.0);
+    assert!(noise <= 0.005 * met.0.y, "too noisy to tell");
+}

@@ -1,13 +1,14 @@
 //! Which light is looked for, and what it sends.
 
 mod emission;
+mod quad;
 mod triangle;
 
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
-use luxel_sdk::kind::{Arrival, Light, LightQuery, Output, ShapeSample, Surface};
+use luxel_sdk::kind::{Arrival, Hit, Light, LightQuery, Output, ShapeSample, Surface};
 use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
@@ -17,6 +18,7 @@ use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 
 pub use emission::{EmissionNumbers, Emitted, Emitters, Lamp};
+pub use quad::Quad;
 
 /// A source of light of the stage.
 #[derive(Debug)]
@@ -31,6 +33,8 @@ pub enum LightSource {
         area: f64,
         /// For meshes: how a triangle is chosen, by its area in the world.
         triangles: Option<Alias>,
+        /// For sheared parallelograms: what they are.
+        quad: Option<Quad>,
     },
     /// A light at a point or far away.
     Free {
@@ -170,9 +174,10 @@ impl Stage {
         let chosen = self.lights.choose(u[0])?;
         let u = [u[1], u[2]];
         let found = match chosen.source {
-            LightSource::Surface { object, placement, area, triangles } => {
+            LightSource::Surface { object, placement, area, triangles, quad } => {
                 let triangles = triangles.as_ref().map(|choice| (choice, chosen.u));
-                let light = SurfaceLight { object, placement: *placement, area: *area, triangles };
+                let (placement, area, quad) = (*placement, *area, quad.as_ref());
+                let light = SurfaceLight { object, placement, area, triangles, quad };
                 self.sample_surface(&light, from, palette, u, scratch)
             }
             LightSource::Free { object, transform } => {
@@ -240,8 +245,18 @@ impl Stage {
                 Some(ShapeSample { surface, pdf })
             }
             (Geometry::Analytic(shape), _) => {
-                let local = placement.point_to_local(from.p + from.lift);
-                shape.object().fixed().shape().sample(Some(local), u)
+                let (shape, from) = (shape.object().fixed().shape(), from.p + from.lift);
+                let transform = placement.transform.as_deref();
+                let local = placement.point_to_local(from);
+                match light.quad.and_then(|quad| quad.seen(transform, from)) {
+                    Some(seen) => {
+                        direct = Some(seen.pdf());
+                        let hit = Hit { t: 0.0, at: seen.sample(u), face: 0 };
+                        let surface = shape.surface(&Ray::new(local, DVec3::X), &hit);
+                        Some(ShapeSample { surface, pdf: 1.0 })
+                    }
+                    None => shape.sample(Some(local), u),
+                }
             }
             (Geometry::Mesh(_), None) => None,
         };
@@ -315,7 +330,7 @@ impl Stage {
         (surface, face): (&Surface, u32),
         from: DVec3,
     ) -> Result<f64, f64> {
-        let LightSource::Surface { area, triangles, .. } = source else { return Ok(0.0) };
+        let LightSource::Surface { area, triangles, quad, .. } = source else { return Ok(0.0) };
         match &*self.geometries[place.geometry as usize] {
             Geometry::Mesh(mesh) => {
                 let Some(choice) = triangles else { return Ok(0.0) };
@@ -323,6 +338,10 @@ impl Stage {
                 Lit { mesh, choice, transform, from }.pdf(face).ok_or(1.0 / area)
             }
             Geometry::Analytic(shape) => {
+                let transform = place.transform.as_deref();
+                if let Some(seen) = quad.as_ref().and_then(|quad| quad.seen(transform, from)) {
+                    return Ok(seen.pdf());
+                }
                 let mut local = *surface;
                 if let Some(transform) = &place.transform {
                     local.p = transform.inverse_point(surface.p);
@@ -365,6 +384,7 @@ struct SurfaceLight<'a> {
     area: f64,
     /// For meshes: how a triangle is chosen by its area, and a random number to choose by.
     triangles: Option<(&'a Alias, f64)>,
+    quad: Option<&'a Quad>,
 }
 
 impl FoundLight {

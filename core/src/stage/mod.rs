@@ -38,7 +38,7 @@ pub use build::{Built, build};
 pub use eye::{Eye, Seen};
 pub use features::Features;
 pub use geometry::{Geometry, Mesh};
-pub use lights::{EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights};
+pub use lights::{EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights, Quad};
 pub use media::{Crossing, MediumStack};
 pub use placement::{Leaving, Placement, SceneHit, Skin};
 pub use settings::{ColorChoice, Film};

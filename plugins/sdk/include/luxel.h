@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0x1da97fdc5d63fe69ull
+#define LUXEL_LAYOUT_HASH 0x1dfadb6cdd85a8bdull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -146,6 +146,19 @@ typedef struct {
     luxel_surface surface;
     double pdf;
 } luxel_shape_sample;
+
+/* A flat piece: its middle, and its edges from end to end. */
+typedef struct {
+    luxel_dvec3 centre;
+    luxel_dvec3 u;
+    luxel_dvec3 v;
+} luxel_parallelogram;
+
+/* Derivatives of the unit shading normal by the surface coordinates. */
+typedef struct {
+    luxel_dvec3 dn_du;
+    luxel_dvec3 dn_dv;
+} luxel_normal_derivatives;
 
 /* f·|cos_i| and the density of finding the direction. */
 typedef struct {
@@ -611,6 +624,10 @@ typedef struct {
     luxel_status (*intersect_part)(const void *at, uint32_t part, const luxel_ray *ray, luxel_hit *out);
     /* At least how far away the surface is, negative inside; nothing where that is not known. */
     luxel_status (*distance)(const void *at, const luxel_dvec3 *p, double *out);
+    /* The parallelogram that it is, where it is nothing else. */
+    luxel_status (*parallelogram)(const void *at, luxel_parallelogram *out);
+    /* How the shading normal turns at a point; nothing where that is not known. */
+    luxel_status (*normal_derivatives)(const void *at, const luxel_hit *hit, const luxel_surface *point, luxel_normal_derivatives *out);
 } luxel_shape_table;
 
 /* A shape of which another one is made. */
@@ -838,6 +855,15 @@ LUXEL_CHECK(sizeof(luxel_shape_sample) == 168, "size of luxel_shape_sample");
 LUXEL_CHECK(_Alignof(luxel_shape_sample) == 8, "alignment of luxel_shape_sample");
 LUXEL_CHECK(offsetof(luxel_shape_sample, surface) == 0, "luxel_shape_sample.surface");
 LUXEL_CHECK(offsetof(luxel_shape_sample, pdf) == 160, "luxel_shape_sample.pdf");
+LUXEL_CHECK(sizeof(luxel_parallelogram) == 72, "size of luxel_parallelogram");
+LUXEL_CHECK(_Alignof(luxel_parallelogram) == 8, "alignment of luxel_parallelogram");
+LUXEL_CHECK(offsetof(luxel_parallelogram, centre) == 0, "luxel_parallelogram.centre");
+LUXEL_CHECK(offsetof(luxel_parallelogram, u) == 24, "luxel_parallelogram.u");
+LUXEL_CHECK(offsetof(luxel_parallelogram, v) == 48, "luxel_parallelogram.v");
+LUXEL_CHECK(sizeof(luxel_normal_derivatives) == 48, "size of luxel_normal_derivatives");
+LUXEL_CHECK(_Alignof(luxel_normal_derivatives) == 8, "alignment of luxel_normal_derivatives");
+LUXEL_CHECK(offsetof(luxel_normal_derivatives, dn_du) == 0, "luxel_normal_derivatives.dn_du");
+LUXEL_CHECK(offsetof(luxel_normal_derivatives, dn_dv) == 24, "luxel_normal_derivatives.dn_dv");
 LUXEL_CHECK(sizeof(luxel_eval) == 32, "size of luxel_eval");
 LUXEL_CHECK(_Alignof(luxel_eval) == 16, "alignment of luxel_eval");
 LUXEL_CHECK(offsetof(luxel_eval, f) == 0, "luxel_eval.f");

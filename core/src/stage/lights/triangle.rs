@@ -93,7 +93,7 @@ impl Lit<'_> {
         Some((few, whole))
     }
 
-    /// A triangle that is near enough, and far enough from being edge-on, to go by its solid angle.
+    /// A triangle that goes by its solid angle.
     #[inline]
     fn near(&self, triangle: u32) -> Option<SphericalTriangle> {
         let mesh = self.mesh.triangles();
@@ -108,13 +108,20 @@ impl Lit<'_> {
                 (edges, transform.vector(a) + (transform.vector(mesh.centre) + to))
             }
         };
-        let longest = x.length_squared().max(y.length_squared()).max((y - x).length_squared());
-        let middle = a + (x + y) * (1.0 / 3.0);
-        if longest < NEAR * middle.length_squared() {
-            return None;
-        }
-        SphericalTriangle::new(a, [x, y])
+        near(a, [x, y])
     }
+}
+
+/// A triangle by its first corner from a point and its edges from there, if it is near enough, and
+/// far enough from being edge-on, to go by its solid angle.
+#[inline]
+pub(super) fn near(a: DVec3, [x, y]: [DVec3; 2]) -> Option<SphericalTriangle> {
+    let longest = x.length_squared().max(y.length_squared()).max((y - x).length_squared());
+    let middle = a + (x + y) * (1.0 / 3.0);
+    if longest < NEAR * middle.length_squared() {
+        return None;
+    }
+    SphericalTriangle::new(a, [x, y])
 }
 
 /// Barycentrics of the second and the third corner, alike over the area.

@@ -97,8 +97,8 @@ impl NormalDerivatives {
     pub const FLAT: Self = Self { dn_du: DVec3::ZERO, dn_dv: DVec3::ZERO };
 
     /// The same in the frame that a transform leads to, for the point whose unit shading normal was
-    /// `ns` in the frame that it leads from: the derivative of the normal M⁻ᵀ·ns at unit length.
-    /// `Surface::carried` says how a mirroring transform turns v.
+    /// `ns` in the frame that it leads from: the derivatives of the normal M⁻ᵀ·ns at unit length. A
+    /// mirroring one turns `dn_dv`, as `Surface::carried` turns `dp_dv`.
     #[must_use]
     pub fn carried(&self, ns: DVec3, transform: &Transform) -> Self {
         let normal = transform.normal(ns);
@@ -108,7 +108,8 @@ impl NormalDerivatives {
             let d = transform.normal(d) / length;
             d - n * n.dot(d)
         };
-        Self { dn_du: turned(self.dn_du), dn_dv: turned(self.dn_dv) }
+        let turn = if transform.swaps_handedness() { -1.0 } else { 1.0 };
+        Self { dn_du: turned(self.dn_du), dn_dv: turned(self.dn_dv) * turn }
     }
 }
 

@@ -9,6 +9,8 @@ mod builder;
 #[cfg(test)]
 mod cli;
 #[cfg(test)]
+mod curvature;
+#[cfg(test)]
 mod curves;
 mod determinism;
 #[cfg(test)]

@@ -298,6 +298,25 @@ fn parametrisation(
     }
 }
 
+/// Derivatives by the barycentrics of the second and the third corner as those by the surface
+/// coordinates, where `parametrisation` tells the point's by them.
+pub(super) fn by_coordinates(
+    mesh: &TriangleMesh,
+    corners: [usize; 3],
+    [x, y]: [DVec3; 2],
+) -> (DVec3, DVec3) {
+    let points = corners.map(|i| mesh.points[i].as_dvec3());
+    let (_, dp_du, dp_dv) = parametrisation(mesh, corners, points, [1.0, 0.0, 0.0]);
+    let [a, b, c] = points;
+    if mesh.uvs.is_empty() || (dp_du, dp_dv) == (b - a, c - a) {
+        return (x, y);
+    }
+    let [ta, tb, tc] = corners.map(|i| mesh.uvs[i].as_dvec2());
+    let (d1, d2) = (tb - ta, tc - ta);
+    let det = d1.perp_dot(d2);
+    ((x * d2.y - y * d1.y) / det, (y * d1.x - x * d2.x) / det)
+}
+
 impl Geometry {
     /// A box that holds every point, in the geometry's frame.
     pub fn bounds(&self) -> Bounds3 {

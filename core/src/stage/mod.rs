@@ -19,6 +19,7 @@ mod placement;
 mod settings;
 mod shining;
 mod trace;
+mod turning;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0x1dfadb6cdd85a8bdull
+#define LUXEL_LAYOUT_HASH 0x7dc5c32846a4ccaaull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -295,6 +295,7 @@ typedef struct {
     luxel_maybe_direct direct;
     luxel_maybe_scatter scatter;
     luxel_maybe_sight sight;
+    float curvature;
 } luxel_arrival;
 
 /* A path in flight. */
@@ -693,7 +694,7 @@ typedef struct {
     /* Bytes of this table. */
     size_t size;
     /* What the host prepares at each arrival, as flags: 1 emission, 2 a light sample, 4 a
-       scattering sample, 8 where the camera sees it. Of what owns the picture: for all its paths. */
+       scattering sample, 8 where the camera sees it, 16 curvature. Of what owns the picture: for all its paths. */
     luxel_status (*wants)(const void *at, uint32_t *out);
     /* What the lanes of its light mean: 0 values as they are, 1 linear sRGB. */
     luxel_status (*output)(const void *at, uint32_t *out);
@@ -945,7 +946,7 @@ LUXEL_CHECK(sizeof(luxel_maybe_scatter) == 64, "size of luxel_maybe_scatter");
 LUXEL_CHECK(_Alignof(luxel_maybe_scatter) == 16, "alignment of luxel_maybe_scatter");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, given) == 0, "luxel_maybe_scatter.given");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, value) == 16, "luxel_maybe_scatter.value");
-LUXEL_CHECK(sizeof(luxel_arrival) == 480, "size of luxel_arrival");
+LUXEL_CHECK(sizeof(luxel_arrival) == 496, "size of luxel_arrival");
 LUXEL_CHECK(_Alignof(luxel_arrival) == 16, "alignment of luxel_arrival");
 LUXEL_CHECK(offsetof(luxel_arrival, kind) == 0, "luxel_arrival.kind");
 LUXEL_CHECK(offsetof(luxel_arrival, p) == 8, "luxel_arrival.p");
@@ -963,11 +964,12 @@ LUXEL_CHECK(offsetof(luxel_arrival, le_pdf) == 192, "luxel_arrival.le_pdf");
 LUXEL_CHECK(offsetof(luxel_arrival, direct) == 208, "luxel_arrival.direct");
 LUXEL_CHECK(offsetof(luxel_arrival, scatter) == 320, "luxel_arrival.scatter");
 LUXEL_CHECK(offsetof(luxel_arrival, sight) == 384, "luxel_arrival.sight");
-LUXEL_CHECK(sizeof(luxel_lane) == 512, "size of luxel_lane");
+LUXEL_CHECK(offsetof(luxel_arrival, curvature) == 480, "luxel_arrival.curvature");
+LUXEL_CHECK(sizeof(luxel_lane) == 528, "size of luxel_lane");
 LUXEL_CHECK(_Alignof(luxel_lane) == 16, "alignment of luxel_lane");
 LUXEL_CHECK(offsetof(luxel_lane, at) == 0, "luxel_lane.at");
-LUXEL_CHECK(offsetof(luxel_lane, l) == 480, "luxel_lane.l");
-LUXEL_CHECK(offsetof(luxel_lane, numbers) == 496, "luxel_lane.numbers");
+LUXEL_CHECK(offsetof(luxel_lane, l) == 496, "luxel_lane.l");
+LUXEL_CHECK(offsetof(luxel_lane, numbers) == 512, "luxel_lane.numbers");
 LUXEL_CHECK(sizeof(luxel_onward) == 64, "size of luxel_onward");
 LUXEL_CHECK(_Alignof(luxel_onward) == 8, "alignment of luxel_onward");
 LUXEL_CHECK(offsetof(luxel_onward, ray) == 0, "luxel_onward.ray");

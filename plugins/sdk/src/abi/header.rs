@@ -103,6 +103,7 @@ describe! { PLAIN, PLAIN_C {
     /// A point that a path arrived at. Kinds: 0 escaped, 1 surface, 2 medium.
     Arrival => "luxel_arrival" {
         kind, p, p_err, ng, ns, lift, uv, t, wo, material, steps, le, le_pdf, direct, scatter, sight,
+        curvature,
     }
     /// A path in flight.
     Lane => "luxel_lane" { at, l, numbers }

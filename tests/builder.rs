@@ -85,7 +85,7 @@ pub(crate) fn judge(bytes: &[u8]) -> usize {
 fn shoot(tree: &MeshBvh, singles: &[MeshBvh], o: DVec3, direction: &Direction) -> bool {
     let mut met = false;
     for precision in Precision::ALL {
-        let query = Query { o, direction, t_max: f64::INFINITY, skip: None, precision };
+        let query = Query { o, direction, t_max: f64::INFINITY, skip: None, precision, share: 0.0 };
         for processor in Processor::all() {
             let (hit, _) = tree.intersect(processor, &query);
             met |= hit.is_some();

@@ -26,6 +26,7 @@ fn stage(body: &str) -> Stage {
 
 /// Mean curvature where a ray towards −z meets the first surface.
 fn met(stage: &Stage, x: f64, y: f64) -> Option<f64> {
+    let stage = stage.opening();
     let ray = Ray::new(DVec3::new(x, y, 9.0), -DVec3::Z);
     let hit = stage.intersect(Processor::ANY, &ray, None, &mut 0)?;
     Some(stage.mean_curvature(&ray, &hit, &stage.surface(&ray, &hit)))
@@ -69,15 +70,16 @@ fn normals_of_meshes_turn_as_their_neighbours_say_in_any_place() {
     let mut rng = Rng::new(3);
     for place in places {
         let stage = stage(&format!("{SHEET}{place} }}"));
+        let stage = stage.opening();
         let placement = &stage.placements[0];
         let Geometry::Mesh(mesh) = &*stage.geometries[0] else { panic!("a mesh") };
-        let swaps = placement.transform.as_ref().is_some_and(|t| t.swaps_handedness());
+        let swaps = placement.place.first().is_some_and(|t| t.swaps_handedness());
         let turn = if swaps { -1.0 } else { 1.0 };
         for i in 0..100u32 {
             let at = DVec2::new(0.1 + 0.4 * rng.f64(), 0.1 + 0.4 * rng.f64());
             let surface = |at: DVec2| {
-                let local = mesh.surface(i % 2, at, Precision::Exact);
-                placement.transform.as_ref().map_or(local, |transform| local.carried(transform))
+                let local = mesh.surface(i % 2, at, Precision::Exact, 0.0);
+                placement.place.first().map_or(local, |transform| local.carried(transform))
             };
             let hit = SceneHit { placement: 0, hit: Hit { t: 1.0, at, face: i % 2 } };
             let ray = Ray::new(DVec3::ZERO, DVec3::X);

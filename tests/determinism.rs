@@ -18,7 +18,7 @@ const SCENE: &str = "scene 1
     param from: length = 4 m
     param corner: length = 2 m
     camera perspective { look = look_at(from = (0, 1, 1) * from, to = (0, 0.5, 0) m, up = (0, 1, 0)), fov = 40 deg }
-    film spectral { resolution = (41, 23) }
+    film spectral { resolution = (41, 23), shutter = 10 ms }
     sampler sobol { samples = 8, seed = 5 }
     medium homogeneous { sigma_t = 0.05 / (1 m), albedo = 0.9 }
     light constant { spectrum = illuminant(\"D65\"), radiance = 0.2 W/m^2/sr }
@@ -26,6 +26,7 @@ const SCENE: &str = "scene 1
     light area { shape = shape sphere { center = (-2, 2, 0) m, radius = 30 cm }, spectrum = blackbody(6000 K), radiance = 9 W/m^2/sr }
     shape sphere { center = (0.6, 0.5, 0) m, radius = 50 cm, material = material dielectric { ior = glass(\"N-BK7\") } }
     shape sphere { center = (-0.6, 0.5, 0) m, radius = 50 cm, material = material conductor { eta = metal(\"Cu\"), roughness = 0.2 } }
+    shape box { size = (0.3, 0.3, 0.3) m, transform = [spin((0, 1, 0), 9 deg / (1 ms)), move((0, 0.8, 0.5) m)] }
     shape mesh \"floor\" {
         points = [(-2 m, 0 m, -2 m), (corner, 0 m, -2 m), (2 m, 0 m, 2 m), (-2 m, 0 m, 2 m)]
         indices = #[ 0 2 1  0 3 2 ], material = material diffuse { reflectance = rho }

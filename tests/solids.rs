@@ -45,8 +45,10 @@ fn wrong(objects: &str) -> (&'static str, String) {
 /// Where a ray crosses the scene, with the cosine of each crossing.
 fn crossings(stage: &Stage, o: DVec3, d: DVec3) -> Vec<(DVec3, f64)> {
     let (mut from, mut found) = (o, vec![]);
-    while let Some(hit) = stage.intersect(Processor::ANY, &Ray::new(from, d), None, &mut 0) {
-        let s = stage.surface(&Ray::new(from, d), &hit);
+    while let Some(hit) =
+        stage.opening().intersect(Processor::ANY, &Ray::new(from, d), None, &mut 0)
+    {
+        let s = stage.opening().surface(&Ray::new(from, d), &hit);
         from = offset_origin(s.p, s.p_err, s.ng, d);
         found.push((s.p, s.ng.dot(d)));
         assert!(found.len() < 100);
@@ -118,6 +120,14 @@ fn what_cannot_be_a_part_is_told_at_its_place() {
     let flat = "matrix([1, 0, 0, 0,  0, 1, 0, 0,  1, 1, 0, 0,  0, 0, 0, 1])";
     let (code, text) = wrong(&of(&format!("shape sphere {{ radius = 1 m, transform = {flat} }}")));
     assert!(code == "E0412" && text.contains("flattens"), "{code} {text}");
+    let moving = "shape sphere { radius = 1 m, transform = spin((0, 1, 0), 1 rad / (1 s)) }";
+    let (code, text) = wrong(&of(moving));
+    assert!(code == "E0418" && text.contains("does not move in it"), "{code} {text}");
+    let (code, text) = wrong(&of("shape mesh {
+        points      = #[ 0 0 0  1 0 0  0 1 0  0 0 1 ] m, indices = #[ 0 2 1  0 1 3  0 3 2  1 2 3 ]
+        next_points = #[ 0 0 0  2 0 0  0 2 0  0 0 2 ] m
+    }"));
+    assert!(code == "E0405" && text.contains("points move"), "{code} {text}");
     let (code, text) = wrong(&of("material diffuse {}"));
     assert!(code == "E0408" && text.contains("wants a shape"), "{text}");
     let (code, text) = wrong(&format!("shape union {{ a = {ball} }}"));

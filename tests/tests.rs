@@ -28,6 +28,8 @@ mod load;
 #[cfg(test)]
 mod manual;
 #[cfg(test)]
+mod motion;
+#[cfg(test)]
 mod scenes;
 #[cfg(test)]
 mod solids;

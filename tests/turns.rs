@@ -9,10 +9,11 @@ use luxel_sdk::sampling::Rng;
 use crate::disk::{OnDisk, root};
 use crate::load::stage_of;
 
-/// Meshes, analytic shapes, placements that turn and scale, and open surfaces.
-const SCENES: [&str; 4] = ["spot", "gltf", "parametric", "fog"];
+/// Meshes, analytic shapes, placements that turn and scale, open surfaces, and things that
+/// move.
+const SCENES: [&str; 5] = ["spot", "gltf", "parametric", "fog", "motion"];
 
-type Rays = Vec<(Ray, Option<Leaving>)>;
+type Rays = Vec<(Ray, Option<Leaving>, f64)>;
 type Found = Vec<(Option<SceneHit>, u32, bool)>;
 
 fn direction(rng: &mut Rng) -> DVec3 {
@@ -26,18 +27,21 @@ fn rays(stage: &Stage) -> Rays {
     let (centre, radius) = stage.sphere;
     let mut rays: Rays = (0..3000)
         .map(|_| {
+            let time = stage.time_of(rng.f64() as f32);
             let o = centre + direction(&mut rng) * radius;
             let towards = centre + direction(&mut rng) * 0.2 * radius;
-            (Ray::new(o, towards - o), None)
+            (Ray::new(o, towards - o), None, time)
         })
         .collect();
     for i in 0..rays.len() {
-        let Some(hit) = stage.intersect(Processor::ANY, &rays[i].0, None, &mut 0) else { continue };
-        let surface = stage.surface(&rays[i].0, &hit);
+        let (ray, _, time) = rays[i];
+        let moment = stage.at(time);
+        let Some(hit) = moment.intersect(Processor::ANY, &ray, None, &mut 0) else { continue };
+        let surface = moment.surface(&ray, &hit);
         let d = direction(&mut rng);
         let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
         let t_max = if i % 2 == 0 { f64::INFINITY } else { 0.3 * radius };
-        rays.push((Ray { o, d, t_max }, Some(Leaving::from(&hit))));
+        rays.push((Ray { o, d, t_max }, Some(Leaving::from(&hit)), time));
     }
     rays
 }
@@ -48,10 +52,10 @@ impl Work for OneByOne<'_> {
     #[inline(always)]
     fn run(self, processor: Processor) {
         let Self(stage, rays, found) = self;
-        found.extend(rays.iter().map(|(ray, from)| {
-            let mut steps = 0;
-            let hit = stage.intersect(processor, ray, *from, &mut steps);
-            (hit, steps, stage.occluded(processor, ray, *from))
+        found.extend(rays.iter().map(|(ray, from, time)| {
+            let (moment, mut steps) = (stage.at(*time), 0);
+            let hit = moment.intersect(processor, ray, *from, &mut steps);
+            (hit, steps, moment.occluded(processor, ray, *from))
         }));
     }
 }
@@ -64,7 +68,7 @@ impl Work for InTurns<'_> {
         let Self(stage, rays, found) = self;
         let mut rooms = Rooms::default();
         found.resize(rays.len(), (None, 0, false));
-        let asked = || rays.iter().map(|(ray, from)| (ray, *from));
+        let asked = || rays.iter().map(|(ray, from, time)| (ray, *from, *time));
         stage.intersect_all(processor, asked(), &mut rooms, |i, hit, steps| {
             (found[i].0, found[i].1) = (hit, steps);
         });

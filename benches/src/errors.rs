@@ -93,11 +93,11 @@ fn worst(case: &Case, precision: Option<Precision>) -> Result<Worst, String> {
         // Into the ball that even an octahedron holds.
         let d = (case.centre + to * (0.5 * case.size) - o).normalize();
         let ray = Ray { o, d, t_max: f64::INFINITY };
-        let Some(hit) = stage.intersect(Processor::widest(), &ray, None, &mut 0) else {
+        let Some(hit) = stage.opening().intersect(Processor::widest(), &ray, None, &mut 0) else {
             worst.missed += 1;
             continue;
         };
-        let surface = stage.surface(&ray, &hit);
+        let surface = stage.opening().surface(&ray, &hit);
         let truth = if precision.is_some() {
             of_plane(&stage, &ray, hit.hit.face, surface.p)
         } else {

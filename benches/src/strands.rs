@@ -31,7 +31,9 @@ pub(crate) fn run() -> Result<(), String> {
             return Err("strands are no mesh".to_owned());
         };
         let tree = Series::of(ROUNDS, || {
-            rate(RAYS[0], |ray| stage.intersect(Processor::widest(), ray, None, &mut 0).is_some())
+            rate(RAYS[0], |ray| {
+                stage.opening().intersect(Processor::widest(), ray, None, &mut 0).is_some()
+            })
         });
         let shape = shape.object().fixed().shape();
         let all = Series::of(ROUNDS, || rate(RAYS[1], |ray| shape.intersect(ray).is_some()));

@@ -166,7 +166,7 @@ impl<const ANY: bool> Work for InTurns<'_, ANY> {
 
 fn query<'a>(shot: &Shot, direction: &'a Direction, precision: Precision) -> Query<'a> {
     let t_max = f64::from(shot.t_max) * direction.scale();
-    Query { o: shot.o.as_dvec3(), direction, t_max, skip: None, precision }
+    Query { o: shot.o.as_dvec3(), direction, t_max, skip: None, precision, share: 0.0 }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounded for the comparison")]

@@ -27,6 +27,14 @@ pub(super) struct Triangles<'a> {
     pub(super) points: &'a [Vec3],
     pub(super) indices: &'a [[u32; 3]],
     pub(super) unit: f32,
+    pub(super) moves: Option<Moves<'a>>,
+}
+
+/// Where points move to, and the shares of the way between which they are met.
+#[derive(Clone, Copy)]
+pub(super) struct Moves<'a> {
+    pub(super) last: &'a [Vec3],
+    pub(super) shares: [f32; 2],
 }
 
 impl Triangles<'_> {
@@ -34,16 +42,38 @@ impl Triangles<'_> {
         self.indices[triangle as usize].map(|i| self.points[i as usize] * self.unit)
     }
 
-    /// The triangle's box, or `None` if it has no area.
-    fn bounds(&self, triangle: u32) -> Option<Bounds> {
-        let [a, b, c] = self.corners(triangle);
-        let ab = b.as_dvec3() - a.as_dvec3();
-        let ac = c.as_dvec3() - a.as_dvec3();
-        let area = ab.cross(ac);
-        let bounds = Bounds { min: a.min(b).min(c), max: a.max(b).max(c) };
-        (area.x != 0.0 || area.y != 0.0 || area.z != 0.0).then_some(bounds)
+    /// The corners when all of the way is done.
+    pub(super) fn last_corners(&self, moves: &Moves<'_>, triangle: u32) -> [Vec3; 3] {
+        self.indices[triangle as usize].map(|i| moves.last[i as usize] * self.unit)
     }
 
+    /// The box of a triangle, wherever it moves to, or `None` if it never has an area: that of one
+    /// whose corners move evenly is a square of the time, which is zero at three times or always.
+    fn bounds(&self, triangle: u32) -> Option<Bounds> {
+        let first = self.corners(triangle);
+        let Some(moves) = &self.moves else { return standing_bounds(first) };
+        let last = self.last_corners(moves, triangle);
+        let [open, close] = moves.shares;
+        let at = |share: f32| [0, 1, 2].map(|i| first[i] + (last[i] - first[i]) * share);
+        let middle = 0.5 * open + 0.5 * close;
+        if [open, middle, close].into_iter().all(|share| standing_bounds(at(share)).is_none()) {
+            return None;
+        }
+        let corners = at(open).into_iter().chain(at(close));
+        Some(corners.fold(Bounds::EMPTY, Bounds::grow))
+    }
+}
+
+/// The box of a triangle, or `None` if it has no area.
+fn standing_bounds([a, b, c]: [Vec3; 3]) -> Option<Bounds> {
+    let ab = b.as_dvec3() - a.as_dvec3();
+    let ac = c.as_dvec3() - a.as_dvec3();
+    let area = ab.cross(ac);
+    let bounds = Bounds { min: a.min(b).min(c), max: a.max(b).max(c) };
+    (area.x != 0.0 || area.y != 0.0 || area.z != 0.0).then_some(bounds)
+}
+
+impl Triangles<'_> {
     /// The triangles that have an area.
     pub(super) fn prims(&self) -> Vec<Prim> {
         let prim = |triangle: usize| {

@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::build::{Tree, Triangles};
+use super::build::{Moves, Tree, Triangles};
 use super::error::BuildError;
-use super::node::{Block, Bounds, Child, Node};
+use super::node::{Block, Bounds, Child, Node, Shift};
 use super::partition::PART;
 use super::precision::Precision;
 use super::processor::{Processor, prefetch};
@@ -24,6 +24,8 @@ use super::triangle::Nearest;
 pub struct MeshBvh {
     nodes: Vec<Node>,
     blocks: Vec<Block>,
+    /// One for each block, if points move.
+    shifts: Vec<Shift>,
     root: Option<Child>,
     /// Power of two from the caller's frame to the tree's.
     unit: f32,
@@ -62,9 +64,29 @@ impl MeshBvh {
     /// triangles.
     pub fn build(points: &[Vec3], indices: &[[u32; 3]]) -> Result<Self, BuildError> {
         check(points, indices)?;
-        let largest = points.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())).max_element();
+        Ok(Self::of((points, indices), None))
+    }
+
+    /// The same over triangles whose points move evenly to those of `last`, of which there are as
+    /// many. Rays meet them between the two `shares` of the way.
+    ///
+    /// # Errors
+    /// As `build`.
+    pub fn build_moving(
+        (points, last): (&[Vec3], &[Vec3]),
+        indices: &[[u32; 3]],
+        shares: [f32; 2],
+    ) -> Result<Self, BuildError> {
+        check(points, indices)?;
+        check(last, indices)?;
+        Ok(Self::of((points, indices), Some(Moves { last, shares })))
+    }
+
+    fn of((points, indices): (&[Vec3], &[[u32; 3]]), moves: Option<Moves<'_>>) -> Self {
+        let all = points.iter().chain(moves.iter().flat_map(|moves| moves.last));
+        let largest = all.fold(Vec3::ZERO, |m, p| m.max(p.abs())).max_element();
         let unit = 1.0 / power_of_two_below(largest);
-        let triangles = Triangles { points, indices, unit };
+        let triangles = Triangles { points, indices, unit, moves };
         let prims = triangles.prims();
         let dropped = indices.len() - prims.len();
         let Tree { nodes, blocks, root } = triangles.tree(prims);
@@ -73,16 +95,20 @@ impl MeshBvh {
             root.is_none_or(|root| is_enough_for(root.depth)),
             "builders bound the depth"
         );
-        Ok(Self {
+        let shift =
+            |block: &Block| moves.map(|moves| block.shift(|id| triangles.last_corners(&moves, id)));
+        let shifts = blocks.iter().filter_map(shift).collect();
+        Self {
             nodes,
             blocks,
+            shifts,
             root: root.map(|root| root.child),
             unit,
             per_unit: 1.0 / unit,
             reach: size.min.abs().max(size.max.abs()).max_element(),
             bounds: root.map(|_| (size.min / unit, size.max / unit)),
             dropped,
-        })
+        }
     }
 
     /// How many triangles were left out because they have no area.
@@ -97,7 +123,9 @@ impl MeshBvh {
 
     /// Bytes that the tree holds.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
+        size_of_val(self.nodes.as_slice())
+            + size_of_val(self.blocks.as_slice())
+            + size_of_val(self.shifts.as_slice())
     }
 
     /// The nearest hit, of equally near triangles the one that comes first; and how many nodes and
@@ -143,7 +171,7 @@ impl MeshBvh {
         // An infinite limit would let a ray "enter" the boxes that it misses at infinity.
         let mut best = Nearest::none((t_max * f64::from(self.unit)).min(f64::from(f32::MAX)));
         let shear = Shear::new(direction, o, query.skip.unwrap_or(u32::MAX));
-        let probe = Probe { precision, line, shear };
+        let probe = Probe { precision, line, shear, share: query.share };
         if root.is_leaf() {
             let steps = self.leaf::<ANY>(root, &probe, &mut best).1;
             return Begun::Over(self.found(&best, precision), steps);
@@ -162,19 +190,36 @@ impl MeshBvh {
         (best.id != u32::MAX).then_some(MeshHit { t, triangle: best.id, b1, b2 })
     }
 
+    /// As `leaf`, of blocks whose points move. Apart: it would take registers from all others.
+    #[inline(never)]
+    fn leaf_in_motion<const ANY: bool>(
+        &self,
+        blocks: std::ops::Range<usize>,
+        ray: &Probe,
+        best: &mut Nearest,
+    ) -> (bool, u32) {
+        let mut steps = 0;
+        for (block, shift) in self.blocks[blocks.clone()].iter().zip(&self.shifts[blocks]) {
+            steps += 1;
+            if ray.meets::<ANY>(&block.at(shift, ray.share), best) && ANY {
+                best.id = 0;
+                return (true, steps);
+            }
+        }
+        (false, steps)
+    }
+
     /// Whether a leaf has a hit, which `best` takes, and how many blocks were looked at.
     #[inline(always)]
     fn leaf<const ANY: bool>(&self, leaf: Child, ray: &Probe, best: &mut Nearest) -> (bool, u32) {
         let mut steps = 0;
-        let Probe { precision, line, shear } = ray;
-        for block in &self.blocks[leaf.blocks()] {
+        let blocks = leaf.blocks();
+        if !self.shifts.is_empty() {
+            return self.leaf_in_motion::<ANY>(blocks, ray, best);
+        }
+        for block in &self.blocks[blocks] {
             steps += 1;
-            let is_hit = match precision {
-                Precision::Standard => block.intersect::<ANY>(shear, best),
-                Precision::Fast => block.intersect_fast::<ANY>(line, shear.skip, best),
-                Precision::Exact => block.intersect_exact::<ANY>(line, shear.skip, best),
-            };
-            if is_hit && ANY {
+            if ray.meets::<ANY>(block, best) && ANY {
                 best.id = 0;
                 return (true, steps);
             }
@@ -200,6 +245,8 @@ pub struct Query<'a> {
     pub skip: Option<u32>,
     /// How triangles are met.
     pub precision: Precision,
+    /// The share of the way that points have moved; of no account where they stand.
+    pub share: f32,
 }
 
 /// A ray as leaves want it.
@@ -208,6 +255,20 @@ struct Probe {
     precision: Precision,
     line: Line,
     shear: Shear,
+    share: f32,
+}
+
+impl Probe {
+    /// Whether a block has a hit, which `best` takes.
+    #[inline(always)]
+    fn meets<const ANY: bool>(&self, block: &Block, best: &mut Nearest) -> bool {
+        let Self { precision, line, shear, .. } = self;
+        match precision {
+            Precision::Standard => block.intersect::<ANY>(shear, best),
+            Precision::Fast => block.intersect_fast::<ANY>(line, shear.skip, best),
+            Precision::Exact => block.intersect_exact::<ANY>(line, shear.skip, best),
+        }
+    }
 }
 
 /// A ray that has been given to a tree.

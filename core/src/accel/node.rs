@@ -151,6 +151,10 @@ impl Node {
     }
 }
 
+/// By how much the corners of a block move, from first to last.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shift([[Vec4; 3]; 3]);
+
 /// Four triangles by coordinate, `points[vertex][axis]`; a lane without a triangle is all NaN,
 /// which fails every comparison.
 #[derive(Clone, Copy, Debug)]
@@ -174,5 +178,21 @@ impl Block {
             }
         }
         Self { points: points.map(|vertex| vertex.map(Vec4::from_array)), ids }
+    }
+
+    /// By how much its triangles move, whose corners end there.
+    pub(super) fn shift(&self, last: impl Fn(u32) -> [Vec3; 3]) -> Shift {
+        let used = self.ids.into_iter().take_while(|id| *id != u32::MAX);
+        let last = Self::of(used.map(|id| (id, last(id))));
+        let axes = |v: usize| [0, 1, 2].map(|axis| last.points[v][axis] - self.points[v][axis]);
+        Shift([0, 1, 2].map(axes))
+    }
+
+    /// The block when a share of the way is done. Each coordinate comes from one product and one sum:
+    /// it changes only one way, and is the same in all triangles that have the corner.
+    #[inline(always)]
+    pub(super) fn at(&self, shift: &Shift, share: f32) -> Self {
+        let axes = |v: usize| [0, 1, 2].map(|a| self.points[v][a] + shift.0[v][a] * share);
+        Self { points: [0, 1, 2].map(axes), ids: self.ids }
     }
 }

@@ -104,7 +104,7 @@ impl MeshBvh {
         let Some(direction) = Direction::new(d.as_dvec3()) else { return (None, 0) };
         let t_max = f64::from(t_max) * direction.scale();
         let (o, direction) = (o.as_dvec3(), &direction);
-        let query = Query { o, direction, t_max, skip: None, precision };
+        let query = Query { o, direction, t_max, skip: None, precision, share: 0.0 };
         let (hit, steps) = self.intersect(Processor::ANY, &query);
         for processor in Processor::all() {
             let name = processor.name();

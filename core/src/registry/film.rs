@@ -58,6 +58,13 @@ pub struct FilmSettings<'a> {
     /// of it in double precision.
     #[param(choice, default = Precision::Standard)]
     pub precision: Precision,
+    /// When the shutter opens.
+    #[param(unit = "s", default = 0.0)]
+    pub time: f64,
+    /// How long it stays open: what moves meanwhile is blurred, and no brighter. Without it the
+    /// picture is that of one moment.
+    #[param(unit = "s", default = 0.0, min = 0)]
+    pub shutter: f64,
     /// Where the EXR is written; the PNG stands beside it. The scene's name if absent.
     #[param(optional)]
     pub file: Text<'a>,

@@ -11,11 +11,11 @@ use luxel_sdk::num::{Frame, Ray, unit_and_length};
 use super::path::{Path, Standing};
 use crate::cast::narrow;
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Crossing, Leaving, SceneHit, Seen, Skin, Stage};
+use crate::stage::{Crossing, Leaving, Moment, SceneHit, Seen, Skin, Stage};
 
 /// What is needed to shade: borrowed for one arrival.
 pub(super) struct Shader<'a, 's> {
-    pub(super) stage: &'a Stage,
+    pub(super) stage: Moment<'a>,
     pub(super) wants: Wants,
     pub(super) path: &'a mut Path,
     pub(super) samples: &'a mut Samples<'s>,
@@ -45,7 +45,7 @@ impl Shader<'_, '_> {
         self.path.from = p;
         self.scratch.reset();
         let scratch: &Scratch = self.scratch;
-        let numbers = Numbers::draw(self.stage, self.wants, self.samples);
+        let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
         if self.wants.has(Wants::DIRECT) {
             let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
             at.direct.set(found.map(|found| {
@@ -76,7 +76,7 @@ impl Shader<'_, '_> {
     /// The ray met a surface, and paths need not know what they are in.
     #[inline(always)]
     pub(super) fn surface(self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
-        let numbers = Numbers::draw(self.stage, self.wants, self.samples);
+        let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
         let surface = self.stage.surface(ray, hit);
         self.meets((ray, hit, steps), &surface, &numbers, at);
     }
@@ -89,7 +89,7 @@ impl Shader<'_, '_> {
         at: &mut Arrival,
     ) {
         self.path.beyond = crossing.beyond;
-        let numbers = Numbers::draw(self.stage, self.wants, self.samples);
+        let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
         self.meets((ray, hit, steps), &crossing.surface, &numbers, at);
     }
 
@@ -112,9 +112,9 @@ impl Shader<'_, '_> {
             self.scratch.reset();
             let from = self.path.from;
             let palette = &self.path.palette;
-            let met = (surface, hit.hit.face);
+            let place = (placement, hit.hit.face);
             let (le, pdf) =
-                stage.surface_emission(placement, met, (from, wo), palette, self.scratch);
+                stage.surface_emission(place, surface, (from, wo), palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
         if self.wants.has(Wants::CURVATURE) {
@@ -247,13 +247,13 @@ impl Shader<'_, '_> {
 const SHADED: Wants = Wants::DIRECT.with(Wants::SCATTER).with(Wants::SIGHT);
 
 /// What the camera gets of a place from which `f` is sent towards it.
-pub(super) fn sight(stage: &Stage, at: &Arrival, seen: &Seen, f: Spectrum) -> Option<Sight> {
+pub(super) fn sight(stage: Moment<'_>, at: &Arrival, seen: &Seen, f: Spectrum) -> Option<Sight> {
     let f_we = f * narrow(seen.per_area);
     if f_we.is_black() || !f_we.is_finite() {
         return None;
     }
     let o = at.origin(seen.d);
-    let (d, t_max) = unit_and_length(stage.eye?.p - o);
+    let (d, t_max) = unit_and_length(stage.eye?.at(stage) - o);
     Some(Sight { ray: Ray { o, d, t_max }, pixel: seen.pixel, f_we })
 }
 

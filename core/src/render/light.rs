@@ -10,7 +10,7 @@ use luxel_sdk::sampling::hash_combine;
 
 use super::Stop;
 use super::arrival::sight;
-use super::tile::{Jobs, Worker};
+use super::tile::{Jobs, Worker, moment};
 use crate::cast::index;
 use crate::object::ColorMode;
 use crate::stage::{EmissionNumbers, Emitted, Emitters};
@@ -63,8 +63,10 @@ impl Worker<'_> {
         if stage.mode == ColorMode::Spectral {
             self.paths[lane].palette = Palette::new(Wavelengths::sample(u));
         }
+        let moment = moment(stage, &mut samples);
+        self.paths[lane].time = moment.time;
         let palette = &self.paths[lane].palette;
-        let found = stage.emit(bundle.emitters, palette, &numbers, &mut self.scratch)?;
+        let found = moment.emit(bundle.emitters, palette, &numbers, &mut self.scratch)?;
         let sight = if self.wants.has(Wants::SIGHT) {
             self.lamp_seen(&found, samples.next_1d(), lane)
         } else {
@@ -82,10 +84,11 @@ impl Worker<'_> {
     fn lamp_seen(&mut self, found: &Emitted, u: f32, lane: usize) -> Option<Sight> {
         let lamp = found.lamp.as_ref()?;
         let surface = &lamp.surface;
-        let seen = self.stage.eye?.sees(self.stage, surface.p, u)?;
+        let moment = self.stage.at(self.paths[lane].time);
+        let seen = moment.eye?.sees(moment, surface.p, u)?;
         let palette = &self.paths[lane].palette;
-        let le = self.stage.lamp_towards(lamp, seen.d, palette, &mut self.scratch);
+        let le = moment.lamp_towards(lamp, seen.d, palette, &mut self.scratch);
         let (p, p_err, ng) = (surface.p, surface.p_err, surface.ng);
-        sight(self.stage, &Arrival { p, p_err, ng, ..Arrival::default() }, &seen, le)
+        sight(moment, &Arrival { p, p_err, ng, ..Arrival::default() }, &seen, le)
     }
 }

@@ -6,13 +6,15 @@ use luxel_sdk::kind::CameraRay;
 use luxel_sdk::num::Ray;
 
 use crate::object::ColorMode;
-use crate::stage::{Emitted, Leaving, MediumStack, Stage};
+use crate::stage::{Emitted, Leaving, MediumStack, Moment, Stage};
 
 /// One path, beside the integrator's own state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path {
     /// Which of the tile's samples it is.
     pub(super) job: u32,
+    /// The moment that it sees, seconds.
+    pub(super) time: f64,
     /// What its radiance counts for.
     pub(super) weight: f32,
     pub(super) palette: Palette,
@@ -52,18 +54,24 @@ impl Path {
     pub(super) fn new(stage: &Stage) -> Self {
         let (palette, media) = (Palette::rgb(), stage.camera_media);
         let (from, beyond) = (DVec3::ZERO, media);
-        Self { job: 0, weight: 0.0, palette, ended: false, from, on: None, media, beyond }
+        let time = stage.film.time;
+        Self { job: 0, time, weight: 0.0, palette, ended: false, from, on: None, media, beyond }
     }
 
-    /// A path begins at the camera; `u` chooses the wavelengths, if there are any.
-    pub(super) fn start(&mut self, job: u32, found: &CameraRay, u: f32, stage: &Stage) {
+    /// A path begins at the camera at a moment; `u` chooses the wavelengths, if there are any.
+    pub(super) fn start(&mut self, job: u32, found: &CameraRay, u: f32, stage: Moment<'_>) {
+        self.time = stage.time;
         if stage.mode == ColorMode::Spectral {
             self.palette = Palette::new(Wavelengths::sample(u));
         }
         (self.job, self.weight, self.from) = (job, found.weight, found.ray.o);
         (self.ended, self.on) = (false, None);
         if stage.features.is_tracked() {
-            self.media = stage.camera_media;
+            self.media = if stage.features.motion {
+                stage.media_at(found.ray.o)
+            } else {
+                stage.camera_media
+            };
         }
     }
 

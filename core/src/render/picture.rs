@@ -15,7 +15,7 @@ use super::watched::Watched;
 use super::{FROM_CAMERA, Stop};
 use crate::accel::Processor;
 use crate::film::{Film, Rect};
-use crate::stage::{Emitters, Leaving, Skin, Stage};
+use crate::stage::{Emitters, Leaving, Moment, Skin, Stage};
 
 /// Light paths that one thread follows at a time.
 const BUNDLE: u32 = 1024;
@@ -123,7 +123,7 @@ impl PictureJob for PictureHost<'_> {
         let pairs = rays.par_chunks(RAYS).zip(out.par_chunks_mut(RAYS));
         pairs.for_each(|(rays, out)| {
             for (ray, at) in rays.iter().zip(out) {
-                *at = arrival(stage, *ray);
+                *at = arrival(stage.opening(), *ray);
             }
         });
     }
@@ -177,7 +177,7 @@ impl PictureJob for PictureHost<'_> {
         let (stage, seed, stop, output) = (self.stage, self.seed, self.stop, self.output);
         let (most, call) = (self.most, self.calls.get());
         self.calls.set(call.wrapping_add(1));
-        let emitters = self.emitters.get_or_init(|| stage.emitters());
+        let emitters = self.emitters.get_or_init(|| stage.opening().emitters());
         let n_bundles = n.div_ceil(BUNDLE);
         for group in (0..n_bundles).step_by(GROUP as usize) {
             let bundles = group..n_bundles.min(group.saturating_add(GROUP));
@@ -221,7 +221,7 @@ impl PictureJob for PictureHost<'_> {
 }
 
 /// Where a ray arrives, as `Wants::POSITION` says.
-fn arrival(stage: &Stage, ray: Ray) -> Arrival {
+fn arrival(stage: Moment<'_>, ray: Ray) -> Arrival {
     let mut at = Arrival { t: f64::INFINITY, wo: -ray.d, material: u32::MAX, ..Arrival::default() };
     let (mut leg, mut flown, mut from) = (ray, 0.0, None);
     while let Some(hit) = stage.intersect(Processor::ANY, &leg, from, &mut at.steps) {

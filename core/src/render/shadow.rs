@@ -7,13 +7,13 @@ use luxel_sdk::num::{Ray, offset_origin};
 use super::path::Path;
 use crate::accel::Processor;
 use crate::object::{Scratch, Site};
-use crate::stage::{Leaving, Stage};
+use crate::stage::{Leaving, Moment};
 
 /// The fraction of light that passes along a ray that is not occluded: less through media. Surfaces
 /// that rays pass are passed. Where shapes may be nested, the ray may be occluded yet.
 pub(super) fn passes(
     processor: Processor,
-    stage: &Stage,
+    stage: Moment<'_>,
     ray: &Ray,
     path: &Path,
     samples: &mut Samples<'_>,

@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::{DVec3, UVec2};
 use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::{
-    Arrival, Erased, Host, Integrator, Job, Lane, Onward, Output, Raster, Requests, Round,
-    SampleAt, Sampler, Samples, Shadow, Wants,
+    Arrival, Erased, Host, Integrator, Job, Lane, Onward, Output, Requests, Round, SampleAt,
+    Sampler, Samples, Shadow, Wants,
 };
 use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::hash_combine;
@@ -19,7 +19,7 @@ use crate::accel::{Processor, Work};
 use crate::cast;
 use crate::film::{Rect, Tile};
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Leaving, Rooms, SceneHit, Stage};
+use crate::stage::{Leaving, Moment, Rooms, SceneHit, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
 const LANES: usize = 128;
@@ -168,12 +168,11 @@ impl<'s> Worker<'s> {
         let [in_pixel, lens] = samples.next_2d_pair();
         let [dx, dy] = self.stage.filter.fixed().filter().sample(in_pixel);
         let u = samples.next_1d_if(self.stage.mode == ColorMode::Spectral);
+        let stage = moment(self.stage, &mut samples);
         let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
         let p = pixel.as_dvec2() + 0.5 + offset;
-        let raster = Raster { size: self.stage.film.resolution };
-        let camera = self.stage.camera.fixed().camera();
-        let found = camera.ray(raster, p, lens)?;
-        self.paths[lane].start(cast::index(job), &found, u, self.stage);
+        let found = stage.camera_ray(p, lens)?;
+        self.paths[lane].start(cast::index(job), &found, u, stage);
         (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
         self.job.ray = found.ray;
         Some(())
@@ -185,16 +184,17 @@ impl<'s> Worker<'s> {
         self.shadowed.clear();
         self.shadowed.resize(self.now.shadows.len(), false);
         let (paths, shadowed) = (&self.paths, &mut self.shadowed);
-        let leaving = |lane: u32| paths[lane as usize].leaving();
-        let rays = self.now.shadows.iter().map(|asked| (&asked.ray, leaving(asked.lane)));
+        let of = |lane: u32| (paths[lane as usize].leaving(), paths[lane as usize].time);
+        let rays = self.now.shadows.iter().map(|asked| (&asked.ray, of(asked.lane)));
+        let rays = rays.map(|(ray, (from, time))| (ray, from, time));
         if self.stage.features.nested {
             // What stops a ray depends on what it is in: `shadow::passes` sees.
         } else if self.in_turns {
             let tell = |i: usize, is_hit| shadowed[i] = is_hit;
             self.stage.occluded_all(processor, rays, &mut self.rooms, tell);
         } else {
-            for ((ray, from), shadowed) in rays.zip(shadowed) {
-                *shadowed = self.stage.occluded(processor, ray, from);
+            for ((ray, from, time), shadowed) in rays.zip(shadowed) {
+                *shadowed = self.stage.at(time).occluded(processor, ray, from);
             }
         }
         for (request, shadowed) in self.now.shadows.iter().zip(&self.shadowed) {
@@ -205,8 +205,8 @@ impl<'s> Worker<'s> {
             let path = &self.paths[request.lane as usize];
             let mut samples = Samples::new(self.sampler, lane.numbers);
             let scratch = &mut self.scratch;
-            let left =
-                shadow::passes(processor, self.stage, &request.ray, path, &mut samples, scratch);
+            let stage = self.stage.at(path.time);
+            let left = shadow::passes(processor, stage, &request.ray, path, &mut samples, scratch);
             lane.numbers = samples.at();
             if request.pixel == Shadow::OWN {
                 lane.l += request.l * left;
@@ -238,17 +238,18 @@ impl<'s> Worker<'s> {
     fn trace(&mut self, processor: Processor) {
         self.hits.clear();
         let (paths, hits) = (&self.paths, &mut self.hits);
-        let leaving = |lane: u32| paths[lane as usize].leaving();
-        let rays = self.now.rays.iter().map(|onward| (&onward.ray, leaving(onward.lane)));
+        let of = |lane: u32| (paths[lane as usize].leaving(), paths[lane as usize].time);
+        let rays = self.now.rays.iter().map(|onward| (&onward.ray, of(onward.lane)));
+        let rays = rays.map(|(ray, (from, time))| (ray, from, time));
         if self.in_turns {
             hits.resize(self.now.rays.len(), (None, 0));
             let tell = |i: usize, hit, steps| hits[i] = (hit, steps);
             self.stage.intersect_all(processor, rays, &mut self.rooms, tell);
             return;
         }
-        for (ray, from) in rays {
+        for (ray, from, time) in rays {
             let mut steps = 0;
-            let hit = self.stage.intersect(processor, ray, from, &mut steps);
+            let hit = self.stage.at(time).intersect(processor, ray, from, &mut steps);
             hits.push((hit, steps));
         }
     }
@@ -256,9 +257,10 @@ impl<'s> Worker<'s> {
     /// Shades every path of this round where `trace` found that it ends.
     #[inline(always)]
     fn shade(&mut self) {
-        let (stage, wants) = (self.stage, self.wants);
+        let wants = self.wants;
         for (Onward { ray, lane }, (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
             let path = &mut self.paths[*lane as usize];
+            let stage = self.stage.at(path.time);
             let Lane { at, numbers, .. } = &mut self.lanes[*lane as usize];
             let mut samples = Samples::new(self.sampler, *numbers);
             let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
@@ -285,7 +287,7 @@ impl<'s> Worker<'s> {
 
     #[inline(always)]
     fn fly_one(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) {
-        let stage = self.stage;
+        let stage = self.stage.at(self.paths[lane].time);
         let mut media = self.paths[lane].media_along(&ray);
         let mut from = self.paths[lane].leaving();
         let (mut steps, mut flight) = (0, Spectrum::ONE);
@@ -391,6 +393,12 @@ impl Work for Fly<'_, '_> {
     }
 }
 
+/// The moment that a path sees. Where nothing moves no number is taken, and pictures stay as they are.
+pub(super) fn moment<'s>(stage: &'s Stage, samples: &mut Samples<'_>) -> Moment<'s> {
+    let u = if stage.features.motion { samples.next_1d() } else { 0.0 };
+    stage.at(stage.time_of(u))
+}
+
 /// What a worker is to do.
 pub(super) enum Jobs<'a> {
     /// The samples of one pass over a rectangle: sample by sample, each over all pixels.
@@ -452,7 +460,7 @@ pub(super) struct StageHost<'a>(pub(super) &'a Stage);
 
 impl Host for StageHost<'_> {
     fn occluded(&self, ray: &Ray) -> bool {
-        self.0.occluded(Processor::ANY, ray, None)
+        self.0.opening().occluded(Processor::ANY, ray, None)
     }
 
     fn scene_sphere(&self) -> (DVec3, f64) {

@@ -6,12 +6,13 @@
 
 mod color;
 mod conform;
+mod pose;
 mod print;
 mod value;
 
 use std::sync::Arc;
 
-use glam::{DAffine3, UVec2};
+use glam::UVec2;
 use luxel_sdk::kind::Kind;
 
 use crate::accel::Precision;
@@ -22,6 +23,7 @@ pub use color::Color;
 pub use conform::{
     DefaultUnits, Given, Misfit, conform, describe, number_words, range_words, wanted,
 };
+pub use pose::{Key, Pose, Step};
 pub use print::print;
 pub use value::{Hash, Value};
 
@@ -86,7 +88,7 @@ pub struct Placed {
     /// What.
     pub target: Target,
     /// From its frame to that of the group it stands in.
-    pub transform: DAffine3,
+    pub pose: Pose,
     /// The material of shapes that have none of their own.
     pub material: Option<NodeId>,
     /// Where the placement is written.
@@ -113,6 +115,8 @@ pub struct Scene {
     pub root: Group,
     /// The camera. `None` only if an asset may bring one.
     pub camera: Option<NodeId>,
+    /// From the frame that the camera's parameters speak of to the world.
+    pub camera_pose: Pose,
     /// The film, if given.
     pub film: Option<NodeId>,
     /// The integrator, if given.
@@ -222,9 +226,9 @@ mod tests {
         let placed = |x: f64| {
             let mut scene = camera("a", 0.05);
             let target = Target::Node(NodeId(0));
-            let transform = DAffine3::from_translation(glam::DVec3::X * x);
+            let pose = glam::DAffine3::from_translation(glam::DVec3::X * x).into();
             let span = Span::new(SourceId(0), 0, 0);
-            scene.root.items.push(Placed { target, transform, material: None, span });
+            scene.root.items.push(Placed { target, pose, material: None, span });
             scene.hash()
         };
         assert_ne!(placed(0.0), scene.hash());

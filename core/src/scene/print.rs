@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::DAffine3;
 use luxel_sdk::params::Dimension;
 
-use super::{Group, Node, NodeId, Placed, Scene, Target, Value};
+use super::{Group, Node, NodeId, Placed, Pose, Scene, Step, Target, Value};
 
 /// Tables longer than this are shown by their first numbers, their length and a hash.
 const SHOWN: usize = 12;
@@ -34,7 +34,11 @@ pub fn print(scene: &Scene) -> String {
     ];
     for (name, id) in slots {
         if let Some(id) = id {
-            let _ = writeln!(out, "{name} = n{}", id.0);
+            let _ = write!(out, "{name} = n{}", id.0);
+            if name == "camera" {
+                print_pose(&mut out, &scene.camera_pose);
+            }
+            out.push('\n');
         }
     }
     out
@@ -75,23 +79,44 @@ fn print_placed(out: &mut String, item: &Placed) {
         Target::Node(id) => write!(out, "  n{}", id.0),
         Target::Group(id) => write!(out, "  g{}", id.0),
     };
-    print_transform(out, &item.transform);
+    print_pose(out, &item.pose);
     if let Some(material) = item.material {
         let _ = write!(out, " material n{}", material.0);
     }
     out.push('\n');
 }
 
+fn print_pose(out: &mut String, pose: &Pose) {
+    for step in pose.steps() {
+        match step {
+            Step::Fixed(transform) => print_transform(out, &transform),
+            Step::Keys(keys) => {
+                for key in keys.iter() {
+                    let _ = write!(out, " when {} s", key.time);
+                    print_matrix(out, &key.transform);
+                }
+            }
+            Step::Spin { axis, rate } => {
+                let _ = write!(out, " spin about {axis} by {rate} rad/s");
+            }
+        }
+    }
+}
+
 fn print_transform(out: &mut String, transform: &DAffine3) {
     if *transform != DAffine3::IDENTITY {
-        let rows = transform.matrix3.transpose().to_cols_array();
-        let t = transform.translation;
-        out.push_str(" at [");
-        for row in 0..3 {
-            let r = &rows[3 * row..3 * row + 3];
-            let end = if row == 2 { "]" } else { "; " };
-            let _ = write!(out, "{} {} {} {}{end}", r[0], r[1], r[2], t[row]);
-        }
+        print_matrix(out, transform);
+    }
+}
+
+fn print_matrix(out: &mut String, transform: &DAffine3) {
+    let rows = transform.matrix3.transpose().to_cols_array();
+    let t = transform.translation;
+    out.push_str(" at [");
+    for row in 0..3 {
+        let r = &rows[3 * row..3 * row + 3];
+        let end = if row == 2 { "]" } else { "; " };
+        let _ = write!(out, "{} {} {} {}{end}", r[0], r[1], r[2], t[row]);
     }
 }
 

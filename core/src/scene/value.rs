@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 use luxel_sdk::params::{Dimension, Look};
 
-use super::{Color, Group, Node, NodeId, Scene, Target};
+use super::{Color, Group, Node, NodeId, Pose, Scene, Step, Target};
 
 /// A content hash (BLAKE3).
 pub type Hash = [u8; 32];
@@ -64,6 +64,7 @@ pub(super) fn hash_scene(scene: &Scene) -> Hash {
     }
     let mut hasher = blake3::Hasher::new();
     hasher.update(&hash_group(scene, &scene.root, &groups));
+    hash_pose(&mut hasher, &scene.camera_pose);
     let Scene { camera, film, integrator, sampler, filter, medium, .. } = scene;
     for setting in [camera, film, integrator, sampler, filter, medium] {
         hasher.update(&setting.map_or([0; 32], |id| scene.node(id).hash));
@@ -81,10 +82,27 @@ fn hash_group(scene: &Scene, group: &Group, before: &[Hash]) -> Hash {
                 hasher.update(&[1]).update(before.get(id.0 as usize).unwrap_or(&[0; 32]))
             }
         };
-        numbers(&mut hasher, &item.transform.to_cols_array());
+        hash_pose(&mut hasher, &item.pose);
         hasher.update(&item.material.map_or([0; 32], |id| scene.node(id).hash));
     }
     *hasher.finalize().as_bytes()
+}
+
+fn hash_pose(hasher: &mut blake3::Hasher, pose: &Pose) {
+    let steps = pose.steps();
+    hasher.update(&steps.len().to_le_bytes());
+    for step in steps {
+        match step {
+            Step::Fixed(transform) => numbers(hasher, &transform.to_cols_array()),
+            Step::Keys(keys) => {
+                let flat = keys
+                    .iter()
+                    .flat_map(|key| [key.time].into_iter().chain(key.transform.to_cols_array()));
+                numbers(hasher, &flat.collect::<Vec<_>>());
+            }
+            Step::Spin { axis, rate } => numbers(hasher, &[axis.x, axis.y, axis.z, rate]),
+        }
+    }
 }
 
 fn text(hasher: &mut blake3::Hasher, text: &str) {

@@ -9,7 +9,7 @@ use crate::accel::{Begun, Direction, MeshHit, MeshWalk, Processor, Room, Stack, 
 
 use super::geometry::{Approach, Geometry, Landed, Mesh, Taken};
 use super::trace::Local;
-use super::{Leaving, SceneHit, Skin, Stage};
+use super::{Leaving, Moment, SceneHit, Skin, Stage};
 
 /// Rays that take turns.
 const TURNS: usize = 8;
@@ -28,8 +28,8 @@ impl Default for Rooms {
     }
 }
 
-/// A ray that leaves a primitive, if it starts on one.
-pub type Asked<'a> = (&'a Ray, Option<Leaving>);
+/// A ray that leaves a primitive, if it starts on one, at a time in seconds.
+pub type Asked<'a> = (&'a Ray, Option<Leaving>, f64);
 
 impl Stage {
     /// Whether many rays are traced sooner in turns than one by one.
@@ -88,7 +88,7 @@ impl Stage {
         while !flights.is_empty() {
             turn = if turn < flights.len() { turn } else { 0 };
             let (flight, top, mesh) = &mut flights[turn];
-            if !flight.step::<ANY>(self, processor, (top, mesh)) {
+            if !flight.step::<ANY>(processor, (top, mesh)) {
                 turn += 1;
                 continue;
             }
@@ -112,6 +112,7 @@ struct Flight<'s> {
     ray: Ray,
     world: Option<Direction>,
     from: Option<Leaving>,
+    moment: Moment<'s>,
     walk: TopWalk<'s>,
     /// The mesh that it is in.
     within: Option<(Visit<'s>, MeshWalk<'s>)>,
@@ -132,32 +133,28 @@ type Stacks<'a, 'r> = (&'a mut Stack<'r, f64>, &'a mut Stack<'r, f32>);
 
 impl<'s> Flight<'s> {
     #[inline(always)]
-    fn new(stage: &'s Stage, (number, (ray, from)): (usize, Asked<'_>)) -> Self {
+    fn new(stage: &'s Stage, (number, (ray, from, time)): (usize, Asked<'_>)) -> Self {
         let (world, walk) = (Direction::new(ray.d), stage.top.walk(ray.o, ray.d, ray.t_max));
-        Self { number, ray: *ray, world, from, walk, within: None, hit: None, steps: 0 }
+        let moment = stage.at(time);
+        Self { number, ray: *ray, world, from, moment, walk, within: None, hit: None, steps: 0 }
     }
 
     /// Goes on until it has to wait for memory; true when it is over.
     #[inline(always)]
-    fn step<const ANY: bool>(
-        &mut self,
-        stage: &'s Stage,
-        processor: Processor,
-        (top, mesh): Stacks<'_, '_>,
-    ) -> bool {
+    fn step<const ANY: bool>(&mut self, processor: Processor, (top, mesh): Stacks<'_, '_>) -> bool {
         if let Some((_, walk)) = &mut self.within {
             if !walk.step::<ANY>(processor, mesh) {
                 walk.prefetch();
                 return false;
             }
             mesh.clear();
-            if self.leave::<ANY>(stage, processor) && ANY {
+            if self.leave::<ANY>(processor) && ANY {
                 return true;
             }
         }
         while self.within.is_none() {
             let Some((index, t_enter)) = self.walk.next(processor, top) else { return true };
-            if self.enter::<ANY>(stage, processor, index, t_enter) && ANY {
+            if self.enter::<ANY>(processor, index, t_enter) && ANY {
                 return true;
             }
         }
@@ -166,19 +163,15 @@ impl<'s> Flight<'s> {
 
     /// Enters a placement; true if it is done with at once and was hit.
     #[inline(always)]
-    fn enter<const ANY: bool>(
-        &mut self,
-        stage: &'s Stage,
-        processor: Processor,
-        index: u32,
-        t_enter: f64,
-    ) -> bool {
+    fn enter<const ANY: bool>(&mut self, processor: Processor, index: u32, t_enter: f64) -> bool {
         self.steps += 1;
+        let Moment { stage, time } = self.moment;
         let placement = &stage.placements[index as usize];
         if ANY && placement.skin == Skin::Open {
             return false;
         }
-        let local = Local::of(placement, &Ray { t_max: self.walk.t_max, ..self.ray }, self.world);
+        let ray = Ray { t_max: self.walk.t_max, ..self.ray };
+        let local = Local::of(placement, &ray, self.world, time);
         let mesh = match &*stage.geometries[placement.geometry as usize] {
             Geometry::Analytic(shape) => {
                 let hit = if ANY && shape.occluded(&local.ray, processor) {
@@ -195,11 +188,11 @@ impl<'s> Flight<'s> {
         let Some(direction) = &local.direction else { return false };
         let taken = mesh.take_up(direction, t_enter);
         let visit = Visit { placement: index, mesh, local, t_enter, taken };
-        let approach = visit.approach(stage, processor, self.from);
+        let approach = visit.approach(self.moment, processor, self.from);
         match mesh.begin::<ANY>(&visit.local.ray, &approach, taken) {
             Begun::Over(hit, steps) => {
                 self.steps += steps;
-                self.land::<ANY>(stage, processor, &visit, hit)
+                self.land::<ANY>(processor, &visit, hit)
             }
             Begun::Walk(walk) => {
                 walk.prefetch();
@@ -211,10 +204,10 @@ impl<'s> Flight<'s> {
 
     /// Leaves the mesh that it was in; true if it was hit.
     #[inline(always)]
-    fn leave<const ANY: bool>(&mut self, stage: &Stage, processor: Processor) -> bool {
+    fn leave<const ANY: bool>(&mut self, processor: Processor) -> bool {
         let Some((visit, walk)) = self.within.take() else { return false };
         self.steps += walk.steps;
-        self.land::<ANY>(stage, processor, &visit, walk.hit())
+        self.land::<ANY>(processor, &visit, walk.hit())
     }
 
     /// True if what the tree found is a hit. Of any triangle that is found it is not known whether
@@ -222,13 +215,12 @@ impl<'s> Flight<'s> {
     #[inline(always)]
     fn land<const ANY: bool>(
         &mut self,
-        stage: &Stage,
         processor: Processor,
         visit: &Visit<'_>,
         hit: Option<MeshHit>,
     ) -> bool {
         let Some(found) = hit else { return false };
-        let approach = visit.approach(stage, processor, self.from);
+        let approach = visit.approach(self.moment, processor, self.from);
         let (mesh, ray) = (visit.mesh, &visit.local.ray);
         let landed = if ANY && approach.from.is_none() {
             Some(Hit { t: 0.0, at: DVec2::ZERO, face: found.triangle })
@@ -255,8 +247,13 @@ impl<'s> Flight<'s> {
 
 impl Visit<'_> {
     #[inline(always)]
-    fn approach(&self, stage: &Stage, processor: Processor, from: Option<Leaving>) -> Approach<'_> {
+    fn approach(
+        &self,
+        moment: Moment<'_>,
+        processor: Processor,
+        from: Option<Leaving>,
+    ) -> Approach<'_> {
         let from = Leaving::face_on(from, self.placement);
-        stage.approach(processor, &self.local, self.t_enter, from)
+        moment.approach(processor, &self.local, self.t_enter, from)
     }
 }

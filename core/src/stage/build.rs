@@ -11,18 +11,19 @@ use super::analytic::Analytic;
 use super::flatten::{Flat, flatten};
 use super::geometry::mesh_part;
 use super::lights::LightSource;
+use super::motion::Motion;
 use super::{
-    Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Placement, Skin, Stage,
+    Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Place, Placement, Skin, Stage,
 };
 use super::{failures, features, import, nesting, shining};
-use crate::accel::{BuildError, MeshBvh, TopBvh};
+use crate::accel::{BuildError, TopBvh};
 use crate::cast::{index, whole};
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::object::{Builder, ColorMode, Object, Objects};
 use crate::registry::Registry;
 use crate::registry::dynamic::{FAILED, remote};
-use crate::scene::{Hash, NodeId, Scene, Value};
+use crate::scene::{Hash, NodeId, Pose, Scene, Value};
 
 /// A stage with the warnings that arose.
 #[derive(Debug)]
@@ -50,7 +51,8 @@ pub fn build(
     let cache = before.map_or(&none, |stage| &stage.cache);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(mesh_part);
-    let mut maker = Maker { scene: &scene, builder, cache, made: Made::default() };
+    let shutter = (film.time, film.shutter);
+    let mut maker = Maker { scene: &scene, shutter, builder, cache, made: Made::default() };
     match flatten(&scene) {
         Ok(flats) => flats.iter().for_each(|flat| maker.place(flat)),
         Err(diagnostic) => diagnostics.push(*diagnostic),
@@ -83,6 +85,7 @@ struct Settings {
     sampler: Arc<Object>,
     filter: Arc<Object>,
     outside: Option<u32>,
+    camera_place: Place,
 }
 
 /// Lists in the making, each with the index of what is already in it.
@@ -103,12 +106,20 @@ struct Made {
 
 struct Maker<'a> {
     scene: &'a Scene,
+    /// When it opens and how long for, seconds.
+    shutter: (f64, f64),
     builder: Builder<'a>,
     cache: &'a Cache,
     made: Made,
 }
 
 impl Maker<'_> {
+    /// When the shutter opens and closes, seconds.
+    fn during(&self) -> [f64; 2] {
+        let (open, shutter) = self.shutter;
+        [open, open + shutter]
+    }
+
     fn place(&mut self, flat: &Flat) {
         if self.scene.node(flat.node).kind == Kind::Shape {
             self.shape(flat, flat.node, None);
@@ -126,9 +137,8 @@ impl Maker<'_> {
             }
             return;
         }
-        let transform = self.transform(flat);
-        if let Some(transform) = transform {
-            self.made.lights.push(LightSource::Free { object, transform });
+        if let Some(place) = self.stand(&flat.pose, flat.span) {
+            self.made.lights.push(LightSource::Free { object, place });
         }
     }
 
@@ -150,29 +160,37 @@ impl Maker<'_> {
         self.builder.diagnostics.push(told);
     }
 
-    /// `Some(None)` where there is nothing to transform, `None` when the transform is singular.
-    #[expect(clippy::option_option, reason = "absent and faulty are different answers")]
-    fn transform(&mut self, flat: &Flat) -> Option<Option<Box<Transform>>> {
-        if flat.transform == glam::DAffine3::IDENTITY {
-            return Some(None);
+    /// Where something stands or moves; `None`, and told, when that flattens space.
+    fn stand(&mut self, pose: &Pose, span: Span) -> Option<Place> {
+        if pose.is_identity() {
+            return Some(Place::Here);
         }
-        let Some(transform) = Transform::new(flat.transform) else {
-            let message = "the transform is singular: it flattens space or is not finite";
-            self.builder.diagnostics.push(Diagnostic::error("E0412", flat.span, message));
-            return None;
+        let (open, shutter) = self.shutter;
+        let place = match pose {
+            Pose::Fixed(affine) => Transform::new(*affine).map(|it| Place::Fixed(Box::new(it))),
+            Pose::Moving(steps) => Motion::new(steps).and_then(|motion| {
+                if shutter > 0.0 {
+                    return Place::moving(motion, open);
+                }
+                motion.at(open).map(|it| Place::Fixed(Box::new(it)))
+            }),
         };
-        Some(Some(Box::new(transform)))
+        if place.is_none() {
+            let message = "the transform is singular: it flattens space or is not finite";
+            self.builder.diagnostics.push(Diagnostic::error("E0412", span, message));
+        }
+        place
     }
 
     fn shape(&mut self, flat: &Flat, shape: NodeId, light: Option<Arc<Object>>) {
         let Some(geometry) = self.geometry(shape) else { return };
-        let Some(transform) = self.transform(flat) else { return };
+        let Some(place) = self.stand(&flat.pose, flat.span) else { return };
         let interior = self.interior(shape, flat.material);
         let skin = self.skin(shape, flat.material, light.is_some(), interior.is_some());
         let Some(skin) = skin else { return };
         let placement = Placement {
             geometry,
-            transform,
+            place,
             skin,
             light: light.is_some().then_some(index(self.made.lights.len())),
             interior,
@@ -209,7 +227,11 @@ impl Maker<'_> {
         let known = self.made.meshes.get(&hash).or_else(|| self.cache.meshes.get(&hash));
         let geometry = match known {
             // The object itself is kept only where no file that it read has changed.
-            Some((kept, geometry)) if Arc::ptr_eq(kept, &object) => geometry.clone(),
+            Some((kept, geometry))
+                if Arc::ptr_eq(kept, &object) && geometry.is_of(self.during()) =>
+            {
+                geometry.clone()
+            }
             _ => Arc::new(self.new_geometry(id, &object)?),
         };
         self.made.meshes.insert(hash, (object, geometry.clone()));
@@ -225,13 +247,13 @@ impl Maker<'_> {
             return Some(Geometry::Analytic(Analytic::new(object.clone())));
         };
         let span = self.scene.node(id).span;
-        match MeshBvh::build(&triangles.points, &triangles.indices) {
-            Ok(bvh) => {
-                if bvh.dropped() > 0 {
-                    let message = format!("{} triangles without area left out", bvh.dropped());
+        match Mesh::build(triangles, self.during()) {
+            Ok(mesh) => {
+                if mesh.dropped() > 0 {
+                    let message = format!("{} triangles without area left out", mesh.dropped());
                     self.builder.diagnostics.push(Diagnostic::warning("E0418", span, message));
                 }
-                Some(Geometry::Mesh(Arc::new(Mesh::new(triangles, bvh))))
+                Some(Geometry::Mesh(Arc::new(mesh)))
             }
             Err(error) => {
                 self.builder.diagnostics.push(mesh_error(error, span));
@@ -321,6 +343,8 @@ impl Maker<'_> {
             self.builder.diagnostics.push(error);
         }
         let camera = scene.camera.and_then(|id| self.builder.build(id));
+        let camera_place =
+            scene.camera.and_then(|id| self.stand(&scene.camera_pose, scene.node(id).span));
         let outside = scene.medium.and_then(|id| self.medium(id));
         let mut pick = |id: Option<NodeId>, kind, name| match id {
             Some(id) => self.builder.build(id),
@@ -331,6 +355,7 @@ impl Maker<'_> {
         let filter = pick(scene.filter, Kind::Filter, "blackman_harris");
         Some(Settings {
             camera: camera?,
+            camera_place: camera_place?,
             integrator: integrator?,
             sampler: sampler?,
             filter: filter?,
@@ -349,18 +374,13 @@ fn finish(
     objects: Objects,
     (scene, film, mode): (Scene, Film, ColorMode),
 ) -> Stage {
-    let boxes: Vec<_> = made
-        .placements
-        .iter()
-        .map(|placement| {
-            let local = made.geometries[placement.geometry as usize].bounds();
-            let world = match &placement.transform {
-                Some(transform) => local.transform(transform.affine()),
-                None => local,
-            };
-            (world.min, world.max)
-        })
-        .collect();
+    let during = [film.time, film.time + film.shutter];
+    let boxed = |placement: &Placement| {
+        let local = made.geometries[placement.geometry as usize].bounds();
+        let world = placement.place.bounds(local, during);
+        (world.min, world.max)
+    };
+    let boxes: Vec<_> = made.placements.iter().map(boxed).collect();
     let all = boxes.iter().fold(Bounds3::EMPTY, |all, (min, max)| {
         let bounds = Bounds3 { min: *min, max: *max };
         if bounds.is_empty() || !bounds.diagonal().is_finite() { all } else { all.union(bounds) }
@@ -374,7 +394,15 @@ fn finish(
     let (places, shapes) = (&mut made.placements, &made.geometries);
     let nested = nesting::settle(places, shapes, &boxes, &made.materials, media);
     let open_surfaces = places.iter().any(|placement| placement.skin == Skin::Open);
-    let features = Features { media, open_surfaces, nested };
+    let moves = |light: &LightSource| match light {
+        LightSource::Free { place, .. } => place.is_moving(),
+        LightSource::Surface { .. } => false,
+    };
+    let motion = settings.camera_place.is_moving()
+        || places.iter().any(|placement| placement.place.is_moving())
+        || shapes.iter().any(|shape| shape.is_moving())
+        || made.lights.iter().any(moves);
+    let features = Features { media, open_surfaces, nested, motion };
     let mut stage = Stage {
         lights: Lights::new(made.lights, sphere.1, mode),
         top: TopBvh::build(&boxes),
@@ -385,6 +413,7 @@ fn finish(
         media: made.media,
         outside: settings.outside,
         camera: settings.camera,
+        camera_place: settings.camera_place,
         integrator: settings.integrator,
         sampler: settings.sampler,
         filter: settings.filter,
@@ -399,10 +428,12 @@ fn finish(
         sphere,
     };
     stage.eye = Eye::of(stage.camera.fixed().camera(), stage.film.resolution);
-    if let Some(eye) = eye(&stage) {
+    let middle = stage.film.resolution.as_dvec2() / 2.0;
+    if let Some(seen) = stage.opening().camera_ray(middle, [0.5; 2]) {
+        let eye = seen.ray.o;
         stage.reach = FOG_REACH * sphere.1.max(eye.distance(sphere.0));
         if stage.features.is_tracked() {
-            stage.camera_media = stage.media_at(eye);
+            stage.camera_media = stage.opening().media_at(eye);
         }
     }
     stage
@@ -427,10 +458,3 @@ fn unseen(stage: &Stage) -> Option<Diagnostic> {
 /// How far the medium that fills the outside reaches, in radii of what holds the scene and the
 /// camera: endless fog would let no light from far away through, and hold paths for ever.
 const FOG_REACH: f64 = 2.0;
-
-/// Where the camera stands.
-fn eye(stage: &Stage) -> Option<DVec3> {
-    let raster = luxel_sdk::kind::Raster { size: stage.film.resolution };
-    let centre = stage.film.resolution.as_dvec2() / 2.0;
-    Some(stage.camera.fixed().camera().ray(raster, centre, [0.5; 2])?.ray.o)
-}

@@ -1,15 +1,16 @@
 //! The camera as paths from lights find it: a point, and which pixels look where.
 
 use glam::{DVec2, DVec3, UVec2};
-use luxel_sdk::kind::{Camera, Filter, Raster};
+use luxel_sdk::kind::{Camera, CameraRay, Filter, Raster};
+use luxel_sdk::num::unit_and_length;
 
-use super::Stage;
+use super::Moment;
 
 /// Where the camera stands, if its lens is a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Eye {
-    /// World space.
-    pub p: DVec3,
+    /// In the camera's frame.
+    p: DVec3,
     raster: Raster,
 }
 
@@ -41,14 +42,20 @@ impl Eye {
         point.then_some(Self { p, raster })
     }
 
+    /// Where it is at a moment, in the world.
+    pub fn at(&self, moment: Moment<'_>) -> DVec3 {
+        let mut room = None;
+        let place = moment.camera_place.at(moment.time, &mut room);
+        place.map_or(self.p, |transform| transform.point(self.p))
+    }
+
     /// How the camera sees a point. `u` uniform in [0, 1) chooses among the pixels that see it.
-    pub fn sees(&self, stage: &Stage, p: DVec3, u: f32) -> Option<Seen> {
-        let camera = stage.camera.fixed().camera();
-        let to = self.p - p;
+    pub fn sees(&self, moment: Moment<'_>, p: DVec3, u: f32) -> Option<Seen> {
+        let to = self.at(moment) - p;
         let distance2 = to.length_squared();
-        let at = camera.project(self.raster, p).filter(|at| at.is_finite())?;
-        let (pixel, weight) = self.pixel(stage.filter.fixed().filter(), at, f64::from(u))?;
-        let density = self.density(camera, at)?;
+        let at = moment.project(p).filter(|at| at.is_finite())?;
+        let (pixel, weight) = self.pixel(moment.filter.fixed().filter(), at, f64::from(u))?;
+        let density = density(moment, at)?;
         let per_area = weight * density / distance2;
         let seen = Seen { d: to / distance2.sqrt(), pixel, per_area };
         (per_area > 0.0 && per_area.is_finite()).then_some(seen)
@@ -85,14 +92,37 @@ impl Eye {
         }
         Some((u32::try_from(chosen?).ok()?, sum))
     }
+}
 
-    /// Pixels per solid angle around a place of the picture, times what its rays count for.
-    fn density(&self, camera: &dyn Camera, at: DVec2) -> Option<f64> {
-        let d =
-            |x: f64, y: f64| Some(camera.ray(self.raster, at + DVec2::new(x, y), [0.5; 2])?.ray.d);
-        let across = (d(STEP, 0.0)? - d(-STEP, 0.0)?) / (2.0 * STEP);
-        let down = (d(0.0, STEP)? - d(0.0, -STEP)?) / (2.0 * STEP);
-        let weight = camera.ray(self.raster, at, [0.5; 2])?.weight;
-        Some(f64::from(weight) / across.cross(down).length())
+/// Pixels per solid angle around a place of the picture, times what its rays count for.
+fn density(moment: Moment<'_>, at: DVec2) -> Option<f64> {
+    let d = |x: f64, y: f64| Some(moment.camera_ray(at + DVec2::new(x, y), [0.5; 2])?.ray.d);
+    let across = (d(STEP, 0.0)? - d(-STEP, 0.0)?) / (2.0 * STEP);
+    let down = (d(0.0, STEP)? - d(0.0, -STEP)?) / (2.0 * STEP);
+    let weight = moment.camera_ray(at, [0.5; 2])?.weight;
+    Some(f64::from(weight) / across.cross(down).length())
+}
+
+impl Moment<'_> {
+    /// The camera's ray through raster point `p`, in the world; `lens` uniform in [0, 1)².
+    #[inline]
+    pub fn camera_ray(self, p: DVec2, lens: [f32; 2]) -> Option<CameraRay> {
+        let raster = Raster { size: self.film.resolution };
+        let mut found = self.camera.fixed().camera().ray(raster, p, lens)?;
+        let mut room = None;
+        if let Some(transform) = self.camera_place.at(self.time, &mut room) {
+            found.ray.o = transform.point(found.ray.o);
+            found.ray.d = unit_and_length(transform.vector(found.ray.d)).0;
+        }
+        Some(found)
+    }
+
+    /// Where a point in the world appears through the centre of the lens; `None` behind it.
+    fn project(self, p: DVec3) -> Option<DVec2> {
+        let raster = Raster { size: self.film.resolution };
+        let mut room = None;
+        let place = self.camera_place.at(self.time, &mut room);
+        let p = place.map_or(p, |transform| transform.inverse_point(p));
+        self.camera.fixed().camera().project(raster, p)
     }
 }

@@ -14,6 +14,8 @@ pub struct Features {
     pub open_surfaces: bool,
     /// Refracting shapes may lie within each other.
     pub nested: bool,
+    /// Something moves while the shutter is open.
+    pub motion: bool,
 }
 
 impl Features {

@@ -1,16 +1,15 @@
-//! Groups in their places into one list, with transforms multiplied out.
+//! Groups in their places into one list, with poses joined.
 
-use glam::DAffine3;
 use luxel_sdk::kind::Kind;
 
 use crate::diag::Diagnostic;
-use crate::scene::{Group, NodeId, Scene, Target};
+use crate::scene::{Group, NodeId, Pose, Scene, Target};
 
 /// A node in the world.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Flat {
     pub(super) node: NodeId,
-    pub(super) transform: DAffine3,
+    pub(super) pose: Pose,
     /// The material of the nearest placement or group that gives one.
     pub(super) material: Option<NodeId>,
     /// Where the outermost placement is written.
@@ -26,25 +25,25 @@ const LIMIT: usize = 100_000_000;
 /// E0501 when there are too many.
 pub(super) fn flatten(scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
     let mut out = vec![];
-    walk(scene, &scene.root, DAffine3::IDENTITY, None, &mut out)?;
+    walk(scene, &scene.root, &Pose::IDENTITY, None, &mut out)?;
     Ok(out)
 }
 
 fn walk(
     scene: &Scene,
     group: &Group,
-    transform: DAffine3,
+    pose: &Pose,
     material: Option<NodeId>,
     out: &mut Vec<Flat>,
 ) -> Result<(), Box<Diagnostic>> {
     for item in &group.items {
-        let transform = transform * item.transform;
+        let pose = item.pose.then(pose);
         let material = item.material.or(material);
         match item.target {
-            Target::Group(id) => walk(scene, scene.group(id), transform, material, out)?,
+            Target::Group(id) => walk(scene, scene.group(id), &pose, material, out)?,
             Target::Node(node) => {
                 if matches!(scene.node(node).kind, Kind::Shape | Kind::Light) {
-                    out.push(Flat { node, transform, material, span: item.span });
+                    out.push(Flat { node, pose, material, span: item.span });
                 }
             }
         }

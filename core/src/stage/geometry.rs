@@ -12,7 +12,7 @@ use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
 use super::analytic::Analytic;
 use super::closed::is_closed;
-use crate::accel::{Begun, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
+use crate::accel::{Begun, BuildError, Direction, MeshBvh, MeshHit, Precision, Processor, Query};
 
 pub(super) use part::mesh_part;
 
@@ -38,6 +38,8 @@ pub struct Approach<'a> {
     pub t_enter: f64,
     /// The triangle that it leaves, if it starts on one.
     pub from: Option<u32>,
+    /// When, in seconds.
+    pub time: f64,
 }
 
 /// Most triangles behind its origin that a ray passes; what it then meets counts.
@@ -63,6 +65,8 @@ pub(super) struct Taken {
 pub struct Mesh {
     triangles: Arc<TriangleMesh>,
     bvh: MeshBvh,
+    /// The interval of time in which it is met, seconds.
+    during: [f64; 2],
     /// Whether every edge joins exactly two triangles that run along it in opposite directions:
     /// found when first asked for, which only scenes with media do.
     closed: OnceLock<bool>,
@@ -73,11 +77,35 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Takes over the triangles of a shape and its finished tree.
-    pub fn new(triangles: Arc<TriangleMesh>, bvh: MeshBvh) -> Self {
+    /// Takes over the triangles of a shape and builds their tree, for an interval of time in seconds.
+    ///
+    /// # Errors
+    /// What is wrong with the triangles.
+    pub fn build(triangles: Arc<TriangleMesh>, during: [f64; 2]) -> Result<Self, BuildError> {
+        let bvh = match &triangles.later {
+            None => MeshBvh::build(&triangles.points, &triangles.indices)?,
+            Some(later) => {
+                let points = (&*triangles.points, &*later.points);
+                let shares = during.map(|time| later.share(time));
+                MeshBvh::build_moving(points, &triangles.indices, shares)?
+            }
+        };
         let diagonal = bvh.bounds().map_or(0.0, |(min, max)| (max - min).as_dvec3().length());
         let centre = triangles.centre;
-        Self { triangles, bvh, closed: OnceLock::new(), centre, diagonal }
+        Ok(Self { triangles, bvh, during, closed: OnceLock::new(), centre, diagonal })
+    }
+
+    /// Whether its points move while the shutter is open.
+    fn is_moving(&self) -> bool {
+        let [open, close] = self.during.map(|time| self.share(time));
+        open < close
+    }
+
+    /// The corner points of a triangle.
+    #[inline(always)]
+    pub(super) fn indices(&self, triangle: u32) -> [usize; 3] {
+        let [a, b, c] = self.triangles.indices[triangle as usize];
+        [a as usize, b as usize, c as usize]
     }
 
     /// The triangles.
@@ -93,6 +121,32 @@ impl Mesh {
     /// Bytes of the tree.
     pub fn bytes(&self) -> usize {
         self.bvh.bytes()
+    }
+
+    /// How far its points have come at a time, from 0 to 1.
+    #[inline(always)]
+    fn share(&self, time: f64) -> f32 {
+        self.triangles.later.as_ref().map_or(0.0, |later| later.share(time))
+    }
+
+    /// The corners of a triangle at a time, about the centre: as the tree has them, to the bit.
+    #[inline(always)]
+    pub(super) fn corners(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
+        let points = &self.triangles.points;
+        match &self.triangles.later {
+            None => [points[a].as_dvec3(), points[b].as_dvec3(), points[c].as_dvec3()],
+            Some(later) => between(points, &later.points, [a, b, c], later.share(time)),
+        }
+    }
+
+    /// The normals at its corners at a time, unit where the mesh stands.
+    #[inline(always)]
+    pub(super) fn normals(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
+        let normals = &self.triangles.normals;
+        match &self.triangles.later {
+            None => [normals[a].as_dvec3(), normals[b].as_dvec3(), normals[c].as_dvec3()],
+            Some(later) => between(normals, &later.normals, [a, b, c], later.share(time)),
+        }
     }
 
     /// Where a ray that enters the box at `t_enter` is taken up: a diagonal before, so that little is
@@ -117,7 +171,9 @@ impl Mesh {
         // What is rounded stays beyond the end: `land` looks again.
         let t_max = (ray.t_max - taken.start) * direction.scale();
         let t_max = t_max * (1.0 + f64::from(f32::EPSILON));
-        Query { o, direction, t_max, skip: approach.from, precision: approach.precision }
+        let (skip, precision, share) =
+            (approach.from, approach.precision, self.share(approach.time));
+        Query { o, direction, t_max, skip, precision, share }
     }
 
     /// The nearest hit. A ray that leaves this mesh may seem to meet a sliver beside the triangle
@@ -156,7 +212,10 @@ impl Mesh {
             return Landed::Nowhere;
         };
         let t = taken.start + hit.t * direction.per_scale();
-        if approach.from.is_some() && taken.left > 0 && self.is_behind(hit.triangle, ray) {
+        if approach.from.is_some()
+            && taken.left > 0
+            && self.is_behind(hit.triangle, ray, approach.time)
+        {
             return Landed::Behind(Taken { start: t, left: taken.left - 1 });
         }
         let at = DVec2::new(hit.b1, hit.b2);
@@ -187,18 +246,18 @@ impl Mesh {
     /// Whether the plane of a triangle lies behind the origin of a ray, in double precision. Asked for
     /// few rays, so it stays out of the copies for each processor.
     #[inline(never)]
-    fn is_behind(&self, triangle: u32, ray: &Ray) -> bool {
-        let [a, b, c] = self.triangles().corners(triangle);
+    fn is_behind(&self, triangle: u32, ray: &Ray, time: f64) -> bool {
+        let [a, b, c] = self.corners(self.indices(triangle), time);
         let normal = (b - a).cross(c - a);
-        normal.dot(a - ray.o) * normal.dot(ray.d) <= 0.0
+        normal.dot(a + self.centre - ray.o) * normal.dot(ray.d) <= 0.0
     }
 
-    /// The point of a triangle with barycentrics `at` of its second and third corner.
+    /// The point of a triangle with barycentrics `at` of its second and third corner, at a time in
+    /// seconds.
     #[inline(always)]
-    pub fn surface(&self, triangle: u32, at: DVec2, precision: Precision) -> Surface {
-        let mesh = self.triangles();
-        let corners = mesh.indices[triangle as usize].map(|i| i as usize);
-        let [a, b, c] = corners.map(|i| mesh.points[i].as_dvec3());
+    pub fn surface(&self, triangle: u32, at: DVec2, precision: Precision, time: f64) -> Surface {
+        let (mesh, corners) = (self.triangles(), self.indices(triangle));
+        let [a, b, c] = self.corners(corners, time);
         let weights = [1.0 - at.x - at.y, at.x, at.y];
         let about = a * weights[0] + b * weights[1] + c * weights[2];
         // The next ray's origin is rounded to single precision about the centre: γ(7) covers the
@@ -219,7 +278,7 @@ impl Mesh {
         };
         let (ng, _) = unit_and_length((b - a).cross(c - a));
         let ng = if ng.is_nan() { DVec3::Z } else { ng };
-        let ns = shading_normal(mesh, corners, weights, ng);
+        let ns = self.shading_normal(corners, weights, ng, time);
         let (uv, dp_du, dp_dv) = parametrisation(mesh, corners, [a, b, c], weights);
         Surface { p, p_err, ng, ns, uv, dp_du, dp_dv }
     }
@@ -232,23 +291,51 @@ impl Mesh {
     ///
     /// # Source
     /// Hanika 2021, Hacking the Shadow Terminator (Ray Tracing Gems II, ch. 4).
-    pub fn lift(&self, triangle: u32, at: DVec2, outside: bool) -> DVec3 {
-        let mesh = self.triangles();
-        if mesh.normals.is_empty() {
+    pub fn lift(&self, triangle: u32, at: DVec2, outside: bool, time: f64) -> DVec3 {
+        if self.triangles.normals.is_empty() {
             return DVec3::ZERO;
         }
-        let corners = mesh.indices[triangle as usize].map(|i| i as usize);
-        let [a, b, c] = corners.map(|i| mesh.points[i].as_dvec3());
+        let corners = self.indices(triangle);
+        let [a, b, c] = self.corners(corners, time);
+        let normals = self
+            .normals(corners, time)
+            .map(|n| if self.triangles.later.is_some() { n.normalize_or_zero() } else { n });
         let weights = [1.0 - at.x - at.y, at.x, at.y];
         let p = a * weights[0] + b * weights[1] + c * weights[2];
         let ng = (b - a).cross(c - a);
         let mut lift = DVec3::ZERO;
-        for ((corner, i), weight) in [a, b, c].into_iter().zip(corners).zip(weights) {
-            let n = mesh.normals[i].as_dvec3();
+        for ((corner, n), weight) in [a, b, c].into_iter().zip(normals).zip(weights) {
             let n = if (n.dot(ng) > 0.0) == outside { n } else { -n };
             lift -= n * (weight * (p - corner).dot(n).min(0.0));
         }
         lift
+    }
+
+    #[inline(always)]
+    fn shading_normal(&self, corners: [usize; 3], w: [f64; 3], ng: DVec3, time: f64) -> DVec3 {
+        if self.triangles.normals.is_empty() {
+            return ng;
+        }
+        let [a, b, c] = self.normals(corners, time);
+        let ns = (a * w[0] + b * w[1] + c * w[2]).normalize_or(ng);
+        if ns.dot(ng) < 0.0 { -ns } else { ns }
+    }
+
+    /// The corners of a triangle in the frame of the shape, when the shutter opens.
+    pub fn opening_corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.corners(self.indices(triangle), self.during[0]).map(|p| self.centre + p)
+    }
+
+    /// How many times as large a triangle is as when the shutter opened.
+    pub fn growth(&self, triangle: u32, time: f64) -> f64 {
+        if self.triangles.later.is_none() {
+            return 1.0;
+        }
+        let area = |time| {
+            let [a, b, c] = self.corners(self.indices(triangle), time);
+            (b - a).cross(c - a).length()
+        };
+        area(time) / area(self.during[0])
     }
 
     /// The mean of the corners' colours, linear sRGB, if they have any; `at` as in `surface`.
@@ -263,14 +350,10 @@ impl Mesh {
     }
 }
 
-#[inline(always)]
-fn shading_normal(mesh: &TriangleMesh, corners: [usize; 3], w: [f64; 3], ng: DVec3) -> DVec3 {
-    if mesh.normals.is_empty() {
-        return ng;
-    }
-    let [a, b, c] = corners.map(|i| mesh.normals[i].as_dvec3());
-    let ns = (a * w[0] + b * w[1] + c * w[2]).normalize_or(ng);
-    if ns.dot(ng) < 0.0 { -ns } else { ns }
+/// Three of `first` on their way to `last`. Apart: it would take registers from meshes that stand.
+#[inline(never)]
+fn between(first: &[Vec3], last: &[Vec3], corners: [usize; 3], share: f32) -> [DVec3; 3] {
+    corners.map(|i| (first[i] + (last[i] - first[i]) * share).as_dvec3())
 }
 
 /// Surface coordinates and the derivatives of the point by them (PBR4 §6.5.3).
@@ -303,9 +386,9 @@ fn parametrisation(
 pub(super) fn by_coordinates(
     mesh: &TriangleMesh,
     corners: [usize; 3],
+    points: [DVec3; 3],
     [x, y]: [DVec3; 2],
 ) -> (DVec3, DVec3) {
-    let points = corners.map(|i| mesh.points[i].as_dvec3());
     let (_, dp_du, dp_dv) = parametrisation(mesh, corners, points, [1.0, 0.0, 0.0]);
     let [a, b, c] = points;
     if mesh.uvs.is_empty() || (dp_du, dp_dv) == (b - a, c - a) {
@@ -332,6 +415,24 @@ impl Geometry {
                 }
                 None => Bounds3::EMPTY,
             },
+        }
+    }
+
+    /// Whether its points move while the shutter is open.
+    pub fn is_moving(&self) -> bool {
+        match self {
+            Self::Analytic(_) => false,
+            Self::Mesh(mesh) => mesh.is_moving(),
+        }
+    }
+
+    /// Whether it is ready for an interval of time.
+    pub(super) fn is_of(&self, during: [f64; 2]) -> bool {
+        match self {
+            Self::Mesh(mesh) if mesh.triangles.later.is_some() => {
+                mesh.during.map(f64::to_bits) == during.map(f64::to_bits)
+            }
+            _ => true,
         }
     }
 
@@ -363,10 +464,10 @@ impl Geometry {
 
     /// The point that a hit names, in the geometry's frame.
     #[inline(always)]
-    pub fn surface(&self, ray: &Ray, hit: &Hit, precision: Precision) -> Surface {
+    pub fn surface(&self, ray: &Ray, hit: &Hit, precision: Precision, time: f64) -> Surface {
         match self {
             Self::Analytic(shape) => shape.object().fixed().shape().surface(ray, hit),
-            Self::Mesh(mesh) => mesh.surface(hit.face, hit.at, precision),
+            Self::Mesh(mesh) => mesh.surface(hit.face, hit.at, precision, time),
         }
     }
 }

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::DAffine3;
 use luxel_sdk::kind::{ImportNode, ImportValue, Imported, Kind};
 use luxel_sdk::params::{Dimension, Param, Type, Unit};
 
@@ -14,7 +13,8 @@ use crate::object::{Builder, ColorMode, Embedded, Objects, Reader};
 use crate::registry::Registry;
 use crate::registry::dynamic::FAILED;
 use crate::scene::{
-    Argument, Color, Given, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value, conform,
+    Argument, Color, Given, Group, GroupId, Node, NodeId, Placed, Pose, Scene, Target, Value,
+    conform,
 };
 
 /// The scene with every asset replaced by a group, and what was found wrong.
@@ -34,8 +34,8 @@ pub(super) fn expand(
     }
     let mut items = std::mem::take(&mut import.out.root.items);
     import.replace(scene, &mut items, &mut diagnostics);
-    if let Some((camera, transform)) = import.first_camera(None, &items) {
-        import.camera(camera, transform);
+    if let Some((camera, pose)) = import.first_camera(None, &items) {
+        import.camera(camera, pose);
     }
     import.out.root.items = items;
     (import.out, diagnostics)
@@ -47,7 +47,7 @@ struct Import<'a> {
     out: Scene,
     done: BTreeMap<NodeId, Option<GroupId>>,
     /// The first camera of each group that has one, in the group's frame.
-    cameras: BTreeMap<GroupId, (NodeId, DAffine3)>,
+    cameras: BTreeMap<GroupId, (NodeId, Pose)>,
 }
 
 impl Import<'_> {
@@ -137,12 +137,12 @@ impl Import<'_> {
             };
             // What is wrong with a node that was not made has been said.
             let Some(id) = *id else { continue };
-            let (transform, span) = (*transform, asset.span);
+            let (pose, span) = (Pose::from(*transform), asset.span);
             match self.out.node(id).kind {
-                Kind::Camera => camera = camera.or(Some((id, transform))),
+                Kind::Camera => camera = camera.or(Some((id, pose))),
                 Kind::Shape | Kind::Light => {
                     let target = Target::Node(id);
-                    group.items.push(Placed { target, transform, material: None, span });
+                    group.items.push(Placed { target, pose, material: None, span });
                 }
                 kind => wrong.add(|| format!("it places node {index}, which is a {kind}")),
             }
@@ -154,34 +154,21 @@ impl Import<'_> {
 
     /// The first camera among things in their places, in the frame that these stand in; kept for
     /// the group. Groups are asked for before those that hold them.
-    fn first_camera(
-        &mut self,
-        group: Option<GroupId>,
-        items: &[Placed],
-    ) -> Option<(NodeId, DAffine3)> {
+    fn first_camera(&mut self, group: Option<GroupId>, items: &[Placed]) -> Option<(NodeId, Pose)> {
         let found = items.iter().find_map(|item| {
             let Target::Group(inner) = item.target else { return None };
-            let (id, transform) = *self.cameras.get(&inner)?;
-            Some((id, item.transform * transform))
+            let (id, pose) = self.cameras.get(&inner)?;
+            Some((*id, pose.then(&item.pose)))
         });
-        self.cameras.extend(group.zip(found));
+        self.cameras.extend(group.zip(found.clone()));
         found
     }
 
     /// An asset's camera counts where the scene gives none; the first one that is placed.
-    fn camera(&mut self, id: NodeId, transform: DAffine3) {
-        if self.out.camera.is_some() {
-            return;
+    fn camera(&mut self, id: NodeId, pose: Pose) {
+        if self.out.camera.is_none() {
+            (self.out.camera, self.out.camera_pose) = (Some(id), pose);
         }
-        let mut node = self.out.node(id).clone();
-        for argument in &mut node.params {
-            if let Value::Look(look) = &mut argument.value {
-                look.from = transform.transform_point3(look.from);
-                look.to = transform.transform_point3(look.to);
-                look.up = transform.transform_vector3(look.up);
-            }
-        }
-        self.out.camera = Some(self.out.add(node));
     }
 
     fn node(

@@ -9,11 +9,11 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::{Arrival, Hit, Light, LightQuery, Output, ShapeSample, Surface};
-use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
+use luxel_sdk::num::{Ray, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
 use self::triangle::Lit;
-use super::{Geometry, Placement, Stage};
+use super::{Geometry, Moment, Place, Placement};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 
@@ -41,7 +41,7 @@ pub enum LightSource {
         /// The light's object.
         object: Arc<Object>,
         /// From its frame to the world.
-        transform: Option<Box<Transform>>,
+        place: Place,
     },
 }
 
@@ -160,12 +160,12 @@ fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palett
     value
 }
 
-impl Stage {
+impl Moment<'_> {
     /// Chooses a light and light from it, as `from` sees it: its place, normals and `wo` count. `u`
     /// uniform in [0, 1).
     #[inline(always)]
     pub fn sample_light(
-        &self,
+        self,
         from: &Arrival,
         palette: &Palette,
         u: [f32; 3],
@@ -180,24 +180,26 @@ impl Stage {
                 let light = SurfaceLight { object, placement, area, triangles, quad };
                 self.sample_surface(&light, from, palette, u, scratch)
             }
-            LightSource::Free { object, transform } => {
+            LightSource::Free { object, place } => {
                 let at = Site { p: from.p + from.lift, uv: Vec2::ZERO, palette, color: None };
                 let light = object.resolve(&at, scratch).light();
-                self.sample_free(light, transform.as_deref(), from, palette, u)
+                self.sample_free(light, place, from, palette, u)
             }
         }?;
         Some(found.with_chance(chosen.chance))
     }
 
     fn sample_free(
-        &self,
+        self,
         light: &dyn Light,
-        transform: Option<&Transform>,
+        place: &Place,
         from: &Arrival,
         palette: &Palette,
         u: [f32; 2],
     ) -> Option<FoundLight> {
         let p = from.p + from.lift;
+        let mut room = None;
+        let transform = place.at(self.time, &mut room);
         let p = transform.map_or(p, |transform| transform.inverse_point(p));
         let found = light.sample(&LightQuery { p, u })?;
         let mut le = emitted(light, found.le, self.mode, palette);
@@ -223,7 +225,7 @@ impl Stage {
 
     #[inline(always)]
     fn sample_surface(
-        &self,
+        self,
         light: &SurfaceLight<'_>,
         from: &Arrival,
         palette: &Palette,
@@ -232,22 +234,25 @@ impl Stage {
     ) -> Option<FoundLight> {
         let placement = &self.placements[light.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
+        let mut room = None;
+        let transform = placement.place.at(self.time, &mut room);
         // Density per solid angle, where that is how a point is found.
         let mut direct = None;
         let mut sample = match (&**geometry, light.triangles) {
             (Geometry::Mesh(mesh), Some((choice, choose))) => {
-                let (transform, from) = (placement.transform.as_deref(), from.p + from.lift);
-                let point = Lit { mesh, choice, transform, from }.sample(u, choose);
+                let (from, time) = (from.p + from.lift, self.time);
+                let point = Lit { mesh, choice, transform, from, time }.sample(u, choose);
                 direct = point.pdf;
-                let surface = mesh.surface(point.triangle, point.at, self.film.precision);
-                // The world's density in the mesh's own frame.
-                let pdf = placement.area_scale(surface.ng) / light.area;
+                let precision = self.film.precision;
+                let surface = mesh.surface(point.triangle, point.at, precision, time);
+                // The world's density in the mesh's own frame, when it was chosen by its area.
+                let growth = mesh.growth(point.triangle, time);
+                let pdf = placement.area_scale(surface.ng) / (light.area * growth);
                 Some(ShapeSample { surface, pdf })
             }
             (Geometry::Analytic(shape), _) => {
                 let (shape, from) = (shape.object().fixed().shape(), from.p + from.lift);
-                let transform = placement.transform.as_deref();
-                let local = placement.point_to_local(from);
+                let local = transform.map_or(from, |transform| transform.inverse_point(from));
                 match light.quad.and_then(|quad| quad.seen(transform, from)) {
                     Some(seen) => {
                         direct = Some(seen.pdf());
@@ -262,7 +267,7 @@ impl Stage {
         };
         // By reference: a surface is large to copy.
         let sample = sample.as_mut()?;
-        if let Some(transform) = &placement.transform {
+        if let Some(transform) = transform {
             sample.pdf /= transform.area_scale(sample.surface.ng);
             sample.surface = sample.surface.carried(transform);
         }
@@ -289,13 +294,12 @@ impl Stage {
         })
     }
 
-    /// Radiance of a shining surface towards the point `from`, and the density with which
-    /// `sample_light` would have found it from there; `wo` is the unit direction of the ray that came,
-    /// `face` what it met.
+    /// Radiance of a face of a shining surface towards the point `from`, and the density with which
+    /// `sample_light` would have found it from there; `wo` is the unit direction of the ray that came.
     pub fn surface_emission(
-        &self,
-        placement: &Placement,
-        (surface, face): (&Surface, u32),
+        self,
+        (placement, face): (&Placement, u32),
+        surface: &Surface,
         (from, wo): (DVec3, DVec3),
         palette: &Palette,
         scratch: &Scratch,
@@ -314,7 +318,7 @@ impl Stage {
             return (le, 0.0);
         }
         let pdf = self
-            .surface_pdf(placement, source, (surface, face), from)
+            .surface_pdf((placement, face), source, surface, from)
             .unwrap_or_else(|area| area * surface.p.distance_squared(from) / cos_o.abs());
         (le, narrow(pdf * self.lights.chance(light)))
     }
@@ -324,46 +328,52 @@ impl Stage {
     /// # Errors
     /// The density per area of the world, where that is how it is sampled.
     fn surface_pdf(
-        &self,
-        place: &Placement,
+        self,
+        (placement, face): (&Placement, u32),
         source: &LightSource,
-        (surface, face): (&Surface, u32),
+        surface: &Surface,
         from: DVec3,
     ) -> Result<f64, f64> {
         let LightSource::Surface { area, triangles, quad, .. } = source else { return Ok(0.0) };
-        match &*self.geometries[place.geometry as usize] {
+        let place = &placement.place;
+        let mut room = None;
+        let transform = place.at(self.time, &mut room);
+        let shape = match &*self.geometries[placement.geometry as usize] {
+            Geometry::Analytic(shape) => shape.object().fixed().shape(),
             Geometry::Mesh(mesh) => {
                 let Some(choice) = triangles else { return Ok(0.0) };
-                let transform = place.transform.as_deref();
-                Lit { mesh, choice, transform, from }.pdf(face).ok_or(1.0 / area)
-            }
-            Geometry::Analytic(shape) => {
-                let transform = place.transform.as_deref();
-                if let Some(seen) = quad.as_ref().and_then(|quad| quad.seen(transform, from)) {
-                    return Ok(seen.pdf());
+                let lit = Lit { mesh, choice, transform, from, time: self.time };
+                if let Some(pdf) = lit.pdf(face) {
+                    return Ok(pdf);
                 }
-                let mut local = *surface;
-                if let Some(transform) = &place.transform {
-                    local.p = transform.inverse_point(surface.p);
-                    local.ng = transform.inverse_normal(surface.ng).normalize();
-                }
-                let pdf =
-                    shape.object().fixed().shape().pdf(Some(place.point_to_local(from)), &local);
-                Err(pdf / place.area_scale(local.ng))
+                let area = area * mesh.growth(face, self.time);
+                let Some(now) = transform.filter(|_| place.is_moving()) else {
+                    return Err(1.0 / area);
+                };
+                let ng = now.inverse_normal(surface.ng).normalize();
+                return Err(placement.area_scale(ng) / (area * now.area_scale(ng)));
             }
+        };
+        if let Some(seen) = quad.as_ref().and_then(|quad| quad.seen(transform, from)) {
+            return Ok(seen.pdf());
         }
+        let Some(transform) = transform else { return Err(shape.pdf(Some(from), surface)) };
+        let mut local = *surface;
+        local.p = transform.inverse_point(surface.p);
+        local.ng = transform.inverse_normal(surface.ng).normalize();
+        let pdf = shape.pdf(Some(transform.inverse_point(from)), &local);
+        Err(pdf / transform.area_scale(local.ng))
     }
 
     /// What a ray that leaves the scene along `d` finds, and the density with which `sample_light`
     /// would have found it.
-    pub fn escaped(&self, d: DVec3, palette: &Palette, scratch: &Scratch) -> (Spectrum, f32) {
+    pub fn escaped(self, d: DVec3, palette: &Palette, scratch: &Scratch) -> (Spectrum, f32) {
         let (mut le, mut pdf) = (Spectrum::ZERO, 0.0);
         for &light in &self.lights.infinite {
-            let LightSource::Free { object, transform } = &self.lights.sources[light as usize]
-            else {
+            let LightSource::Free { object, place } = &self.lights.sources[light as usize] else {
                 continue;
             };
-            let local = match transform {
+            let local = match place.at(self.time, &mut None) {
                 Some(transform) => transform.inverse_vector(d).normalize(),
                 None => d,
             };

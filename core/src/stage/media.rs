@@ -5,7 +5,7 @@ use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::Surface;
 use luxel_sdk::num::{Ray, offset_origin, sphere_roots};
 
-use super::{Leaving, Placement, SceneHit, Skin, Stage};
+use super::{Leaving, Moment, Placement, SceneHit, Skin, Stage};
 use crate::accel::Processor;
 use crate::object::{Scratch, Site};
 
@@ -100,10 +100,39 @@ impl Stage {
         }
     }
 
+    /// Whether a placement is one of refracting shapes that may lie within each other.
+    #[inline(always)]
+    fn is_filled(&self, placement: u32) -> bool {
+        let place = &self.placements[placement as usize];
+        self.features.nested && place.closed && place.bends
+    }
+
+    /// Index of refraction of what lies against a surface of `placement` from outside, where a ray
+    /// meets it, on either side of which it is inside of so much.
+    pub fn index_around(
+        &self,
+        sides: (&MediumStack, &MediumStack),
+        placement: u32,
+        site: &Site<'_>,
+        scratch: &mut Scratch,
+    ) -> Spectrum {
+        let is_inside = |media: &MediumStack| media.placements().contains(&placement);
+        let outside = if is_inside(sides.0) && !is_inside(sides.1) { sides.1 } else { sides.0 };
+        let ruler = self.ruler(outside, |it| it.bends);
+        let Some(Skin::Material(material)) = ruler.map(|it| self.placements[it as usize].skin)
+        else {
+            return Spectrum::ONE;
+        };
+        scratch.reset();
+        self.materials[material as usize].index(site, scratch).unwrap_or(Spectrum::ONE)
+    }
+}
+
+impl Moment<'_> {
     /// What happens to a ray inside of `media` where it meets a surface.
     #[inline]
     pub fn crossing(
-        &self,
+        self,
         processor: Processor,
         media: &MediumStack,
         ray: &Ray,
@@ -119,13 +148,6 @@ impl Stage {
         crossing
     }
 
-    /// Whether a placement is one of refracting shapes that may lie within each other.
-    #[inline(always)]
-    fn is_filled(&self, placement: u32) -> bool {
-        let place = &self.placements[placement as usize];
-        self.features.nested && place.closed && place.bends
-    }
-
     /// Where shapes may be nested, the ray passes whatever lies at one place at once, and meets a
     /// surface only if another shape counts beyond: that which counts more of the two.
     ///
@@ -133,7 +155,7 @@ impl Stage {
     /// Schmidt and Budge 2002, Simple Nested Dielectrics in Ray Traced Images; faces that coincide
     /// are ours.
     fn cross_filled(
-        &self,
+        self,
         processor: Processor,
         media: &MediumStack,
         (ray, hit): (&Ray, &SceneHit),
@@ -177,29 +199,9 @@ impl Stage {
         }
     }
 
-    /// Index of refraction of what lies against a surface of `placement` from outside, where a ray
-    /// meets it, on either side of which it is inside of so much.
-    pub fn index_around(
-        &self,
-        sides: (&MediumStack, &MediumStack),
-        placement: u32,
-        site: &Site<'_>,
-        scratch: &mut Scratch,
-    ) -> Spectrum {
-        let is_inside = |media: &MediumStack| media.placements().contains(&placement);
-        let outside = if is_inside(sides.0) && !is_inside(sides.1) { sides.1 } else { sides.0 };
-        let ruler = self.ruler(outside, |it| it.bends);
-        let Some(Skin::Material(material)) = ruler.map(|it| self.placements[it as usize].skin)
-        else {
-            return Spectrum::ONE;
-        };
-        scratch.reset();
-        self.materials[material as usize].index(site, scratch).unwrap_or(Spectrum::ONE)
-    }
-
     /// What a point is inside of: found by following a ray out of the scene and counting which
     /// closed shapes it leaves without having entered them.
-    pub fn media_at(&self, p: DVec3) -> MediumStack {
+    pub fn media_at(self, p: DVec3) -> MediumStack {
         let d = DVec3::new(0.267, 0.535, 0.802).normalize();
         let mut ray = Ray { o: p, d, t_max: f64::INFINITY };
         let mut entered: Vec<u32> = vec![];

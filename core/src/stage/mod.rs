@@ -14,6 +14,8 @@ mod geometry;
 mod import;
 mod lights;
 mod media;
+mod moment;
+mod motion;
 mod nesting;
 mod placement;
 mod settings;
@@ -41,7 +43,9 @@ pub use features::Features;
 pub use geometry::{Geometry, Mesh};
 pub use lights::{EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights, Quad};
 pub use media::{Crossing, MediumStack};
-pub use placement::{Leaving, Placement, SceneHit, Skin};
+pub use moment::Moment;
+pub use motion::Motion;
+pub use placement::{Leaving, Moving, Place, Placement, SceneHit, Skin};
 pub use settings::{ColorChoice, Film};
 
 /// A scene made ready to trace.
@@ -71,6 +75,8 @@ pub struct Stage {
     pub lights: Lights,
     /// The camera.
     pub camera: Arc<Object>,
+    /// From the frame that the camera's parameters speak of to the world.
+    pub camera_place: Place,
     /// The integrator.
     pub integrator: Arc<Object>,
     /// The sampler.
@@ -83,7 +89,7 @@ pub struct Stage {
     pub sphere: (DVec3, f64),
     /// Radius about the centre of `sphere` to which what fills the outside reaches, metres.
     pub reach: f64,
-    /// The media that the camera stands in.
+    /// The media that the camera stands in when the shutter opens.
     pub camera_media: MediumStack,
     /// The camera as paths from lights find it; `None` where its lens is no point.
     pub eye: Option<Eye>,

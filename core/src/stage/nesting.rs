@@ -32,7 +32,7 @@ pub(super) fn settle(
     for placement in placements.iter_mut() {
         placement.closed = (has_media || placement.bends) && is_closed(placement);
     }
-    rank(placements, boxes);
+    rank(placements, geometries);
     nested
 }
 
@@ -74,12 +74,18 @@ fn overlap(a: Box64, b: Box64) -> bool {
 
 /// Ranks placements by priority; among equals the smaller box counts more, so that what lies within
 /// another shape counts there, from whichever side a ray comes; then the one placed later.
-fn rank(placements: &mut [Placement], boxes: &[Box64]) {
-    let size = |i: usize| (boxes[i].1 - boxes[i].0).max(DVec3::ZERO).element_product();
+fn rank(placements: &mut [Placement], geometries: &[Arc<Geometry>]) {
+    // Where the shutter opens: what moves fast is no larger.
+    let size = |placement: &Placement| {
+        let local = geometries[placement.geometry as usize].bounds();
+        let bounds = placement.place.first().map_or(local, |it| local.transform(it.affine()));
+        bounds.diagonal().max(DVec3::ZERO).element_product()
+    };
+    let sizes: Vec<f64> = placements.iter().map(size).collect();
     let mut order: Vec<usize> = (0..placements.len()).collect();
     order.sort_by(|&a, &b| {
         let by_priority = placements[a].priority.cmp(&placements[b].priority);
-        by_priority.then_with(|| size(b).total_cmp(&size(a)))
+        by_priority.then_with(|| sizes[b].total_cmp(&sizes[a]))
     });
     for (rank, place) in order.into_iter().enumerate() {
         placements[place].rank = index(rank);

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 use luxel_sdk::kind::Hit;
-use luxel_sdk::num::Transform;
+use luxel_sdk::num::{Bounds3, Transform};
 
+use super::motion::Motion;
 use crate::scene::NodeId;
 
 /// What a placement's surface scatters with.
@@ -17,13 +18,83 @@ pub enum Skin {
     Open,
 }
 
+/// From a frame to the world.
+#[derive(Clone, Debug)]
+pub enum Place {
+    /// They are the same.
+    Here,
+    /// It stands.
+    Fixed(Box<Transform>),
+    /// It moves.
+    Moving(Box<Moving>),
+}
+
+/// How something moves while the shutter is open.
+#[derive(Clone, Debug)]
+pub struct Moving {
+    motion: Motion,
+    /// Where it is when the shutter opens.
+    first: Transform,
+}
+
+impl Place {
+    /// Of something that moves, seen from `time` on; `None` where it cannot be undone then.
+    pub(super) fn moving(motion: Motion, time: f64) -> Option<Self> {
+        let first = motion.at(time)?;
+        Some(Self::Moving(Box::new(Moving { motion, first })))
+    }
+
+    /// Whether it moves.
+    pub fn is_moving(&self) -> bool {
+        matches!(self, Self::Moving(_))
+    }
+
+    /// Where it is at a time in seconds, made in `room` if it moves; `None` where it is made.
+    #[inline(always)]
+    pub fn at<'a>(&'a self, time: f64, room: &'a mut Option<Transform>) -> Option<&'a Transform> {
+        match self {
+            Self::Here => None,
+            Self::Fixed(transform) => Some(transform),
+            Self::Moving(moving) => Some(room.insert(moving.at(time))),
+        }
+    }
+
+    /// Where it is when the shutter opens.
+    pub fn first(&self) -> Option<&Transform> {
+        match self {
+            Self::Here => None,
+            Self::Fixed(transform) => Some(transform),
+            Self::Moving(moving) => Some(&moving.first),
+        }
+    }
+
+    /// A box around where the points of a box are in an interval of time.
+    pub fn bounds(&self, local: Bounds3, during: [f64; 2]) -> Bounds3 {
+        match self {
+            Self::Here => local,
+            Self::Fixed(transform) => local.transform(transform.affine()),
+            Self::Moving(moving) => moving.motion.bounds(local, during),
+        }
+    }
+}
+
+impl Moving {
+    /// Apart: few rays need it, and it would take registers from all others. Rotations and stretches
+    /// without a reflection can be undone, but for products of them that are flat to rounding: these
+    /// are left where the shutter opened.
+    #[inline(never)]
+    fn at(&self, time: f64) -> Transform {
+        self.motion.at(time).unwrap_or(self.first)
+    }
+}
+
 /// Geometry in its place.
 #[derive(Clone, Debug)]
 pub struct Placement {
     /// Which geometry of the stage.
     pub geometry: u32,
-    /// From the geometry's frame to the world; `None` where they are the same.
-    pub transform: Option<Box<Transform>>,
+    /// From the geometry's frame to the world.
+    pub place: Place,
     /// How it scatters.
     pub skin: Skin,
     /// Which light of the stage it is.
@@ -44,18 +115,10 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// A point of the world in the geometry's frame.
-    #[inline]
-    pub fn point_to_local(&self, p: DVec3) -> DVec3 {
-        match &self.transform {
-            Some(transform) => transform.inverse_point(p),
-            None => p,
-        }
-    }
-
-    /// How much larger an area whose local unit normal is `ng` is in the world.
+    /// How much larger an area whose local unit normal is `ng` is in the world, when the shutter
+    /// opens.
     pub fn area_scale(&self, ng: DVec3) -> f64 {
-        self.transform.as_ref().map_or(1.0, |transform| transform.area_scale(ng))
+        self.place.first().map_or(1.0, |transform| transform.area_scale(ng))
     }
 }
 

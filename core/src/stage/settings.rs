@@ -34,6 +34,10 @@ pub struct Film {
     pub display: Display,
     /// How rays meet the triangles of meshes.
     pub precision: Precision,
+    /// When the shutter opens, seconds.
+    pub time: f64,
+    /// How long it stays open, seconds.
+    pub shutter: f64,
     /// Where the EXR is written.
     pub file: Option<String>,
 }
@@ -47,6 +51,8 @@ impl Default for Film {
             observer: Observer::Cie1931,
             display: Display::Srgb,
             precision: Precision::Standard,
+            time: 0.0,
+            shutter: 0.0,
             file: None,
         }
     }
@@ -67,6 +73,8 @@ impl Film {
                 ("resolution", Value::Vector(v)) if v.len() == 2 => {
                     film.resolution = UVec2::new(whole(v[0]), whole(v[1]));
                 }
+                ("time", Value::Number(time, _)) => film.time = *time,
+                ("shutter", Value::Number(shutter, _)) => film.shutter = *shutter,
                 ("exposure", Value::Number(ev, _)) => film.exposure = Some(*ev),
                 ("observer", Value::Text(word)) => {
                     film.observer = match &**word {

@@ -14,22 +14,22 @@ use crate::scene::{NodeId, Scene};
 pub(super) fn measured(geometry: &Geometry, placement: &Placement) -> (f64, Option<Alias>) {
     let mesh = match geometry {
         Geometry::Analytic(shape) => return (world_area(shape.object(), placement), None),
-        Geometry::Mesh(mesh) => mesh.triangles(),
+        Geometry::Mesh(mesh) => mesh,
     };
     let area = |i: u32| {
-        let [a, b, c] = mesh.corners(i);
+        let [a, b, c] = mesh.opening_corners(i);
         let normal = (b - a).cross(c - a);
         let area = normal.length() / 2.0;
         if area > 0.0 { area * placement.area_scale(normal / (2.0 * area)) } else { 0.0 }
     };
-    let areas: Vec<f64> = (0..index(mesh.indices.len())).map(area).collect();
+    let areas: Vec<f64> = (0..index(mesh.triangles().indices.len())).map(area).collect();
     (areas.iter().sum(), Alias::new(&areas).ok())
 }
 
 /// The parallelogram of a shape that its placement shears.
 pub(super) fn sheared(geometry: &Geometry, placement: &Placement) -> Option<Quad> {
     let Geometry::Analytic(shape) = geometry else { return None };
-    Quad::new(shape.object().fixed().shape(), placement.transform.as_deref())
+    Quad::new(shape.object().fixed().shape(), placement.place.first())
 }
 
 /// What is to be told of a shape that shines from so large an area.
@@ -49,7 +49,7 @@ pub(super) fn doubts(
 /// Area of an analytic shape in the world.
 fn world_area(shape: &Object, placement: &Placement) -> f64 {
     let shape = shape.fixed().shape();
-    match &placement.transform {
+    match placement.place.first() {
         Some(transform) => carried_area(shape, transform),
         None => shape.area(),
     }

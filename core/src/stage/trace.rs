@@ -1,4 +1,4 @@
-//! Rays through the whole stage.
+//! Rays through the whole stage at a moment.
 
 use glam::{DVec3, Vec3};
 use luxel_sdk::kind::Surface;
@@ -7,13 +7,13 @@ use luxel_sdk::num::Ray;
 use crate::accel::{Direction, Processor, Room};
 
 use super::geometry::Approach;
-use super::{Geometry, Leaving, Placement, SceneHit, Skin, Stage};
+use super::{Geometry, Leaving, Moment, Placement, SceneHit, Skin};
 
-impl Stage {
+impl Moment<'_> {
     /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
     #[inline(always)]
     pub fn intersect(
-        &self,
+        self,
         processor: Processor,
         ray: &Ray,
         from: Option<Leaving>,
@@ -28,7 +28,7 @@ impl Stage {
             *steps += 1;
             let placement = &self.placements[index as usize];
             let geometry = &self.geometries[placement.geometry as usize];
-            let local = Local::of(placement, &Ray { t_max: walk.t_max, ..*ray }, world);
+            let local = Local::of(placement, &Ray { t_max: walk.t_max, ..*ray }, world, self.time);
             let from = Leaving::face_on(from, index);
             let approach = self.approach(processor, &local, t_enter, from);
             if let Some(hit) = geometry.intersect(&local.ray, approach, steps) {
@@ -41,7 +41,7 @@ impl Stage {
 
     /// Whether a surface that stops light lies along a ray that leaves `from`.
     #[inline(always)]
-    pub fn occluded(&self, processor: Processor, ray: &Ray, from: Option<Leaving>) -> bool {
+    pub fn occluded(self, processor: Processor, ray: &Ray, from: Option<Leaving>) -> bool {
         let world = Direction::new(ray.d);
         let mut room = Room::default();
         let mut stack = room.stack();
@@ -52,7 +52,7 @@ impl Stage {
                 continue;
             }
             let geometry = &self.geometries[placement.geometry as usize];
-            let local = Local::of(placement, ray, world);
+            let local = Local::of(placement, ray, world, self.time);
             let from = Leaving::face_on(from, index);
             let approach = self.approach(processor, &local, t_enter, from);
             if geometry.occluded(&local.ray, approach) {
@@ -63,7 +63,7 @@ impl Stage {
     }
 
     /// The nearest hit of every placement along a ray, in no order.
-    pub(super) fn along(&self, processor: Processor, ray: &Ray, mut see: impl FnMut(&SceneHit)) {
+    pub(super) fn along(self, processor: Processor, ray: &Ray, mut see: impl FnMut(&SceneHit)) {
         let world = Direction::new(ray.d);
         let mut room = Room::default();
         let mut stack = room.stack();
@@ -71,7 +71,7 @@ impl Stage {
         while let Some((placement, t_enter)) = walk.next(processor, &mut stack) {
             let place = &self.placements[placement as usize];
             let geometry = &self.geometries[place.geometry as usize];
-            let local = Local::of(place, ray, world);
+            let local = Local::of(place, ray, world, self.time);
             let approach = self.approach(processor, &local, t_enter, None);
             if let Some(hit) = geometry.intersect(&local.ray, approach, &mut 0) {
                 see(&SceneHit { placement, hit });
@@ -82,45 +82,46 @@ impl Stage {
     /// How a ray comes to a placement that it enters at `t_enter`.
     #[inline(always)]
     pub(super) fn approach<'a>(
-        &self,
+        self,
         processor: Processor,
         local: &'a Local,
         t_enter: f64,
         from: Option<u32>,
     ) -> Approach<'a> {
         let (precision, direction) = (self.film.precision, local.direction.as_ref());
-        Approach { processor, precision, direction, t_enter, from }
+        Approach { processor, precision, direction, t_enter, from, time: self.time }
     }
 
     /// The point of a hit, in the world.
     #[inline(always)]
-    pub fn surface(&self, ray: &Ray, hit: &SceneHit) -> Surface {
+    pub fn surface(self, ray: &Ray, hit: &SceneHit) -> Surface {
         let placement = &self.placements[hit.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
-        match &placement.transform {
-            None => geometry.surface(ray, &hit.hit, self.film.precision),
+        let (precision, time) = (self.film.precision, self.time);
+        match placement.place.at(time, &mut None) {
+            None => geometry.surface(ray, &hit.hit, precision, time),
             Some(transform) => {
-                let local =
-                    geometry.surface(&transform.inverse_ray(ray), &hit.hit, self.film.precision);
-                local.carried(transform)
+                let local = transform.inverse_ray(ray);
+                geometry.surface(&local, &hit.hit, precision, time).carried(transform)
             }
         }
     }
 
     /// From a point of a mesh to the smooth surface that its normals speak of, seen from one side;
     /// zero elsewhere.
-    pub fn lift(&self, hit: &SceneHit, outside: bool) -> DVec3 {
+    pub fn lift(self, hit: &SceneHit, outside: bool) -> DVec3 {
         let placement = &self.placements[hit.placement as usize];
         let Geometry::Mesh(mesh) = &*self.geometries[placement.geometry as usize] else {
             return DVec3::ZERO;
         };
-        let lift = mesh.lift(hit.hit.face, hit.hit.at, outside);
-        placement.transform.as_ref().map_or(lift, |transform| transform.vector(lift))
+        let lift = mesh.lift(hit.hit.face, hit.hit.at, outside, self.time);
+        let mut room = None;
+        placement.place.at(self.time, &mut room).map_or(lift, |transform| transform.vector(lift))
     }
 
     /// The colour that a surface has of itself at a hit, linear sRGB.
     #[inline(never)]
-    pub fn color(&self, hit: &SceneHit) -> Option<Vec3> {
+    pub fn color(self, hit: &SceneHit) -> Option<Vec3> {
         let placement = &self.placements[hit.placement as usize];
         match &*self.geometries[placement.geometry as usize] {
             Geometry::Mesh(mesh) => mesh.color(hit.hit.face, hit.hit.at),
@@ -138,8 +139,13 @@ pub(super) struct Local {
 impl Local {
     /// Carries a ray of the world, whose direction is `world` made ready.
     #[inline(always)]
-    pub(super) fn of(placement: &Placement, ray: &Ray, world: Option<Direction>) -> Self {
-        match &placement.transform {
+    pub(super) fn of(
+        placement: &Placement,
+        ray: &Ray,
+        world: Option<Direction>,
+        time: f64,
+    ) -> Self {
+        match placement.place.at(time, &mut None) {
             None => Self { ray: *ray, direction: world },
             Some(transform) => {
                 let ray = transform.inverse_ray(ray);

@@ -5,25 +5,26 @@ use luxel_sdk::kind::{NormalDerivatives, Surface};
 use luxel_sdk::num::Ray;
 
 use super::geometry::{Geometry, Mesh, by_coordinates};
-use super::{SceneHit, Stage};
+use super::{Moment, SceneHit};
 
 impl Mesh {
     /// How the shading normal turns along the surface coordinates at a point of a triangle, with `at`
-    /// as in `surface`: the derivatives of the mean of the corners' normals at unit length.
-    pub fn normal_derivatives(&self, triangle: u32, at: DVec2) -> NormalDerivatives {
+    /// and `time` as in `surface`: the derivatives of the mean of the corners' normals at unit length.
+    pub fn normal_derivatives(&self, triangle: u32, at: DVec2, time: f64) -> NormalDerivatives {
         let mesh = self.triangles();
         if mesh.normals.is_empty() {
             return NormalDerivatives::FLAT;
         }
-        let corners = mesh.indices[triangle as usize].map(|i| i as usize);
-        let [a, b, c] = corners.map(|i| mesh.normals[i].as_dvec3());
+        let corners = self.indices(triangle);
+        let [a, b, c] = self.normals(corners, time);
         let mean = a * (1.0 - at.x - at.y) + b * at.x + c * at.y;
         let length = mean.length();
         let n = mean / length;
         let turned = |d: DVec3| (d - n * n.dot(d)) / length;
-        let (dn_du, dn_dv) = by_coordinates(mesh, corners, [turned(b - a), turned(c - a)]);
+        let points = self.corners(corners, time);
+        let (dn_du, dn_dv) = by_coordinates(mesh, corners, points, [turned(b - a), turned(c - a)]);
         // As `surface` has it: on the side of the face.
-        let [p, q, r] = mesh.corners(triangle);
+        let [p, q, r] = points;
         let side = if n.dot((q - p).cross(r - p)) < 0.0 { -1.0 } else { 1.0 };
         let told = NormalDerivatives { dn_du: dn_du * side, dn_dv: dn_dv * side };
         let finite = dn_du.is_finite() && dn_dv.is_finite();
@@ -31,17 +32,18 @@ impl Mesh {
     }
 }
 
-impl Stage {
+impl Moment<'_> {
     /// How the shading normal turns at a hit, in the world, along the derivatives of its surface;
     /// `None` where the shape does not say.
-    pub fn normal_derivatives(&self, ray: &Ray, hit: &SceneHit) -> Option<NormalDerivatives> {
+    pub fn normal_derivatives(self, ray: &Ray, hit: &SceneHit) -> Option<NormalDerivatives> {
         let placement = &self.placements[hit.placement as usize];
         let geometry = &self.geometries[placement.geometry as usize];
-        let transform = placement.transform.as_deref();
+        let mut room = None;
+        let transform = placement.place.at(self.time, &mut room);
         let local = transform.map_or(*ray, |transform| transform.inverse_ray(ray));
-        let at = geometry.surface(&local, &hit.hit, self.film.precision);
+        let at = geometry.surface(&local, &hit.hit, self.film.precision, self.time);
         let told = match &**geometry {
-            Geometry::Mesh(mesh) => mesh.normal_derivatives(hit.hit.face, hit.hit.at),
+            Geometry::Mesh(mesh) => mesh.normal_derivatives(hit.hit.face, hit.hit.at, self.time),
             Geometry::Analytic(shape) => {
                 shape.object().fixed().shape().normal_derivatives(&hit.hit, &at)?
             }
@@ -57,7 +59,7 @@ impl Stage {
     /// Half the trace of the shape operator, by the fundamental forms: do Carmo, *Differential
     /// Geometry of Curves and Surfaces*, §3.3.
     #[inline(never)]
-    pub fn mean_curvature(&self, ray: &Ray, hit: &SceneHit, surface: &Surface) -> f64 {
+    pub fn mean_curvature(self, ray: &Ray, hit: &SceneHit, surface: &Surface) -> f64 {
         let Some(turns) = self.normal_derivatives(ray, hit) else { return 0.0 };
         let NormalDerivatives { dn_du, dn_dv } = turns;
         let (du, dv) = (surface.dp_du, surface.dp_dv);

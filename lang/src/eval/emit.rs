@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use glam::DAffine3;
 use luxel_core::diag::{Diagnostic, Span};
-use luxel_core::scene::{NodeId, Placed, Target};
+use luxel_core::scene::{NodeId, Placed, Pose, Target};
 use luxel_sdk::kind::Kind;
 
 use super::Evaluator;
@@ -67,11 +66,11 @@ impl Evaluator<'_> {
         };
         match object.what {
             What::Group(id, material) => {
-                self.put(object, Target::Group(id), DAffine3::IDENTITY, material, span);
+                self.put(object, Target::Group(id), &Pose::IDENTITY, material, span);
             }
             What::Node(id, kind) => match kind {
                 Kind::Shape | Kind::Light | Kind::Importer => {
-                    self.put(object, Target::Node(id), DAffine3::IDENTITY, None, span);
+                    self.put(object, Target::Node(id), &Pose::IDENTITY, None, span);
                 }
                 Kind::Material | Kind::Texture | Kind::Phase => {
                     let message = format!("a {kind} that stands alone is seen nowhere");
@@ -80,12 +79,12 @@ impl Evaluator<'_> {
                             .help(format!("give it a name: `let name = {kind} …`")),
                     );
                 }
-                kind => self.fill_slot(kind, id, span),
+                kind => self.fill_slot(kind, id, object, span),
             },
         }
     }
 
-    fn fill_slot(&mut self, kind: Kind, id: NodeId, span: Span) {
+    fn fill_slot(&mut self, kind: Kind, id: NodeId, object: &ObjectValue, span: Span) {
         if self.quiet > 0 {
             return;
         }
@@ -98,6 +97,9 @@ impl Evaluator<'_> {
         }
         self.slots.insert(kind, span);
         let scene = &mut self.scene;
+        if kind == Kind::Camera {
+            scene.camera_pose = object.pose.clone();
+        }
         let slot = match kind {
             Kind::Camera => &mut scene.camera,
             Kind::Film => &mut scene.film,
@@ -114,7 +116,7 @@ impl Evaluator<'_> {
         &mut self,
         object: &ObjectValue,
         target: Target,
-        outer: DAffine3,
+        outer: &Pose,
         material: Option<NodeId>,
         span: Span,
     ) {
@@ -124,12 +126,12 @@ impl Evaluator<'_> {
         if matches!(object.what, What::Node(_, Kind::Importer)) {
             self.has_asset = true;
         }
-        let transform = outer * object.transform;
+        let pose = object.pose.then(outer);
         let limit = self.budgets.instances;
         let Some(open) = self.open_groups.last_mut() else { return };
         open.depth = open.depth.max(object.depth);
         open.instances = open.instances.saturating_add(object.instances);
-        open.group.items.push(Placed { target, transform, material, span });
+        open.group.items.push(Placed { target, pose, material, span });
         let (instances, depth) = (open.instances, open.depth);
         if instances > limit {
             let message = format!("more than {limit} things stand in the scene");
@@ -181,10 +183,10 @@ impl Evaluator<'_> {
         self.labels.add(label, &value);
         match object.what {
             What::Group(id, own) => {
-                self.put(&object, Target::Group(id), outer, material.or(own), span);
+                self.put(&object, Target::Group(id), &outer, material.or(own), span);
             }
             What::Node(id, Kind::Shape | Kind::Light | Kind::Importer) => {
-                self.put(&object, Target::Node(id), outer, material, span);
+                self.put(&object, Target::Node(id), &outer, material, span);
             }
             What::Node(_, kind) => {
                 let message =

@@ -56,7 +56,8 @@ fn compact(old: &Scene) -> Scene {
     let slots = [old.camera, old.film, old.integrator, old.sampler, old.filter, old.medium];
     let slots = slots.map(|slot| slot.map(|id| compactor.node(id)));
     let [camera, film, integrator, sampler, filter, medium] = slots;
-    Scene { root, camera, film, integrator, sampler, filter, medium, ..compactor.new }
+    let camera_pose = old.camera_pose.clone();
+    Scene { root, camera, camera_pose, film, integrator, sampler, filter, medium, ..compactor.new }
 }
 
 struct Compactor<'a> {

@@ -3,10 +3,9 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use glam::DAffine3;
 use luxel_core::diag::{Diagnostic, Span, nearest};
 use luxel_core::registry::Registry;
-use luxel_core::scene::{Argument, GroupId, Node, NodeId, Value as Fitted};
+use luxel_core::scene::{Argument, GroupId, Node, NodeId, Pose, Value as Fitted};
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Type};
@@ -92,7 +91,7 @@ impl Evaluator<'_> {
         let open = self.open_groups.pop().unwrap_or_default();
         let mut group = open.group;
         group.label = object.label.as_ref().map(|label| label.text.clone());
-        let (transform, material) = self.group_fields(&body.fields);
+        let (pose, material) = self.group_fields(&body.fields);
         let id = GroupId(u32::try_from(self.scene.groups.len()).unwrap_or(u32::MAX));
         self.scene.groups.push(group);
         let head =
@@ -100,7 +99,7 @@ impl Evaluator<'_> {
         Value::Object(Rc::new(ObjectValue {
             what: What::Group(id, material),
             fields: body.fields,
-            transform,
+            pose,
             head,
             depth: open.depth + 1,
             instances: open.instances.max(1),
@@ -108,19 +107,19 @@ impl Evaluator<'_> {
     }
 
     /// The transform and material of a group or a placement.
-    pub(super) fn group_fields(&mut self, fields: &[FieldValue]) -> (DAffine3, Option<NodeId>) {
-        let (mut transform, mut material) = (DAffine3::IDENTITY, None);
+    pub(super) fn group_fields(&mut self, fields: &[FieldValue]) -> (Pose, Option<NodeId>) {
+        let (mut pose, mut material) = (Pose::IDENTITY, None);
         for (i, field) in fields.iter().enumerate() {
             self.given_twice(&fields[..i], field);
             match &*field.name.text {
                 "transform" => {
-                    transform = self.transform(&field.value, field.span).unwrap_or_default();
+                    pose = self.transform(&field.value, field.span).unwrap_or_default();
                 }
                 "material" => material = self.node_of(field, Kind::Material),
                 _ => self.unknown(field, "a group or placement", &["transform", "material"]),
             }
         }
-        (transform, material)
+        (pose, material)
     }
 
     /// `object with { … }`: the same object with some fields given anew.
@@ -132,11 +131,11 @@ impl Evaluator<'_> {
             }
             Value::Object(object) => {
                 let mut all: Vec<FieldValue> = merged(&object.fields, fields);
-                let (transform, material) = self.group_fields(&all);
+                let (pose, material) = self.group_fields(&all);
                 let What::Group(id, _) = object.what else { return Value::Poison };
                 let fields = std::mem::take(&mut all);
                 let what = What::Group(id, material);
-                Value::Object(Rc::new(ObjectValue { what, fields, transform, ..(*object).clone() }))
+                Value::Object(Rc::new(ObjectValue { what, fields, pose, ..(*object).clone() }))
             }
             Value::Record(old) => Value::Record(Rc::new(merged(&old, fields))),
             Value::Poison => Value::Poison,
@@ -157,7 +156,7 @@ impl Evaluator<'_> {
         let class = *class;
         let before = self.sink.errors();
         let (mut params, mut overrides) = (vec![], vec![]);
-        let mut transform = DAffine3::IDENTITY;
+        let mut pose = Pose::IDENTITY;
         let (mut poisoned, mut depth) = (false, 0);
         for (i, field) in fields.iter().enumerate() {
             self.given_twice(&fields[..i], field);
@@ -165,8 +164,8 @@ impl Evaluator<'_> {
                 match &*field.name.text {
                     "transform" if stands_somewhere(class.kind) => {
                         let found = self.transform(&field.value, field.span);
-                        transform = found.unwrap_or_default() * transform;
                         poisoned |= found.is_none();
+                        pose = pose.then(&found.unwrap_or_default());
                     }
                     "materials" if class.kind == Kind::Importer => {
                         overrides = self.materials(field, &mut poisoned);
@@ -179,11 +178,11 @@ impl Evaluator<'_> {
             if let Value::Object(inner) = &field.value {
                 depth = depth.max(inner.depth);
                 if param.ty != Type::Part {
-                    transform = self.lifted(&class, inner, field.span, transform);
+                    pose = self.lifted(&class, inner, field.span, pose);
                 }
             }
             match self.conform(param, field) {
-                Some(value) => params.push(in_its_place(value, param, field)),
+                Some(value) => params.push(self.in_its_place(value, param, field)),
                 None => poisoned = true,
             }
         }
@@ -207,7 +206,7 @@ impl Evaluator<'_> {
         let what = What::Node(self.scene.add(node), class.kind);
         let head = head.clone();
         let depth = depth + 1;
-        Value::Object(Rc::new(ObjectValue { what, fields, transform, head, depth, instances: 1 }))
+        Value::Object(Rc::new(ObjectValue { what, fields, pose, head, depth, instances: 1 }))
     }
 
     /// `materials = { name = material, … }`: what takes the place of an asset's own.
@@ -228,23 +227,38 @@ impl Evaluator<'_> {
     }
 
     /// A shape that shines stands where its light does: the shape's transform becomes the light's.
-    fn lifted(
-        &mut self,
-        class: &Class,
-        inner: &ObjectValue,
-        span: Span,
-        transform: DAffine3,
-    ) -> DAffine3 {
-        if inner.transform == DAffine3::IDENTITY {
-            return transform;
+    fn lifted(&mut self, class: &Class, inner: &ObjectValue, span: Span, pose: Pose) -> Pose {
+        if inner.pose.is_identity() {
+            return pose;
         }
         if class.kind == Kind::Light {
-            return transform * inner.transform;
+            return inner.pose.then(&pose);
         }
         let message = format!("a {} inside a {} has no place of its own", inner.word(), class.kind);
         let diagnostic = Diagnostic::error("E0418", span, message);
         self.tell(diagnostic.help("leave its `transform` out"));
-        transform
+        pose
+    }
+
+    /// What a field gives a parameter. A shape that is a part of another keeps its transform.
+    fn in_its_place(&mut self, value: Fitted, param: &Param, field: &FieldValue) -> Argument {
+        let value = match (value, &field.value) {
+            (Fitted::Node(id), Value::Object(part))
+                if param.ty == Type::Part && !part.pose.is_identity() =>
+            {
+                match &part.pose {
+                    Pose::Fixed(transform) => Fitted::Moved(id, Arc::new(*transform)),
+                    Pose::Moving(_) => {
+                        let message = "a part of a solid does not move in it";
+                        let told = Diagnostic::error("E0418", field.span, message);
+                        self.tell(told.help("let the whole solid move"));
+                        Fitted::Node(id)
+                    }
+                }
+            }
+            (value, _) => value,
+        };
+        Argument { name: param.name, value, span: field.span }
     }
 
     fn given_twice(&mut self, before: &[FieldValue], field: &FieldValue) {
@@ -340,22 +354,9 @@ impl Evaluator<'_> {
     }
 }
 
-/// What a field gives a parameter. A shape that is a part of another keeps its transform.
-fn in_its_place(value: Fitted, param: &Param, field: &FieldValue) -> Argument {
-    let value = match (value, &field.value) {
-        (Fitted::Node(id), Value::Object(part))
-            if param.ty == Type::Part && part.transform != DAffine3::IDENTITY =>
-        {
-            Fitted::Moved(id, Arc::new(part.transform))
-        }
-        (value, _) => value,
-    };
-    Argument { name: param.name, value, span: field.span }
-}
-
 /// Whether objects of a kind stand in the scene and so take a `transform`.
 fn stands_somewhere(kind: Kind) -> bool {
-    matches!(kind, Kind::Shape | Kind::Light | Kind::Importer)
+    matches!(kind, Kind::Shape | Kind::Light | Kind::Importer | Kind::Camera)
 }
 
 /// Fields with some given anew, which take the place of old ones.

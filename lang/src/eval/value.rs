@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use glam::DAffine3;
 use luxel_core::diag::Span;
-use luxel_core::scene::{Color, GroupId, NodeId};
+use luxel_core::scene::{Color, GroupId, NodeId, Pose};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look};
 
@@ -30,7 +29,7 @@ pub(crate) enum Value {
     Record(Rc<Vec<FieldValue>>),
     Range(Range),
     Color(Color, Dimension),
-    Transform(Rc<DAffine3>),
+    Transform(Rc<Pose>),
     Look(Rc<Look>),
     Object(Rc<ObjectValue>),
     Module(Rc<Module>),
@@ -91,7 +90,7 @@ pub(crate) enum What {
 pub(crate) struct ObjectValue {
     pub(crate) what: What,
     pub(crate) fields: Vec<FieldValue>,
-    pub(crate) transform: DAffine3,
+    pub(crate) pose: Pose,
     pub(crate) head: Head,
     /// How deep other objects stand in it.
     pub(crate) depth: usize,

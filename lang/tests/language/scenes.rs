@@ -89,10 +89,10 @@ fn transforms_apply_first_to_last() {
 group { transform = [move((0, 1, 0) m)]
   shape sphere { radius = 2 m, transform = [rotate((0, 0, 1), 90 deg)] } }";
     let scene = scene(text, &[]);
-    let place = scene.root.items[0].transform.transform_point3(glam::DVec3::ZERO);
+    let place = fixed(&scene.root.items[0].pose).transform_point3(glam::DVec3::ZERO);
     assert_eq!(place, glam::DVec3::new(2.0, 0.0, 0.0));
-    assert_eq!(scene.root.items[1].transform.translation, glam::DVec3::Y);
-    let turned = scene.groups[0].items[0].transform.transform_point3(glam::DVec3::X);
+    assert_eq!(fixed(&scene.root.items[1].pose).translation, glam::DVec3::Y);
+    let turned = fixed(&scene.groups[0].items[0].pose).transform_point3(glam::DVec3::X);
     // One rounding of cos 90° and one of the product.
     assert!((turned - glam::DVec3::Y).length() < 2.0 * f64::EPSILON, "{turned}");
 }
@@ -194,7 +194,7 @@ shape mesh { points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)] m, indices = #[0 1 2], i
 fn a_shining_shape_keeps_its_place() {
     let text = "light area { shape = shape sphere { radius = 1 m, transform = [move((0, 3, 0) m)] }, spectrum = blackbody(3000 K), power = 60 W }";
     let scene = scene(text, &[]);
-    assert_eq!(scene.root.items[0].transform.translation, glam::DVec3::new(0.0, 3.0, 0.0));
+    assert_eq!(fixed(&scene.root.items[0].pose).translation, glam::DVec3::new(0.0, 3.0, 0.0));
 }
 
 #[test]
@@ -207,4 +207,12 @@ fn materials_of_an_asset_are_replaced_by_name() {
         (&*asset.overrides[0].0, scene.node(asset.overrides[0].1).kind.word()),
         ("steel", "material")
     );
+}
+
+/// Of what does not move.
+fn fixed(pose: &luxel_core::scene::Pose) -> glam::DAffine3 {
+    match pose {
+        luxel_core::scene::Pose::Fixed(transform) => *transform,
+        moving => panic!("{moving:?}"),
+    }
 }

@@ -112,9 +112,9 @@ pub(crate) fn stage(
 }
 
 fn place(scene: &mut Scene, id: NodeId, at: DVec3) {
-    let transform = DAffine3::from_translation(at);
+    let pose = DAffine3::from_translation(at).into();
     let span = Span::new(SourceId(0), 0, 0);
-    scene.root.items.push(Placed { target: Target::Node(id), transform, material: None, span });
+    scene.root.items.push(Placed { target: Target::Node(id), pose, material: None, span });
 }
 
 fn plain(x: f64) -> Value {

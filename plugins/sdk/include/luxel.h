@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0x7dc5c32846a4ccaaull
+#define LUXEL_LAYOUT_HASH 0xa675972eafef51e2ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -334,6 +334,9 @@ typedef struct {
     luxel_vec3s normals;
     luxel_vec2s uvs;
     luxel_vec3s colors;
+    luxel_dvec2 later_times;
+    luxel_vec3s later_points;
+    luxel_vec3s later_normals;
 } luxel_triangles;
 
 /* A shared table on its way. */
@@ -984,7 +987,7 @@ LUXEL_CHECK(sizeof(luxel_scene_sphere) == 32, "size of luxel_scene_sphere");
 LUXEL_CHECK(_Alignof(luxel_scene_sphere) == 8, "alignment of luxel_scene_sphere");
 LUXEL_CHECK(offsetof(luxel_scene_sphere, centre) == 0, "luxel_scene_sphere.centre");
 LUXEL_CHECK(offsetof(luxel_scene_sphere, radius) == 24, "luxel_scene_sphere.radius");
-LUXEL_CHECK(sizeof(luxel_triangles) == 104, "size of luxel_triangles");
+LUXEL_CHECK(sizeof(luxel_triangles) == 152, "size of luxel_triangles");
 LUXEL_CHECK(_Alignof(luxel_triangles) == 8, "alignment of luxel_triangles");
 LUXEL_CHECK(offsetof(luxel_triangles, centre) == 0, "luxel_triangles.centre");
 LUXEL_CHECK(offsetof(luxel_triangles, points) == 24, "luxel_triangles.points");
@@ -992,6 +995,9 @@ LUXEL_CHECK(offsetof(luxel_triangles, indices) == 40, "luxel_triangles.indices")
 LUXEL_CHECK(offsetof(luxel_triangles, normals) == 56, "luxel_triangles.normals");
 LUXEL_CHECK(offsetof(luxel_triangles, uvs) == 72, "luxel_triangles.uvs");
 LUXEL_CHECK(offsetof(luxel_triangles, colors) == 88, "luxel_triangles.colors");
+LUXEL_CHECK(offsetof(luxel_triangles, later_times) == 104, "luxel_triangles.later_times");
+LUXEL_CHECK(offsetof(luxel_triangles, later_points) == 120, "luxel_triangles.later_points");
+LUXEL_CHECK(offsetof(luxel_triangles, later_normals) == 136, "luxel_triangles.later_normals");
 LUXEL_CHECK(sizeof(luxel_built) == 16, "size of luxel_built");
 LUXEL_CHECK(_Alignof(luxel_built) == 8, "alignment of luxel_built");
 LUXEL_CHECK(offsetof(luxel_built, address) == 0, "luxel_built.address");

@@ -23,6 +23,7 @@ impl Work for Shots<'_> {
                 t_max: f64::INFINITY,
                 skip: None,
                 precision: self.precision,
+                share: 0.0,
             };
             let (hit, steps) = self.tree.intersect(processor, &query);
             let bits = hit.map_or([0; 3], |h| [h.t, h.b1, h.b2].map(f64::to_bits));

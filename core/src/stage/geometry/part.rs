@@ -6,7 +6,7 @@ use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 
 use super::{Approach, Geometry, Mesh};
-use crate::accel::{Direction, MeshBvh, Precision, Processor};
+use crate::accel::{Direction, Precision, Processor};
 
 /// A mesh that intersects itself: its triangles in double precision, as analytic shapes are.
 struct MeshPart {
@@ -20,13 +20,16 @@ struct MeshPart {
 /// # Errors
 /// Why there is no tree.
 pub(in super::super) fn mesh_part(triangles: Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String> {
-    let bvh = MeshBvh::build(&triangles.points, &triangles.indices).map_err(|e| e.to_string())?;
+    if triangles.later.is_some() {
+        return Err("a mesh whose points move is no part of a solid".to_owned());
+    }
     let area = |i: u32| {
         let [a, b, c] = triangles.corners(i);
         0.5 * (b - a).cross(c - a).length()
     };
     let area = (0..crate::cast::index(triangles.indices.len())).map(area).sum();
-    let mesh = Geometry::Mesh(Arc::new(Mesh::new(triangles, bvh)));
+    let mesh = Mesh::build(triangles, [0.0; 2]).map_err(|e| e.to_string())?;
+    let mesh = Geometry::Mesh(Arc::new(mesh));
     let bounds = mesh.bounds();
     Ok(Arc::new(MeshPart { mesh, bounds, area }))
 }
@@ -53,13 +56,14 @@ impl Shape for MeshPart {
             direction: Some(&direction),
             t_enter: self.enter(ray)?,
             from: None,
+            time: 0.0,
         };
         let hit = self.mesh.intersect(ray, approach, &mut 0)?;
         (hit.t > 0.0 && hit.t <= ray.t_max).then_some(hit)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        self.mesh.surface(ray, hit, Precision::Exact)
+        self.mesh.surface(ray, hit, Precision::Exact, 0.0)
     }
 
     fn area(&self) -> f64 {

@@ -12,7 +12,7 @@ use luxel_sdk::params::{Build, BuildContext, Fault, Shared, Table};
 use luxel_sdk::sampling::Rng;
 
 use super::{Approach, Mesh};
-use crate::accel::{Direction, MeshBvh, Precision, Processor};
+use crate::accel::{Direction, Precision, Processor};
 use crate::diag::{SourceId, Span};
 use crate::files::MemoryFiles;
 use crate::object::{Builder, ColorMode, Objects};
@@ -93,8 +93,7 @@ fn mesh_of(corners: [DVec3; 3]) -> Mesh {
     let object =
         Builder::new(&registry, &scene, &files, ColorMode::Rgb, &before).build(id).unwrap();
     let mesh = object.fixed().shape().mesh().unwrap();
-    let bvh = MeshBvh::build(&mesh.points, &mesh.indices).unwrap();
-    Mesh::new(mesh, bvh)
+    Mesh::build(mesh, [0.0; 2]).unwrap()
 }
 
 #[test]
@@ -121,7 +120,7 @@ fn rays_from_a_flat_quad_do_not_meet_it_whatever_its_place_and_shape() {
                 let [u, v] = rng.pair();
                 let at = luxel_sdk::sampling::uniform_triangle([u, v]);
                 let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                let surface = mesh.surface(0, at, precision);
+                let surface = mesh.surface(0, at, precision, 0.0);
                 let d = direction(&mut rng, surface.ng);
                 let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
                 let ray = Ray { o, d, t_max: f64::INFINITY };
@@ -132,6 +131,7 @@ fn rays_from_a_flat_quad_do_not_meet_it_whatever_its_place_and_shape() {
                     direction: Some(&direction),
                     t_enter: 0.0,
                     from: Some(0),
+                    time: 0.0,
                 };
                 hits += u32::from(mesh.intersect(&ray, approach, &mut 0).is_some());
             }

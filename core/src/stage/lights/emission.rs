@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DAffine3, DVec2, DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::{Arrival, LightForm, Surface};
 use luxel_sdk::num::{Frame, Ray, offset_origin};
@@ -10,7 +10,7 @@ use luxel_sdk::sampling::{
     Piecewise2, cosine_hemisphere, disk_concentric, sobol_owen_2d, uniform_sphere, uniform_triangle,
 };
 
-use super::super::{Geometry, Leaving, MediumStack, Stage};
+use super::super::{Geometry, Leaving, MediumStack, Moment, Place};
 use super::{LightSource, emitted};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
@@ -22,7 +22,7 @@ pub struct Emitters {
     points: Vec<Option<Beacon>>,
 }
 
-/// A light at a point.
+/// A light at a point, as it is when the shutter opens.
 #[derive(Debug)]
 struct Beacon {
     p: DVec3,
@@ -76,9 +76,9 @@ const TABLE: [u32; 2] = [16, 32];
 /// Least share of a side, and of a cell of the table: what looked dark may shine.
 const FLOOR: f64 = 1.0 / 64.0;
 
-impl Stage {
-    /// What has to be found before `emit`.
-    pub fn emitters(&self) -> Emitters {
+impl Moment<'_> {
+    /// What has to be found before `emit`, for all times.
+    pub fn emitters(self) -> Emitters {
         let beacon = |source: &LightSource| match source {
             LightSource::Free { object, .. }
                 if object.fixed().light().form() == LightForm::Point =>
@@ -93,7 +93,7 @@ impl Stage {
     /// A beginning of a path from a light, every one with its due chance. A point light is never
     /// found where it lights none of many points in and around the scene.
     pub fn emit(
-        &self,
+        self,
         emitters: &Emitters,
         palette: &Palette,
         u: &EmissionNumbers,
@@ -117,7 +117,7 @@ impl Stage {
     }
 
     fn emit_surface(
-        &self,
+        self,
         light: u32,
         source: &LightSource,
         palette: &Palette,
@@ -132,7 +132,9 @@ impl Stage {
             Geometry::Mesh(mesh) => {
                 let triangle = index(triangles.as_ref()?.sample(left).index);
                 let [_, b, c] = uniform_triangle(u.point).map(f64::from);
-                let surface = mesh.surface(triangle, DVec2::new(b, c), self.film.precision);
+                let surface =
+                    mesh.surface(triangle, DVec2::new(b, c), self.film.precision, self.time);
+                let area = area * mesh.growth(triangle, self.time);
                 (surface, triangle, placement.area_scale(surface.ng) / area)
             }
             Geometry::Analytic(shape) => {
@@ -140,7 +142,7 @@ impl Stage {
                 (sample.surface, 0, sample.pdf)
             }
         };
-        if let Some(transform) = &placement.transform {
+        if let Some(transform) = placement.place.at(self.time, &mut None) {
             pdf /= transform.area_scale(surface.ng);
             surface = surface.carried(transform);
         }
@@ -203,7 +205,7 @@ impl Stage {
     }
 
     fn emit_point(
-        &self,
+        self,
         source: &LightSource,
         beacon: &Beacon,
         palette: &Palette,
@@ -211,16 +213,26 @@ impl Stage {
         scratch: &Scratch,
     ) -> Option<Emitted> {
         let drawn = beacon.directions.sample(u.map(f64::from));
-        let d = direction(drawn.uv);
-        let intensity = self.intensity(source, beacon.p, d, palette, scratch)?;
-        let beta = intensity * narrow(4.0 * PI / drawn.pdf);
-        let ray = Ray { o: beacon.p, d, t_max: f64::INFINITY };
-        Some(Emitted { ray, beta, lamp: None, media: beacon.media })
+        let (mut p, mut d, mut per_pdf) = (beacon.p, direction(drawn.uv), 4.0 * PI / drawn.pdf);
+        let mut media = beacon.media;
+        if let LightSource::Free { place, .. } = source
+            && let Some((now, stretch)) = since_opening(place, self.time, d)
+        {
+            (p, d) = (now.transform_point3(p), now.transform_vector3(d).normalize());
+            per_pdf *= stretch;
+            if self.features.is_tracked() {
+                media = self.media_at(p);
+            }
+        }
+        let intensity = self.intensity(source, p, d, palette, scratch)?;
+        let beta = intensity * narrow(per_pdf);
+        let ray = Ray { o: p, d, t_max: f64::INFINITY };
+        Some(Emitted { ray, beta, lamp: None, media })
     }
 
     /// W/sr from the point `p` along `d`: what arrives at a distance of one radius of the scene.
     fn intensity(
-        &self,
+        self,
         source: &LightSource,
         p: DVec3,
         d: DVec3,
@@ -235,24 +247,24 @@ impl Stage {
 
     /// The ray to a source without a surface from a point, and radiance over density, or irradiance.
     fn found_from(
-        &self,
+        self,
         source: &LightSource,
         p: DVec3,
         u: [f32; 2],
         palette: &Palette,
         scratch: &Scratch,
     ) -> Option<(Ray, Spectrum)> {
-        let LightSource::Free { object, transform } = source else { return None };
+        let LightSource::Free { object, place } = source else { return None };
         let from = Arrival { p, ..Arrival::default() };
         let site = Site { p, uv: Vec2::ZERO, palette, color: None };
         let light = object.resolve(&site, scratch).light();
-        let found = self.sample_free(light, transform.as_deref(), &from, palette, u)?;
+        let found = self.sample_free(light, place, &from, palette, u)?;
         Some((found.ray, found.le_over_pdf))
     }
 
     /// Parallel light through what holds the scene, and what fills the outside of it.
     fn emit_infinite(
-        &self,
+        self,
         source: &LightSource,
         palette: &Palette,
         u: &EmissionNumbers,
@@ -277,7 +289,7 @@ impl Stage {
     }
 
     /// Looks for a light at a point by asking for its light where some may arrive.
-    fn beacon(&self, source: &LightSource) -> Option<Beacon> {
+    fn beacon(self, source: &LightSource) -> Option<Beacon> {
         let (centre, radius) = self.sphere;
         let mut scratch = Scratch::default();
         let (from, to) = (0..TRIES).find_map(|i| {
@@ -312,7 +324,7 @@ impl Stage {
     }
 
     fn directions(
-        &self,
+        self,
         source: &LightSource,
         p: DVec3,
         scratch: &mut Scratch,
@@ -345,6 +357,16 @@ impl Stage {
         let weights: Vec<f64> = (0..rows * columns).map(spread).collect();
         Piecewise2::new(&weights, columns as usize).ok()
     }
+}
+
+/// How something has moved since the shutter opened, and how much larger the solid angle around the
+/// unit direction `d` of then is now; `None` where it stands.
+fn since_opening(place: &Place, time: f64, d: DVec3) -> Option<(DAffine3, f64)> {
+    let mut room = None;
+    let now = place.at(time, &mut room).filter(|_| place.is_moving())?;
+    let moved = *now.affine() * place.first()?.affine().inverse();
+    let length = moved.transform_vector3(d).length();
+    Some((moved, moved.matrix3.determinant().abs() / (length * length * length)))
 }
 
 /// A direction of the table: equal areas of the square are equal solid angles.

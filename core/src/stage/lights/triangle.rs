@@ -24,6 +24,8 @@ pub(super) struct Lit<'a> {
     pub(super) transform: Option<&'a Transform>,
     /// The point.
     pub(super) from: DVec3,
+    /// When, seconds.
+    pub(super) time: f64,
 }
 
 /// A point of a mesh that was chosen.
@@ -67,10 +69,13 @@ impl Lit<'_> {
     /// The density with which `sample` finds a point of this triangle, as it says it.
     #[inline]
     pub(super) fn pdf(&self, triangle: u32) -> Option<f64> {
+        let chance = self.choice.pmf(triangle as usize);
+        if chance <= 0.0 {
+            return Some(0.0);
+        }
         if let Some((_, whole)) = self.few() {
             return Some(whole.recip());
         }
-        let chance = self.choice.pmf(triangle as usize);
         self.near(triangle).map(|seen| chance / seen.solid_angle())
     }
 
@@ -96,16 +101,16 @@ impl Lit<'_> {
     /// A triangle that goes by its solid angle.
     #[inline]
     fn near(&self, triangle: u32) -> Option<SphericalTriangle> {
-        let mesh = self.mesh.triangles();
-        let [a, b, c] = mesh.indices[triangle as usize].map(|i| mesh.points[i as usize].as_dvec3());
+        let [a, b, c] = self.mesh.corners(self.mesh.indices(triangle), self.time);
+        let centre = self.mesh.triangles().centre;
         // Edges are exact in the mesh's frame, and what both the mesh and the point are far by goes
         // before it can round.
         let ([x, y], a) = match self.transform {
-            None => ([b - a, c - a], a + (mesh.centre - self.from)),
+            None => ([b - a, c - a], a + (centre - self.from)),
             Some(transform) => {
                 let to = transform.affine().translation - self.from;
                 let edges = [transform.vector(b - a), transform.vector(c - a)];
-                (edges, transform.vector(a) + (transform.vector(mesh.centre) + to))
+                (edges, transform.vector(a) + (transform.vector(centre) + to))
             }
         };
         near(a, [x, y])

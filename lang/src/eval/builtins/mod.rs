@@ -2,6 +2,7 @@
 
 mod color;
 mod math;
+mod motion;
 mod spectrum_file;
 mod sun;
 mod transform;
@@ -55,7 +56,7 @@ const fn builtin(name: &'static str, args: &'static [&'static str], run: Run) ->
     Builtin { name, args, run }
 }
 
-static BUILTINS: [Builtin; 43] = {
+static BUILTINS: [Builtin; 45] = {
     use color::Make as C;
     use math::Math as M;
     use transform::Transform as T;
@@ -88,6 +89,8 @@ static BUILTINS: [Builtin; 43] = {
         builtin("move", &["by"], Run::Transform(T::Move)),
         builtin("scale", &["by"], Run::Transform(T::Scale)),
         builtin("matrix", &["rows"], Run::Transform(T::Matrix)),
+        builtin("motion", &["keys"], Run::Transform(T::Motion)),
+        builtin("spin", &["axis", "rate"], Run::Transform(T::Spin)),
         builtin("look_at", &["from", "to", "up"], Run::Transform(T::LookAt)),
         builtin("rgb", &["r?", "g?", "b?"], Run::Color(C::Bare)),
         builtin("rgb.linear_srgb", &["r", "g", "b"], Run::Color(C::LinearSrgb)),

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use luxel_core::diag::Span;
+use luxel_core::scene::Pose;
 use luxel_sdk::params::{Dimension, Look};
 
 use super::{Call, Evaluator, Value};
@@ -16,14 +17,19 @@ pub(super) enum Transform {
     Move,
     Scale,
     Matrix,
+    Motion,
+    Spin,
     LookAt,
 }
+
+/// Steps of one transform, where some move: each costs time for every ray.
+const MOST_STEPS: usize = 64;
 
 /// Distances from a camera to what it looks at whose squares, and sums of them, are accurate.
 const VIEWS: RangeInclusive<f64> = 1e-150..=1e150;
 
 /// A vector made unit, whatever its length; `None` without a direction.
-fn direction(v: DVec3) -> Option<DVec3> {
+pub(super) fn direction(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     let scaled = || (largest > 0.0 && v.is_finite()).then(|| (v / largest).normalize());
     v.try_normalize().or_else(scaled)
@@ -33,12 +39,15 @@ impl Evaluator<'_> {
     /// Makes a transform or a view.
     pub(super) fn make_transform(&mut self, make: Transform, call: &mut Call<'_>) -> Value {
         let made = match make {
-            Transform::Rotate => self.rotate(call),
+            Transform::Rotate => self.rotate(call).map(Pose::Fixed),
             Transform::Move => {
-                self.vector_of(call, 0, Dimension::LENGTH).map(DAffine3::from_translation)
+                let by = self.vector_of(call, 0, Dimension::LENGTH);
+                by.map(|by| Pose::Fixed(DAffine3::from_translation(by)))
             }
-            Transform::Scale => self.scale(call),
-            Transform::Matrix => self.matrix(call),
+            Transform::Scale => self.scale(call).map(Pose::Fixed),
+            Transform::Matrix => self.matrix(call).map(Pose::Fixed),
+            Transform::Motion => self.motion(call),
+            Transform::Spin => self.spin(call),
             Transform::LookAt => return self.look_at(call).unwrap_or(Value::Poison),
         };
         made.map_or(Value::Poison, |made| Value::Transform(Rc::new(made)))
@@ -125,39 +134,42 @@ impl Evaluator<'_> {
     }
 
     /// The transform that a field gives: one, or a list that is applied first to last.
-    pub(in crate::eval) fn transform(&mut self, value: &Value, span: Span) -> Option<DAffine3> {
+    pub(in crate::eval) fn transform(&mut self, value: &Value, span: Span) -> Option<Pose> {
         let made = match value {
-            Value::Poison => return None,
-            Value::Transform(one) => **one,
-            Value::Numbers(n) if n.data.is_empty() => DAffine3::IDENTITY,
+            Value::Transform(one) => Pose::clone(one),
+            Value::Numbers(n) if n.data.is_empty() => Pose::IDENTITY,
             Value::Items(items) => {
-                let mut all = DAffine3::IDENTITY;
+                let mut all = Pose::IDENTITY;
                 for item in &items.items {
-                    match item {
-                        Value::Transform(next) => all = **next * all,
-                        Value::Poison => return None,
-                        other => {
-                            let message = format!(
-                                "a transform is a list of rotate, move, scale and matrix, not {}",
-                                other.describe()
-                            );
-                            self.poison("E0214", span, message);
-                            return None;
-                        }
+                    let Value::Transform(next) = item else {
+                        return self.no_transform(item, span);
+                    };
+                    all = all.then(next);
+                    if matches!(&all, Pose::Moving(steps) if steps.len() > MOST_STEPS) {
+                        let message = format!("more than {MOST_STEPS} steps of a transform move");
+                        self.poison("E0501", span, message);
+                        return None;
                     }
                 }
                 all
             }
-            other => {
-                let message = format!(
-                    "a transform is a list of rotate, move, scale and matrix, not {}",
-                    other.describe()
-                );
-                self.poison("E0214", span, message);
-                return None;
-            }
+            other => return self.no_transform(other, span),
         };
-        self.invertible(made, span)
+        match made {
+            Pose::Fixed(made) => self.invertible(made, span).map(Pose::Fixed),
+            moving @ Pose::Moving(_) => Some(moving),
+        }
+    }
+
+    fn no_transform<T>(&mut self, found: &Value, span: Span) -> Option<T> {
+        if !found.is_poison() {
+            let message = format!(
+                "a transform is a list of rotate, move, scale, matrix, motion and spin, not {}",
+                found.describe()
+            );
+            self.poison("E0214", span, message);
+        }
+        None
     }
 
     fn invertible(&mut self, made: DAffine3, span: Span) -> Option<DAffine3> {

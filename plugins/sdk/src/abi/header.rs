@@ -115,7 +115,9 @@ describe! { PLAIN, PLAIN_C {
     /// A sphere around the scene.
     SceneSphere => "luxel_scene_sphere" { centre, radius }
     /// Triangles that a shape hands over.
-    Triangles => "luxel_triangles" { centre, points, indices, normals, uvs, colors }
+    Triangles => "luxel_triangles" {
+        centre, points, indices, normals, uvs, colors, later_times, later_points, later_normals,
+    }
     /// A shared table on its way.
     Built => "luxel_built" { address, owner }
     /// A value of an imported node. Tags: 0 bool, 1 number, 2 quantity, 3 vector, 4 text, 5 rgb,

@@ -128,6 +128,28 @@ pub struct TriangleMesh {
     pub uvs: Vec<Vec2>,
     /// A colour per corner point, linear sRGB, or empty.
     pub colors: Vec<Vec3>,
+    /// Where the corners are later, if they move.
+    pub later: Option<Later>,
+}
+
+/// Where the corners of a mesh are at a second time. Between the two they move evenly; before the
+/// first and after the second they stand.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Later {
+    /// When they are at the mesh's points, and when at these, which is later: seconds.
+    pub times: [f64; 2],
+    /// As many as the mesh has, about the same centre.
+    pub points: Vec<Vec3>,
+    /// As many as the mesh has.
+    pub normals: Vec<Vec3>,
+}
+
+impl Later {
+    /// How far corners have come at a time: from 0 to 1.
+    pub fn share(&self, time: f64) -> f32 {
+        let [from, to] = self.times;
+        ((time - from) / (to - from)).clamp(0.0, 1.0) as f32
+    }
 }
 
 impl TriangleMesh {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use luxel_sdk::abi::{MeshSink, ShapeTable, Triangles};
 use luxel_sdk::kind::{
-    Hit, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface, TriangleMesh,
+    Hit, Later, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface, TriangleMesh,
 };
 use luxel_sdk::num::{Bounds3, Ray};
 
@@ -250,10 +250,22 @@ fn fits_together(mesh: &TriangleMesh) -> bool {
     per_corner(mesh.normals.len())
         && per_corner(mesh.uvs.len())
         && per_corner(mesh.colors.len())
+        && mesh.later.as_ref().is_none_or(|later| moves_well(mesh, later))
         && mesh.centre.is_finite()
         && mesh.normals.iter().all(|normal| normal.is_finite())
         && mesh.uvs.iter().all(|uv| uv.is_finite())
         && mesh.colors.iter().all(|color| color.is_finite())
+}
+
+/// Whether a mesh's second place has as much as its first, of numbers.
+fn moves_well(mesh: &TriangleMesh, later: &Later) -> bool {
+    let [from, to] = later.times;
+    from.is_finite()
+        && to.is_finite()
+        && from < to
+        && later.points.len() == mesh.points.len()
+        && later.normals.len() == mesh.normals.len()
+        && later.normals.iter().all(|normal| normal.is_finite())
 }
 
 /// Most corners or triangles that can be counted: a longer list is none.
@@ -263,9 +275,11 @@ const MOST: usize = u32::MAX as usize;
 unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
     // SAFETY: the sink's own owner.
     let out = unsafe { &mut *owner.cast::<Option<Option<TriangleMesh>>>() };
-    let Triangles { points, indices, normals, uvs, colors, .. } = triangles;
+    let Triangles { points, indices, normals, uvs, colors, later_points, later_normals, .. } =
+        triangles;
     let lists = [points.len(), indices.len(), normals.len(), uvs.len(), colors.len()];
-    if lists.into_iter().any(|n| n > MOST) {
+    let last = [later_points.len(), later_normals.len()];
+    if lists.into_iter().chain(last).any(|n| n > MOST) {
         *out = Some(None);
         return;
     }
@@ -279,6 +293,15 @@ unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
     let uvs = unsafe { triangles.uvs.get() };
     // SAFETY: as above.
     let colors = unsafe { triangles.colors.get() };
+    // SAFETY: as above.
+    let last_points = unsafe { later_points.get() };
+    // SAFETY: as above.
+    let last_normals = unsafe { later_normals.get() };
+    let later = (!last_points.is_empty()).then(|| Later {
+        times: triangles.later_times.to_array(),
+        points: last_points.to_vec(),
+        normals: last_normals.to_vec(),
+    });
     *out = Some(Some(TriangleMesh {
         centre: triangles.centre,
         points: points.to_vec(),
@@ -286,5 +309,6 @@ unsafe extern "C" fn copy(owner: *mut u8, triangles: &Triangles) {
         normals: normals.to_vec(),
         uvs: uvs.to_vec(),
         colors: colors.to_vec(),
+        later,
     }));
 }

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod inline;
+mod moving;
 mod obj;
 mod obj_faces;
 mod ply;
@@ -48,6 +49,9 @@ pub(crate) enum Shading {
 ///
 /// With `displace`, a texture moves the surface, split into triangles of at most `edge`. Both make
 /// 8,388,608 triangles at most.
+///
+/// With `next` or `next_points` the corners move from one place to the other, in straight lines; a
+/// film whose `shutter` is open for a while sees them on their way.
 ///
 /// ```scene
 /// shape mesh "cow"   { file = "assets/spot.obj", unit = 1 m, material = white }
@@ -126,6 +130,18 @@ pub(crate) struct Mesh<'a> {
     /// Longest edge of a triangle that `displace` moves, before it moves; `displace` has to have it.
     #[param(optional, unit = "m", min = f64::MIN_POSITIVE)]
     pub(crate) edge: f64,
+    /// A second file with the same faces, whose corners those of `file` move to, evenly.
+    #[param(optional)]
+    pub(crate) next: File<'a>,
+    /// Where `points` move to: as many.
+    #[param(optional, unit = "m")]
+    pub(crate) next_points: Table<'a>,
+    /// When the corners are where `file` or `points` says; before that they stand.
+    #[param(unit = "s", default = 0.0)]
+    pub(crate) at: f64,
+    /// When they are where `next` or `next_points` says; after that they stand.
+    #[param(unit = "s", default = 1.0)]
+    pub(crate) next_at: f64,
     #[param(shared)]
     table: Shared<'a, Arc<TriangleMesh>>,
 }
@@ -133,8 +149,24 @@ pub(crate) struct Mesh<'a> {
 impl Build<Arc<TriangleMesh>> for Mesh<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
         self.warn_of_idle(context);
+        let moving = self.is_moving();
+        let mut mesh = self.triangles(context, moving)?;
+        if moving {
+            mesh.later = Some(self.later(&mesh, context)?);
+        }
+        Ok(mesh.into())
+    }
+}
+
+impl Mesh<'_> {
+    /// The triangles with their normals; each corner on its own if they are made and `apart`.
+    fn triangles(
+        &self,
+        context: &dyn BuildContext,
+        apart: bool,
+    ) -> Result<TriangleMesh, Vec<Fault>> {
         let made = self.subdivide > 0 || self.displace.is_given();
-        let mut mesh = if made { self.refined(context)? } else { self.plain(context)? };
+        let mut mesh = if made { self.refined(context, apart)? } else { self.plain(context)? };
         let repaired = assemble::finish(&mut mesh, self.smooth);
         if repaired > 0 {
             let path = self.file.path.get();
@@ -142,11 +174,9 @@ impl Build<Arc<TriangleMesh>> for Mesh<'_> {
             let message = format!("{name}: {repaired} unusable normals were made from the faces");
             context.warn(&message);
         }
-        Ok(mesh.into())
+        Ok(mesh)
     }
-}
 
-impl Mesh<'_> {
     /// Tells of what is given and does nothing.
     fn warn_of_idle(&self, context: &dyn BuildContext) {
         if self.subdivide == 0 && !self.creases.get().is_empty() {
@@ -166,7 +196,7 @@ impl Mesh<'_> {
     }
 
     /// Triangles that are made of the given faces.
-    fn refined(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
+    fn refined(&self, context: &dyn BuildContext, apart: bool) -> Result<TriangleMesh, Vec<Fault>> {
         let faces = if self.file.path.get().is_empty() {
             inline::polygons(self)?
         } else {
@@ -193,7 +223,7 @@ impl Mesh<'_> {
             field = "displace_by";
             net = displace::displace(net, settings, self.smooth)?;
         }
-        net.into_mesh().map_err(|bad| vec![Fault::mesh(field, bad.to_string())])
+        net.into_mesh(apart).map_err(|bad| vec![Fault::mesh(field, bad.to_string())])
     }
 
     /// What a file holds, by what it is rather than by what it is called.
@@ -237,6 +267,7 @@ fn has_extension(path: &str, wanted: &str) -> bool {
 
 impl Shape for Mesh<'_> {
     fn check(&self) -> Result<(), Fault> {
+        self.check_motion()?;
         if self.displace.is_given() && self.displace_by.abs() <= 0.0 {
             let message = "`displace` needs `displace_by`, how far a value of 1 moves, as `displace_by = 1 cm`";
             return Err(Fault::mesh("displace_by", message));

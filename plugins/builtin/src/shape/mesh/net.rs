@@ -33,11 +33,12 @@ impl Net {
         (b - a).cross(c - a).normalize_or_zero()
     }
 
-    /// A mesh about its own centre: a corner point for each place and what its corners carry.
+    /// A mesh about its own centre: a corner point for each place and what its corners carry, or,
+    /// `apart`, for each corner, whatever it shares with others at this moment.
     ///
     /// # Errors
     /// A place that single precision does not reach.
-    pub(super) fn into_mesh(self) -> Result<TriangleMesh, BadPoint> {
+    pub(super) fn into_mesh(self, apart: bool) -> Result<TriangleMesh, BadPoint> {
         let mut known = HashMap::with_capacity(self.places.len());
         let (mut first, mut indices) = (vec![], Vec::with_capacity(self.triangles.len()));
         for (i, triangle) in self.triangles.iter().enumerate() {
@@ -47,7 +48,9 @@ impl Net {
                 let uv = self.uvs.get(corner).map(|uv| uv.to_array().map(f32::to_bits));
                 let normal = self.normals.get(corner).map(|n| n.to_array().map(f32::to_bits));
                 let color = self.colors.get(corner).map(|c| c.to_array().map(f32::to_bits));
-                corners[k] = *known.entry((triangle[k], uv, normal, color)).or_insert_with(|| {
+                let own = apart.then_some(corner);
+                let key = (triangle[k], uv, normal, color, own);
+                corners[k] = *known.entry(key).or_insert_with(|| {
                     first.push(corner);
                     u32::try_from(first.len() - 1).expect("three corners of so many triangles")
                 });

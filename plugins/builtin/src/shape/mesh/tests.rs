@@ -49,6 +49,10 @@ fn params(path: &'static str) -> Mesh<'static> {
         displace: TextureRef::NONE,
         displace_by: 0.0,
         displace_from: 0.0,
+        next: File { path: Text::new("") },
+        next_points: NONE,
+        at: 0.0,
+        next_at: 1.0,
         edge: 0.0,
         table: Shared::new(&EMPTY),
     }

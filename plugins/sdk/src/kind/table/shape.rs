@@ -1,9 +1,9 @@
 use std::marker::PhantomData;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::table;
-use crate::kind::{Hit, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface};
+use crate::kind::{Hit, Later, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface};
 use crate::num::{Bounds3, Ray};
 use crate::wire::{Slice, expect};
 
@@ -23,6 +23,12 @@ pub struct Triangles {
     pub uvs: Slice<Vec2>,
     /// A colour per corner point, linear sRGB, or none.
     pub colors: Slice<Vec3>,
+    /// When the corners are at `points`, and when at `later_points`: seconds.
+    pub later_times: DVec2,
+    /// Where the corners are later, about `centre`; none if they stand.
+    pub later_points: Slice<Vec3>,
+    /// Their shading normals then, as many as `normals`.
+    pub later_normals: Slice<Vec3>,
 }
 
 /// Where a shape's triangles go.
@@ -65,6 +71,8 @@ table! {
         /// Hands triangles over, and says how many; nothing for shapes that intersect themselves.
         fn mesh(shape, sink: &mut MeshSink) -> u64 {
             let mesh = shape.mesh()?;
+            let none = Later::default();
+            let later = mesh.later.as_ref().unwrap_or(&none);
             sink.take(&Triangles {
                 centre: mesh.centre,
                 points: Slice::new(&mesh.points),
@@ -72,6 +80,9 @@ table! {
                 normals: Slice::new(&mesh.normals),
                 uvs: Slice::new(&mesh.uvs),
                 colors: Slice::new(&mesh.colors),
+                later_times: later.times.into(),
+                later_points: Slice::new(&later.points),
+                later_normals: Slice::new(&later.normals),
             });
             Some(mesh.indices.len() as u64)
         }
@@ -130,7 +141,7 @@ const NOWHERE: Surface = Surface {
     p_err: DVec3::ZERO,
     ng: DVec3::Z,
     ns: DVec3::Z,
-    uv: glam::DVec2::ZERO,
+    uv: DVec2::ZERO,
     dp_du: DVec3::X,
     dp_dv: DVec3::Y,
 };

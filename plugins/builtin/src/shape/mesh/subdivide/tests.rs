@@ -336,7 +336,7 @@ fn seams_of_coordinates_do_not_tear() {
     assert_eq!(net.places, bare.places);
     assert_eq!(net.uvs.len(), 3 * net.triangles.len());
     let n_places = net.places.len();
-    let mesh = net.into_mesh().unwrap();
+    let mesh = net.into_mesh(false).unwrap();
     // A place on an edge of the cube has two corner points, one at its corners three.
     assert_eq!(mesh.points.len(), n_places + 12 * 7 + 8 * 2);
     assert!(

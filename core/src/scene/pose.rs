@@ -1,0 +1,113 @@
+//! How things stand in the frame around them, and how they move there.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+/// From a thing's frame to the one around it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pose {
+    /// It stands.
+    Fixed(DAffine3),
+    /// It moves: steps that are applied first to last, at least one of which is not `Fixed`.
+    Moving(Arc<[Step]>),
+}
+
+/// One of several transforms that are applied one after another.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// The same at all times.
+    Fixed(DAffine3),
+    /// Where it is at some times, at least one, which increase. In between translation and stretch
+    /// change evenly and rotations turn the shorter way at even speed; before the first and after the
+    /// last it stands.
+    Keys(Arc<[Key]>),
+    /// Turns for ever.
+    Spin {
+        /// Through the origin, unit.
+        axis: DVec3,
+        /// rad/s, counter-clockwise about the axis; at time 0 it is not turned.
+        rate: f64,
+    },
+}
+
+/// Where something is at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    /// Seconds.
+    pub time: f64,
+    /// Invertible, and of the same handedness as its neighbours.
+    pub transform: DAffine3,
+}
+
+impl Pose {
+    /// Where it is made.
+    pub const IDENTITY: Self = Self::Fixed(DAffine3::IDENTITY);
+
+    /// A pose of one step.
+    pub fn of(step: Step) -> Self {
+        match step {
+            Step::Fixed(transform) => Self::Fixed(transform),
+            step => Self::Moving(Arc::new([step])),
+        }
+    }
+
+    /// Whether it changes nothing.
+    pub fn is_identity(&self) -> bool {
+        *self == Self::IDENTITY
+    }
+
+    /// This one in a frame that stands so in the next.
+    #[must_use]
+    pub fn then(&self, outer: &Self) -> Self {
+        if let (Self::Fixed(inner), Self::Fixed(outer)) = (self, outer) {
+            return Self::Fixed(*outer * *inner);
+        }
+        let mut steps: Vec<Step> = vec![];
+        for step in self.steps().into_iter().chain(outer.steps()) {
+            match (steps.last_mut(), &step) {
+                (_, Step::Fixed(step)) if *step == DAffine3::IDENTITY => {}
+                (Some(Step::Fixed(before)), Step::Fixed(next)) => *before = *next * *before,
+                _ => steps.push(step),
+            }
+        }
+        Self::Moving(steps.into())
+    }
+
+    /// The steps, first to last.
+    pub fn steps(&self) -> Vec<Step> {
+        match self {
+            Self::Fixed(transform) => vec![Step::Fixed(*transform)],
+            Self::Moving(steps) => steps.to_vec(),
+        }
+    }
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl From<DAffine3> for Pose {
+    fn from(transform: DAffine3) -> Self {
+        Self::Fixed(transform)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_join_and_fixed_steps_melt_together() {
+        let spin = Pose::of(Step::Spin { axis: DVec3::Y, rate: 1.0 });
+        let by = |x: f64| Pose::Fixed(DAffine3::from_translation(DVec3::X * x));
+        assert_eq!(by(1.0).then(&by(2.0)), by(3.0));
+        let joined = by(1.0).then(&spin).then(&by(2.0)).then(&by(3.0));
+        assert_eq!(joined.steps().len(), 3);
+        assert_eq!(joined.steps()[2], by(5.0).steps()[0]);
+        assert_eq!(Pose::IDENTITY.then(&spin), spin);
+        assert_eq!(spin.then(&Pose::IDENTITY), spin);
+    }
+}

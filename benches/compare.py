@@ -39,6 +39,21 @@ def cpu(who):
     return usage.ru_utime + usage.ru_stime
 
 
+def ply(args):
+    """The mesh of `waves`."""
+    return scenes.waves_ply(pathlib.Path(args.keep) / "waves.ply")
+
+
+def scene_file(args, scene):
+    """A scene of Luxel; beside its mesh if it has one."""
+    path = HERE / "scenes" / f"{scene}.scene"
+    if scene != "waves":
+        return path
+    beside = ply(args).with_suffix(".scene")
+    beside.write_text(path.read_text())
+    return beside
+
+
 def luxel(args, scene, res, spp, seed):
     """Picture, and the processor time of the whole process."""
     import mitsuba as mi
@@ -46,7 +61,7 @@ def luxel(args, scene, res, spp, seed):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
         before = cpu(resource.RUSAGE_CHILDREN)
-        command = [args.luxel, "render", str(HERE / "scenes" / f"{scene}.scene"), "--quiet", "-o", str(out)]
+        command = [args.luxel, "render", str(scene_file(args, scene)), "--quiet", "-o", str(out)]
         command += ["--size", f"{res}x{res}", "--spp", str(spp), "--seed", str(seed)]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         seconds = cpu(resource.RUSAGE_CHILDREN) - before
@@ -77,7 +92,7 @@ def reference(args, scene, res):
     if path.exists():
         return np.load(path)
     mi.set_variant(variant_for(scene))
-    ready, chunk = scenes.load(mi, scene, res, 64), 64
+    ready, chunk = scenes.load(mi, scene, res, 64, ply(args)), 64
     groups = [[] for _ in range(16)]
     for i in range(max(args.reference_spp // chunk, 16)):
         groups[i % 16].append(mitsuba(ready, chunk, 1_000 + i)[0])
@@ -141,7 +156,7 @@ def speed(args):
         ready = {}
         for variant in args.variants:
             mi.set_variant(variant)
-            ready[variant] = scenes.load(mi, scene, args.res, args.spp)
+            ready[variant] = scenes.load(mi, scene, args.res, args.spp, ply(args))
             if variant.startswith("llvm"):
                 mitsuba(ready[variant], args.spp, 1)
         rows = {name: [] for name in ["luxel", *args.variants]}

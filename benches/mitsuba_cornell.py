@@ -41,7 +41,8 @@ LAMP_CURVE = [(400, 0.0), (500, 8.0), (600, 15.6), (700, 18.4)]
 GLASS = {"center": (170, 100, 180), "radius": 100}
 METAL = {"center": (385, 110, 370), "radius": 110}
 METAL_ETA, METAL_K = (0.2, 0.92, 1.1), (3.9, 2.45, 2.14)
-SCENES = ("cornell_rgb", "cornell_grey", "cornell_spectral", "glass_metal")
+SCENES = ("cornell_rgb", "cornell_grey", "cornell_spectral", "glass_metal", "waves")
+WAVES_SIDE = 1024  # vertices along each side of the wavy square
 
 Y_INTEGRAL = 106.85691491676702  # of ybar over 360..830 nm, nm, CIE 1931 at 1 nm
 LUXEL_PER_MITSUBA = {
@@ -106,8 +107,55 @@ def quad_mesh(mi, name, corners, bsdf, emitter=None):
     return mesh
 
 
-def load(mi, scene, res, spp):
+def waves_ply(path):
+    """Writes the wavy square of `scenes/waves.scene` unless it is there."""
+    if path.exists():
+        return path
+    at = 2 * np.arange(WAVES_SIDE, dtype=np.float32) / np.float32(WAVES_SIDE - 1) - 1
+    z, x = np.meshgrid(at, at, indexing="ij")
+    y = 0.05 * np.sin(23 * x) * np.cos(17 * z)
+    points = np.stack([x, y, z], -1).astype("<f4")
+    corner = np.arange(WAVES_SIDE**2, dtype=np.int32).reshape(WAVES_SIDE, WAVES_SIDE)
+    a, b, c, d = corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]
+    faces = np.stack([a, c, d, a, d, b], -1).reshape(-1, 3)
+    rows = np.zeros(len(faces), dtype=[("n", "u1"), ("i", "<i4", 3)])
+    rows["n"], rows["i"] = 3, faces
+    header = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {WAVES_SIDE**2}\nproperty float x\n"
+        f"property float y\nproperty float z\nelement face {len(faces)}\n"
+        "property list uchar int vertex_indices\nend_header\n"
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header.encode() + points.tobytes() + rows.tobytes())
+    return path
+
+
+def waves(mi, res, spp, ply):
+    """The wavy square under an even sky."""
+    look = mi.ScalarTransform4f().look_at(origin=[0, 2, 3], target=[0, 0, 0], up=[0, 1, 0])
+    return mi.load_dict({
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": -1, "rr_depth": 5},
+        "sensor": {
+            "type": "perspective", "fov": 40.0, "fov_axis": "y", "to_world": look,
+            "film": {
+                "type": "hdrfilm", "width": res, "height": res, "rfilter": {"type": "box"},
+                "pixel_format": "rgb", "component_format": "float32",
+            },
+            "sampler": {"type": "independent", "sample_count": spp},
+        },
+        "sky": {"type": "constant", "radiance": {"type": "rgb", "value": [1.0, 1.0, 1.0]}},
+        "mesh": {
+            "type": "ply", "filename": str(ply), "face_normals": True,
+            "bsdf": {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.5] * 3}}},
+        },
+    })
+
+
+def load(mi, scene, res, spp, ply=None):
     """The scene in the variant that is set, ready for `mi.render`."""
+    if scene == "waves":
+        return waves(mi, res, spp, ply)
     reflectance, lamp = colours(scene)
     bsdf = {
         name: mi.load_dict({"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": value}})
@@ -154,7 +202,7 @@ def regions(scene, res, sub=5):
     o = np.array([278.0, 273.0, -800.0])
     nearest, hit = np.full(x.shape, np.inf), np.full(x.shape, -1)
     names = []
-    faces = quads(scene)
+    faces = [] if scene == "waves" else quads(scene)
     for name, _, corners in faces:
         if name not in names:
             names.append(name)
@@ -200,7 +248,7 @@ def main():
     import mitsuba as mi
 
     mi.set_variant(args.variant)
-    scene = load(mi, args.scene, args.res, args.spp)
+    scene = load(mi, args.scene, args.res, args.spp, waves_ply(pathlib.Path(args.out).with_name("waves.ply")))
     batches = []
     for i in range(args.batches):
         batches.append(np.array(mi.render(scene, spp=args.spp, seed=args.seed * 100_000 + i)))

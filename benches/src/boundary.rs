@@ -4,16 +4,15 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::{DVec3, Vec2, Vec3};
-use luxel_core::files::MemoryFiles;
 use luxel_core::object::{Object, Scratch, Site};
 use luxel_core::registry::Registry;
 use luxel_core::registry::dynamic::Library;
-use luxel_core::stage::{self, Stage};
 use luxel_sdk::color::{Palette, Wavelengths};
 use luxel_sdk::kind::Material;
 use luxel_sdk::sampling::{Rng, uniform_hemisphere};
 
 use crate::process::{Luxel, here};
+use crate::scene::{linked, stage_of};
 use crate::series::Series;
 
 /// Prints pictures and events, linked and loaded, side by side.
@@ -99,28 +98,6 @@ fn scene(mode: &str, material: &str) -> String {
          light constant {{ radiance = 1 W/m^2/sr }}\n\
          shape sphere {{ radius = 1 m, material = {material} }}\n"
     )
-}
-
-/// The stage of a scene.
-///
-/// # Errors
-/// What is wrong with it.
-pub(crate) fn stage_of(registry: &Registry, text: &str) -> Result<Stage, String> {
-    let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-    let settings = luxel_lang::Settings::default();
-    let loaded = luxel_lang::load(Path::new("a.scene"), &files, registry, &settings);
-    let scene = loaded.scene.ok_or_else(|| format!("{:?}", loaded.diagnostics))?;
-    let built = stage::build(&scene, registry, &files, None);
-    built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
-}
-
-/// The built-ins.
-pub(crate) fn linked() -> Registry {
-    let mut registry = Registry::new();
-    for classes in luxel_builtin::CLASSES {
-        registry.add("builtin", classes).expect("built-ins have names of their own");
-    }
-    registry
 }
 
 fn events(library: &Path) -> Result<(), String> {

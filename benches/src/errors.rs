@@ -1,16 +1,14 @@
 //! How far hits are from where they should be: against double-double arithmetic on the same rays.
 //! Prints the tables of docs/accuracy.md, "Hits".
 
-use std::path::Path;
-
 use glam::{DQuat, DVec3, EulerRot};
 use luxel_core::accel::{Precision, Processor};
-use luxel_core::files::MemoryFiles;
-use luxel_core::registry::Registry;
 use luxel_core::stage::{self, Stage};
 use luxel_sdk::num::Ray;
 use luxel_sdk::sampling::{sobol_owen_2d, uniform_sphere};
 use twofloat::TwoFloat;
+
+use crate::scene;
 
 /// Rays of each case.
 const RAYS: u32 = 20_000;
@@ -142,16 +140,7 @@ fn stage_of(shape: &str, precision: Precision) -> Result<Stage, String> {
          film rgb {{ resolution = (8, 8), precision = \"{}\" }}\n{shape}\n",
         precision.word()
     );
-    let mut registry = Registry::new();
-    for classes in luxel_builtin::CLASSES {
-        registry.add("builtin", classes).map_err(|conflict| conflict.to_string())?;
-    }
-    let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-    let settings = luxel_lang::Settings::default();
-    let loaded = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
-    let scene = loaded.scene.ok_or_else(|| format!("{:?}", loaded.diagnostics))?;
-    let built = stage::build(&scene, &registry, &files, None);
-    built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
+    scene::stage_of(&scene::linked(), &text)
 }
 
 /// Three numbers of twice the digits.

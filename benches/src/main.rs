@@ -11,10 +11,12 @@ mod boundary;
 mod errors;
 mod parse;
 mod peer;
+mod pictures;
 mod ply;
 mod process;
 mod rays;
 mod reload;
+mod scene;
 mod series;
 mod strands;
 
@@ -47,7 +49,7 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last is not among `all`: it takes long.
-const BENCHES: [Bench; 12] = [
+const BENCHES: [Bench; 13] = [
     of_crates("parse", |_| {
         parse::run();
         Ok(())
@@ -60,6 +62,7 @@ const BENCHES: [Bench; 12] = [
         rays::run(plan.embree.as_deref(), plan.python.as_deref());
         Ok(())
     }),
+    of_crates("pictures", |_| pictures::run()),
     of_crates("errors", |_| errors::run()),
     of_crates("strands", |_| strands::run()),
     of_crates("leaks", |plan| {

@@ -9,7 +9,7 @@ use luxel_core::stage::{Geometry, Stage};
 use luxel_sdk::num::Ray;
 use luxel_sdk::sampling::{Rng, uniform_sphere};
 
-use crate::boundary::{linked, stage_of};
+use crate::scene::{linked, stage_of};
 use crate::series::Series;
 
 /// Strands, of four segments each.

@@ -29,6 +29,8 @@ pub struct Options {
     pub crop: Option<Rect>,
     /// Threads; as many as there are cores if absent.
     pub threads: Option<NonZeroUsize>,
+    /// Whether rays take turns, which changes no bit; as is sooner for the stage if absent.
+    pub turns: Option<bool>,
 }
 
 impl Options {
@@ -104,6 +106,7 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
     let failures = AtomicU64::new(stage.alarm().count());
     let stop = Stop { control, stage, failures: &failures };
     let (spp, seed) = (options.samples(stage), options.seed(stage));
+    let turns = options.turns.unwrap_or_else(|| stage.is_for_turns());
     pool.install(|| {
         let integrator = stage.integrator.fixed().integrator();
         if let Some(owner) = integrator.as_picture() {
@@ -114,7 +117,11 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
             // Passes grow: a first picture comes soon, later ones cost little to gather.
             let to = spp.min(from + from.clamp(1, PASS));
             film.tiles_mut().par_iter_mut().for_each_init(
-                || tile::Worker::new(stage, seed, integrator, FROM_CAMERA, integrator.output()),
+                || {
+                    let output = integrator.output();
+                    let new = tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output);
+                    new.in_turns(turns)
+                },
                 |worker, tile| worker.pass(tile, from..to, stop),
             );
             from = to;

@@ -92,6 +92,11 @@ impl<'s> Worker<'s> {
         }
     }
 
+    /// The same, whose rays take turns or do not.
+    pub(super) fn in_turns(self, in_turns: bool) -> Self {
+        Self { in_turns, ..self }
+    }
+
     /// Adds the samples of a range to every pixel of a tile. A pass that is cancelled adds none.
     pub(super) fn pass(&mut self, tile: &mut Tile, range: Range<u32>, stop: Stop<'_>) {
         let (n_pixels, n) = (tile.rect.area(), range.len());

@@ -74,7 +74,12 @@ pub struct Mesh {
     centre: DVec3,
     /// Diagonal of the tree's box, metres of the mesh's frame.
     diagonal: f64,
+    /// What is nearer than this may lie behind a ray's origin by rounding: `NEAR` diagonals.
+    near: f64,
 }
+
+/// More than the error of a point in single precision about the centre of a mesh, in its diagonals.
+const NEAR: f64 = 1.0 / (1u64 << 20) as f64;
 
 impl Mesh {
     /// Takes over the triangles of a shape and builds their tree, for an interval of time in seconds.
@@ -92,7 +97,8 @@ impl Mesh {
         };
         let diagonal = bvh.bounds().map_or(0.0, |(min, max)| (max - min).as_dvec3().length());
         let centre = triangles.centre;
-        Ok(Self { triangles, bvh, during, closed: OnceLock::new(), centre, diagonal })
+        let near = diagonal * NEAR;
+        Ok(Self { triangles, bvh, during, closed: OnceLock::new(), centre, diagonal, near })
     }
 
     /// Whether its points move while the shutter is open.
@@ -212,7 +218,8 @@ impl Mesh {
             return Landed::Nowhere;
         };
         let t = taken.start + hit.t * direction.per_scale();
-        if approach.from.is_some()
+        let near = approach.from.is_some() || t <= self.near * direction.per_scale();
+        if near
             && taken.left > 0
             && self.is_behind(hit.triangle, ray, approach.time)
         {

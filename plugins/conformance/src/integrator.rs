@@ -89,7 +89,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
 
 fn picture(stage: &Stage, seed: u32, threads: usize, spp: u32) -> Film {
     let threads = NonZeroUsize::new(threads);
-    let options = Options { spp: Some(spp), seed: Some(seed), crop: None, threads };
+    let options = Options { spp: Some(spp), seed: Some(seed), threads, ..Options::default() };
     render(stage, &options, &Control::default()).0
 }
 

@@ -153,7 +153,7 @@ fn from_its_plane_an_edge_or_a_corner_a_lamp_is_found_by_numbers_or_not_at_all()
 fn floor(shape: &str, integrator: &str, samples: u32) -> Film {
     let body = format!(
         "camera orthographic {{ look = look_at(from = (0, 0.2, 0) m, to = (0, 0, 0) m, up = (0, 0, 1)), height = 3 m }}
-        film rgb {{ resolution = (12, 12) }}
+        film rgb {{ resolution = (12, 12), shutter = 1 s }}
         sampler independent {{ samples = {samples}, seed = 7 }}
         {integrator}
         shape rectangle {{ u = (0, 0, 9) m, v = (9, 0, 0) m, material = material diffuse {{ reflectance = 0.5 }} }}
@@ -236,4 +236,19 @@ fn who_meets_a_sheared_rectangle_is_told_the_density_of_finding_it() {
     let noise = both.1.y.hypot(met.1.y);
     assert!((both.0.y - met.0.y).abs() <= 4.0 * noise, "{} {}", both.0, met.0);
     assert!(noise <= 0.005 * met.0.y, "too noisy to tell");
+}
+
+#[test]
+fn a_lamp_that_moves_and_bends_is_found_where_it_is() {
+    let bends = "mesh {
+        points = #[ -0.5 0.3 -0.5  0.5 0.3 -0.5  0.5 0.3 0.5  -0.5 0.3 0.5 ] m, indices = #[ 0 1 2  0 2 3 ]
+        next_points = #[ -0.5 0.4 -0.5  0.9 0.3 -0.5  0.5 0.5 0.5  -0.5 0.3 0.2 ] m
+        transform = motion([(0 s, scale((1, 1, 1))), (1 s, scale((1, 1.6, 0.7)))])
+    }";
+    let direct = floor(bends, "integrator path { max_depth = 2 }", 1024).mean();
+    let blind = "integrator path { max_depth = 2, light_sampling = false }";
+    let met = floor(bends, blind, 8192).mean();
+    let noise = direct.1.y.hypot(met.1.y);
+    assert!((direct.0.y - met.0.y).abs() <= 4.0 * noise, "{} {}", direct.0, met.0);
+    assert!(met.0.y > 0.0 && noise <= 0.01 * met.0.y, "too noisy to tell");
 }

@@ -219,10 +219,7 @@ impl Mesh {
         };
         let t = taken.start + hit.t * direction.per_scale();
         let near = approach.from.is_some() || t <= self.near * direction.per_scale();
-        if near
-            && taken.left > 0
-            && self.is_behind(hit.triangle, ray, approach.time)
-        {
+        if near && taken.left > 0 && self.is_behind(hit.triangle, ray, approach.time) {
             return Landed::Behind(Taken { start: t, left: taken.left - 1 });
         }
         let at = DVec2::new(hit.b1, hit.b2);

@@ -50,7 +50,12 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
 }
 
 fn options(seed: u32, spp: u32) -> Options {
-    Options { spp: Some(spp), seed: Some(seed), threads: NonZeroUsize::new(2), ..Options::default() }
+    Options {
+        spp: Some(spp),
+        seed: Some(seed),
+        threads: NonZeroUsize::new(2),
+        ..Options::default()
+    }
 }
 
 fn picture(stage: &Stage, seed: u32, spp: u32) -> Film {

@@ -9,6 +9,8 @@ mod builder;
 #[cfg(test)]
 mod cli;
 #[cfg(test)]
+mod curvature;
+#[cfg(test)]
 mod curves;
 mod determinism;
 #[cfg(test)]
@@ -19,6 +21,8 @@ mod disk;
 mod extremes;
 #[cfg(test)]
 mod house;
+#[cfg(test)]
+mod lamps;
 #[cfg(test)]
 mod load;
 #[cfg(test)]

@@ -117,6 +117,9 @@ impl Shader<'_, '_> {
                 stage.surface_emission(place, surface, (from, wo), palette, self.scratch);
             (at.le, at.le_pdf) = (le * self.flight, pdf);
         }
+        if self.wants.has(Wants::CURVATURE) {
+            at.curvature = narrow(stage.mean_curvature(ray, hit, surface));
+        }
         let outside = wo.dot(surface.ng) > 0.0;
         let mut leaving = Leaving::from(hit);
         if surface.ns != surface.ng {

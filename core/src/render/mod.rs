@@ -84,7 +84,8 @@ pub enum Outcome {
 const PASS: u32 = 16;
 
 /// What is prepared for paths from the camera.
-const FROM_CAMERA: Wants = Wants::EMISSION.with(Wants::DIRECT).with(Wants::SCATTER);
+const FROM_CAMERA: Wants =
+    Wants::EMISSION.with(Wants::DIRECT).with(Wants::SCATTER).with(Wants::CURVATURE);
 
 /// Renders the stage.
 ///

@@ -249,7 +249,9 @@ impl Maker<'_> {
         let (area, triangles) = shining::measured(geometry, placement);
         let shape = (self.scene, placement.node);
         self.builder.diagnostics.extend(shining::doubts(geometry, area, shape, span));
-        self.made.lights.push(LightSource::Surface { object, placement: place, area, triangles });
+        let quad = shining::sheared(geometry, placement);
+        let source = LightSource::Surface { object, placement: place, area, triangles, quad };
+        self.made.lights.push(source);
     }
 
     fn geometry(&mut self, id: NodeId) -> Option<u32> {

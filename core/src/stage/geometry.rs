@@ -115,7 +115,7 @@ impl Mesh {
 
     /// The corner points of a triangle.
     #[inline(always)]
-    fn indices(&self, triangle: u32) -> [usize; 3] {
+    pub(super) fn indices(&self, triangle: u32) -> [usize; 3] {
         let [a, b, c] = self.triangles.indices[triangle as usize];
         [a as usize, b as usize, c as usize]
     }
@@ -143,7 +143,7 @@ impl Mesh {
 
     /// The corners of a triangle at a time, about the centre: as the tree has them, to the bit.
     #[inline(always)]
-    fn corners(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
+    pub(super) fn corners(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
         let points = &self.triangles.points;
         match &self.triangles.later {
             None => [points[a].as_dvec3(), points[b].as_dvec3(), points[c].as_dvec3()],
@@ -153,7 +153,7 @@ impl Mesh {
 
     /// The normals at its corners at a time, unit where the mesh stands.
     #[inline(always)]
-    fn normals(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
+    pub(super) fn normals(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
         let normals = &self.triangles.normals;
         match &self.triangles.later {
             None => [normals[a].as_dvec3(), normals[b].as_dvec3(), normals[c].as_dvec3()],
@@ -389,6 +389,25 @@ fn parametrisation(
     } else {
         (uv, barycentric.1, barycentric.2)
     }
+}
+
+/// Derivatives by the barycentrics of the second and the third corner as those by the surface
+/// coordinates, where `parametrisation` tells the point's by them.
+pub(super) fn by_coordinates(
+    mesh: &TriangleMesh,
+    corners: [usize; 3],
+    points: [DVec3; 3],
+    [x, y]: [DVec3; 2],
+) -> (DVec3, DVec3) {
+    let (_, dp_du, dp_dv) = parametrisation(mesh, corners, points, [1.0, 0.0, 0.0]);
+    let [a, b, c] = points;
+    if mesh.uvs.is_empty() || (dp_du, dp_dv) == (b - a, c - a) {
+        return (x, y);
+    }
+    let [ta, tb, tc] = corners.map(|i| mesh.uvs[i].as_dvec2());
+    let (d1, d2) = (tb - ta, tc - ta);
+    let det = d1.perp_dot(d2);
+    ((x * d2.y - y * d1.y) / det, (y * d1.x - x * d2.x) / det)
 }
 
 impl Geometry {

@@ -1,20 +1,24 @@
 //! Which light is looked for, and what it sends.
 
 mod emission;
+mod quad;
+mod triangle;
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
-use luxel_sdk::kind::{Arrival, Light, LightQuery, Output, ShapeSample, Surface};
+use luxel_sdk::kind::{Arrival, Hit, Light, LightQuery, Output, ShapeSample, Surface};
 use luxel_sdk::num::{Ray, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
+use self::triangle::Lit;
 use super::{Geometry, Moment, Place, Placement};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 
 pub use emission::{EmissionNumbers, Emitted, Emitters, Lamp};
+pub use quad::Quad;
 
 /// A source of light of the stage.
 #[derive(Debug)]
@@ -29,6 +33,8 @@ pub enum LightSource {
         area: f64,
         /// For meshes: how a triangle is chosen, by its area in the world.
         triangles: Option<Alias>,
+        /// For sheared parallelograms: what they are.
+        quad: Option<Quad>,
     },
     /// A light at a point or far away.
     Free {
@@ -168,10 +174,10 @@ impl Moment<'_> {
         let chosen = self.lights.choose(u[0])?;
         let u = [u[1], u[2]];
         let found = match chosen.source {
-            LightSource::Surface { object, placement, area, triangles } => {
-                let triangle =
-                    triangles.as_ref().map(|choice| index(choice.sample(chosen.u).index));
-                let light = SurfaceLight { object, placement: *placement, area: *area, triangle };
+            LightSource::Surface { object, placement, area, triangles, quad } => {
+                let triangles = triangles.as_ref().map(|choice| (choice, chosen.u));
+                let (placement, area, quad) = (*placement, *area, quad.as_ref());
+                let light = SurfaceLight { object, placement, area, triangles, quad };
                 self.sample_surface(&light, from, palette, u, scratch)
             }
             LightSource::Free { object, place } => {
@@ -230,20 +236,32 @@ impl Moment<'_> {
         let geometry = &self.geometries[placement.geometry as usize];
         let mut room = None;
         let transform = placement.place.at(self.time, &mut room);
-        let mut sample = match (&**geometry, light.triangle) {
-            (Geometry::Mesh(mesh), Some(triangle)) => {
-                let at = luxel_sdk::sampling::uniform_triangle(u);
-                let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                let surface = mesh.surface(triangle, at, self.film.precision, self.time);
+        // Density per solid angle, where that is how a point is found.
+        let mut direct = None;
+        let mut sample = match (&**geometry, light.triangles) {
+            (Geometry::Mesh(mesh), Some((choice, choose))) => {
+                let (from, time) = (from.p + from.lift, self.time);
+                let point = Lit { mesh, choice, transform, from, time }.sample(u, choose);
+                direct = point.pdf;
+                let precision = self.film.precision;
+                let surface = mesh.surface(point.triangle, point.at, precision, time);
                 // The world's density in the mesh's own frame, when it was chosen by its area.
-                let growth = mesh.growth(triangle, self.time);
+                let growth = mesh.growth(point.triangle, time);
                 let pdf = placement.area_scale(surface.ng) / (light.area * growth);
                 Some(ShapeSample { surface, pdf })
             }
             (Geometry::Analytic(shape), _) => {
-                let p = from.p + from.lift;
-                let local = transform.map_or(p, |transform| transform.inverse_point(p));
-                shape.object().fixed().shape().sample(Some(local), u)
+                let (shape, from) = (shape.object().fixed().shape(), from.p + from.lift);
+                let local = transform.map_or(from, |transform| transform.inverse_point(from));
+                match light.quad.and_then(|quad| quad.seen(transform, from)) {
+                    Some(seen) => {
+                        direct = Some(seen.pdf());
+                        let hit = Hit { t: 0.0, at: seen.sample(u), face: 0 };
+                        let surface = shape.surface(&Ray::new(local, DVec3::X), &hit);
+                        Some(ShapeSample { surface, pdf: 1.0 })
+                    }
+                    None => shape.sample(Some(local), u),
+                }
             }
             (Geometry::Mesh(_), None) => None,
         };
@@ -258,11 +276,13 @@ impl Moment<'_> {
         let to = surface.p - (from.p + from.lift);
         let distance2 = to.length_squared();
         let cos_o = -surface.ng.dot(ray.d);
-        let pdf = sample.pdf * distance2 / cos_o.abs();
+        let (pdf, per_pdf) = match direct {
+            Some(pdf) => (pdf, pdf.recip()),
+            None => (sample.pdf * distance2 / cos_o.abs(), cos_o.abs() / (sample.pdf * distance2)),
+        };
         if !(pdf > 0.0 && pdf.is_finite()) {
             return None;
         }
-        let per_pdf = cos_o.abs() / (sample.pdf * distance2);
         let uv = surface.uv.as_vec2();
         let at = Site { p: surface.p, uv, palette, color: None };
         let resolved = light.object.resolve(&at, scratch).light();
@@ -285,7 +305,8 @@ impl Moment<'_> {
         scratch: &Scratch,
     ) -> (Spectrum, f32) {
         let Some(light) = placement.light else { return (Spectrum::ZERO, 0.0) };
-        let LightSource::Surface { object, area, .. } = &self.lights.sources[light as usize] else {
+        let source = &self.lights.sources[light as usize];
+        let LightSource::Surface { object, area, .. } = source else {
             return (Spectrum::ZERO, 0.0);
         };
         let uv = surface.uv.as_vec2();
@@ -296,37 +317,52 @@ impl Moment<'_> {
         if le.is_black() {
             return (le, 0.0);
         }
-        let pdf_area = self.surface_pdf((placement, face), *area, surface, from);
-        let pdf = pdf_area * surface.p.distance_squared(from) / cos_o.abs();
+        let pdf = self
+            .surface_pdf((placement, face), source, surface, from)
+            .unwrap_or_else(|area| area * surface.p.distance_squared(from) / cos_o.abs());
         (le, narrow(pdf * self.lights.chance(light)))
     }
 
-    /// Area density, in the world, with which a point of a shining surface is sampled.
+    /// Density per solid angle with which a point of a shining surface is sampled from there.
+    ///
+    /// # Errors
+    /// The density per area of the world, where that is how it is sampled.
     fn surface_pdf(
         self,
         (placement, face): (&Placement, u32),
-        area: f64,
+        source: &LightSource,
         surface: &Surface,
         from: DVec3,
-    ) -> f64 {
+    ) -> Result<f64, f64> {
+        let LightSource::Surface { area, triangles, quad, .. } = source else { return Ok(0.0) };
         let place = &placement.place;
         let mut room = None;
         let transform = place.at(self.time, &mut room);
         let shape = match &*self.geometries[placement.geometry as usize] {
             Geometry::Analytic(shape) => shape.object().fixed().shape(),
             Geometry::Mesh(mesh) => {
+                let Some(choice) = triangles else { return Ok(0.0) };
+                let lit = Lit { mesh, choice, transform, from, time: self.time };
+                if let Some(pdf) = lit.pdf(face) {
+                    return Ok(pdf);
+                }
                 let area = area * mesh.growth(face, self.time);
-                let Some(now) = transform.filter(|_| place.is_moving()) else { return 1.0 / area };
+                let Some(now) = transform.filter(|_| place.is_moving()) else {
+                    return Err(1.0 / area);
+                };
                 let ng = now.inverse_normal(surface.ng).normalize();
-                return placement.area_scale(ng) / (area * now.area_scale(ng));
+                return Err(placement.area_scale(ng) / (area * now.area_scale(ng)));
             }
         };
-        let Some(transform) = transform else { return shape.pdf(Some(from), surface) };
+        if let Some(seen) = quad.as_ref().and_then(|quad| quad.seen(transform, from)) {
+            return Ok(seen.pdf());
+        }
+        let Some(transform) = transform else { return Err(shape.pdf(Some(from), surface)) };
         let mut local = *surface;
         local.p = transform.inverse_point(surface.p);
         local.ng = transform.inverse_normal(surface.ng).normalize();
         let pdf = shape.pdf(Some(transform.inverse_point(from)), &local);
-        pdf / transform.area_scale(local.ng)
+        Err(pdf / transform.area_scale(local.ng))
     }
 
     /// What a ray that leaves the scene along `d` finds, and the density with which `sample_light`
@@ -356,8 +392,9 @@ struct SurfaceLight<'a> {
     object: &'a Object,
     placement: u32,
     area: f64,
-    /// The chosen triangle of a mesh.
-    triangle: Option<u32>,
+    /// For meshes: how a triangle is chosen by its area, and a random number to choose by.
+    triangles: Option<(&'a Alias, f64)>,
+    quad: Option<&'a Quad>,
 }
 
 impl FoundLight {

@@ -21,6 +21,7 @@ mod placement;
 mod settings;
 mod shining;
 mod trace;
+mod turning;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -40,7 +41,7 @@ pub use build::{Built, Unbuilt, build, build_watched};
 pub use eye::{Eye, Seen};
 pub use features::Features;
 pub use geometry::{Geometry, Mesh};
-pub use lights::{EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights};
+pub use lights::{EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights, Quad};
 pub use media::{Crossing, MediumStack};
 pub use moment::Moment;
 pub use motion::Motion;

@@ -3,6 +3,7 @@
 use luxel_sdk::num::Bounds3;
 use luxel_sdk::sampling::{Alias, sobol_owen_2d};
 
+use super::lights::Quad;
 use super::{Geometry, Placement};
 use crate::cast::index;
 use crate::diag::{Diagnostic, Span};
@@ -23,6 +24,12 @@ pub(super) fn measured(geometry: &Geometry, placement: &Placement) -> (f64, Opti
     };
     let areas: Vec<f64> = (0..index(mesh.triangles().indices.len())).map(area).collect();
     (areas.iter().sum(), Alias::new(&areas).ok())
+}
+
+/// The parallelogram of a shape that its placement shears.
+pub(super) fn sheared(geometry: &Geometry, placement: &Placement) -> Option<Quad> {
+    let Geometry::Analytic(shape) = geometry else { return None };
+    Quad::new(shape.object().fixed().shape(), placement.place.first())
 }
 
 /// What is to be told of a shape that shines from so large an area.

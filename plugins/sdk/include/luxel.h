@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0xb043fbe59c60b04full
+#define LUXEL_LAYOUT_HASH 0xa675972eafef51e2ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -146,6 +146,19 @@ typedef struct {
     luxel_surface surface;
     double pdf;
 } luxel_shape_sample;
+
+/* A flat piece: its middle, and its edges from end to end. */
+typedef struct {
+    luxel_dvec3 centre;
+    luxel_dvec3 u;
+    luxel_dvec3 v;
+} luxel_parallelogram;
+
+/* Derivatives of the unit shading normal by the surface coordinates. */
+typedef struct {
+    luxel_dvec3 dn_du;
+    luxel_dvec3 dn_dv;
+} luxel_normal_derivatives;
 
 /* f·|cos_i| and the density of finding the direction. */
 typedef struct {
@@ -282,6 +295,7 @@ typedef struct {
     luxel_maybe_direct direct;
     luxel_maybe_scatter scatter;
     luxel_maybe_sight sight;
+    float curvature;
 } luxel_arrival;
 
 /* A path in flight. */
@@ -614,6 +628,10 @@ typedef struct {
     luxel_status (*intersect_part)(const void *at, uint32_t part, const luxel_ray *ray, luxel_hit *out);
     /* At least how far away the surface is, negative inside; nothing where that is not known. */
     luxel_status (*distance)(const void *at, const luxel_dvec3 *p, double *out);
+    /* The parallelogram that it is, where it is nothing else. */
+    luxel_status (*parallelogram)(const void *at, luxel_parallelogram *out);
+    /* How the shading normal turns at a point; nothing where that is not known. */
+    luxel_status (*normal_derivatives)(const void *at, const luxel_hit *hit, const luxel_surface *point, luxel_normal_derivatives *out);
 } luxel_shape_table;
 
 /* A shape of which another one is made. */
@@ -679,7 +697,7 @@ typedef struct {
     /* Bytes of this table. */
     size_t size;
     /* What the host prepares at each arrival, as flags: 1 emission, 2 a light sample, 4 a
-       scattering sample, 8 where the camera sees it. Of what owns the picture: for all its paths. */
+       scattering sample, 8 where the camera sees it, 16 curvature. Of what owns the picture: for all its paths. */
     luxel_status (*wants)(const void *at, uint32_t *out);
     /* What the lanes of its light mean: 0 values as they are, 1 linear sRGB. */
     luxel_status (*output)(const void *at, uint32_t *out);
@@ -841,6 +859,15 @@ LUXEL_CHECK(sizeof(luxel_shape_sample) == 168, "size of luxel_shape_sample");
 LUXEL_CHECK(_Alignof(luxel_shape_sample) == 8, "alignment of luxel_shape_sample");
 LUXEL_CHECK(offsetof(luxel_shape_sample, surface) == 0, "luxel_shape_sample.surface");
 LUXEL_CHECK(offsetof(luxel_shape_sample, pdf) == 160, "luxel_shape_sample.pdf");
+LUXEL_CHECK(sizeof(luxel_parallelogram) == 72, "size of luxel_parallelogram");
+LUXEL_CHECK(_Alignof(luxel_parallelogram) == 8, "alignment of luxel_parallelogram");
+LUXEL_CHECK(offsetof(luxel_parallelogram, centre) == 0, "luxel_parallelogram.centre");
+LUXEL_CHECK(offsetof(luxel_parallelogram, u) == 24, "luxel_parallelogram.u");
+LUXEL_CHECK(offsetof(luxel_parallelogram, v) == 48, "luxel_parallelogram.v");
+LUXEL_CHECK(sizeof(luxel_normal_derivatives) == 48, "size of luxel_normal_derivatives");
+LUXEL_CHECK(_Alignof(luxel_normal_derivatives) == 8, "alignment of luxel_normal_derivatives");
+LUXEL_CHECK(offsetof(luxel_normal_derivatives, dn_du) == 0, "luxel_normal_derivatives.dn_du");
+LUXEL_CHECK(offsetof(luxel_normal_derivatives, dn_dv) == 24, "luxel_normal_derivatives.dn_dv");
 LUXEL_CHECK(sizeof(luxel_eval) == 32, "size of luxel_eval");
 LUXEL_CHECK(_Alignof(luxel_eval) == 16, "alignment of luxel_eval");
 LUXEL_CHECK(offsetof(luxel_eval, f) == 0, "luxel_eval.f");
@@ -922,7 +949,7 @@ LUXEL_CHECK(sizeof(luxel_maybe_scatter) == 64, "size of luxel_maybe_scatter");
 LUXEL_CHECK(_Alignof(luxel_maybe_scatter) == 16, "alignment of luxel_maybe_scatter");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, given) == 0, "luxel_maybe_scatter.given");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, value) == 16, "luxel_maybe_scatter.value");
-LUXEL_CHECK(sizeof(luxel_arrival) == 480, "size of luxel_arrival");
+LUXEL_CHECK(sizeof(luxel_arrival) == 496, "size of luxel_arrival");
 LUXEL_CHECK(_Alignof(luxel_arrival) == 16, "alignment of luxel_arrival");
 LUXEL_CHECK(offsetof(luxel_arrival, kind) == 0, "luxel_arrival.kind");
 LUXEL_CHECK(offsetof(luxel_arrival, p) == 8, "luxel_arrival.p");
@@ -940,11 +967,12 @@ LUXEL_CHECK(offsetof(luxel_arrival, le_pdf) == 192, "luxel_arrival.le_pdf");
 LUXEL_CHECK(offsetof(luxel_arrival, direct) == 208, "luxel_arrival.direct");
 LUXEL_CHECK(offsetof(luxel_arrival, scatter) == 320, "luxel_arrival.scatter");
 LUXEL_CHECK(offsetof(luxel_arrival, sight) == 384, "luxel_arrival.sight");
-LUXEL_CHECK(sizeof(luxel_lane) == 512, "size of luxel_lane");
+LUXEL_CHECK(offsetof(luxel_arrival, curvature) == 480, "luxel_arrival.curvature");
+LUXEL_CHECK(sizeof(luxel_lane) == 528, "size of luxel_lane");
 LUXEL_CHECK(_Alignof(luxel_lane) == 16, "alignment of luxel_lane");
 LUXEL_CHECK(offsetof(luxel_lane, at) == 0, "luxel_lane.at");
-LUXEL_CHECK(offsetof(luxel_lane, l) == 480, "luxel_lane.l");
-LUXEL_CHECK(offsetof(luxel_lane, numbers) == 496, "luxel_lane.numbers");
+LUXEL_CHECK(offsetof(luxel_lane, l) == 496, "luxel_lane.l");
+LUXEL_CHECK(offsetof(luxel_lane, numbers) == 512, "luxel_lane.numbers");
 LUXEL_CHECK(sizeof(luxel_onward) == 64, "size of luxel_onward");
 LUXEL_CHECK(_Alignof(luxel_onward) == 8, "alignment of luxel_onward");
 LUXEL_CHECK(offsetof(luxel_onward, ray) == 0, "luxel_onward.ray");

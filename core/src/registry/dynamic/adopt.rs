@@ -41,8 +41,16 @@ pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, Stri
     }
     match kind {
         Kind::Shape => {
-            const OPTIONAL: [&str; 6] =
-                ["is_closed", "mesh", "parts", "part_bounds", "intersect_part", "distance"];
+            const OPTIONAL: [&str; 8] = [
+                "is_closed",
+                "mesh",
+                "parts",
+                "part_bounds",
+                "intersect_part",
+                "distance",
+                "parallelogram",
+                "normal_derivatives",
+            ];
             table!(ShapeTable, Some((ShapeTable::of::<Without>(), &OPTIONAL)))
         }
         Kind::Material => table!(MaterialTable, Some((MaterialTable::of::<Without>(), &["needs"]))),

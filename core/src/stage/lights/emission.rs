@@ -124,7 +124,7 @@ impl Moment<'_> {
         (u, left): (&EmissionNumbers, f64),
         scratch: &Scratch,
     ) -> Option<Emitted> {
-        let LightSource::Surface { object, placement: place, area, triangles } = source else {
+        let LightSource::Surface { object, placement: place, area, triangles, .. } = source else {
             return None;
         };
         let placement = &self.placements[*place as usize];

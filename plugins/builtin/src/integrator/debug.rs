@@ -22,9 +22,12 @@ pub(crate) enum Show {
     Material,
     /// Steps that tracing took.
     Cost,
+    /// Mean curvature per metre: red where the surface bulges towards the camera, blue where it is
+    /// hollow; smooth meshes by their normals. Black is flat, or unknown.
+    Curvature,
 }
 
-/// Shows normals, coordinates, distances, materials or cost in place of light. For `film rgb`:
+/// Shows normals, coordinates, distances, materials, cost or curvature in place of light. For `film rgb`:
 /// spectral films read the numbers as spectra.
 ///
 /// ```scene
@@ -36,7 +39,7 @@ pub(crate) struct Debug {
     /// What is shown.
     #[param(choice, default = Show::ShadingNormals)]
     show: Show,
-    /// Factor on depth and cost.
+    /// Factor on depth, cost and curvature, which count metres, steps and reciprocal metres.
     #[param(default = 1.0)]
     scale: f32,
 }
@@ -53,6 +56,12 @@ fn colour(index: u32) -> Vec3 {
     Vec3::new(f32::from(r), f32::from(g), f32::from(b)) / 255.0
 }
 
+/// Red for what bulges to the side of the viewer, blue for what is hollow.
+fn bend(at: &Arrival, scale: f32) -> Vec3 {
+    let seen = if at.wo.dot(at.ns) < 0.0 { -at.curvature } else { at.curvature } * scale;
+    Vec3::new(seen.max(0.0), 0.0, (-seen).max(0.0))
+}
+
 impl Debug {
     #[expect(clippy::cast_possible_truncation, reason = "rounds; a picture for the eye")]
     fn value(self, at: &Arrival) -> Option<Vec3> {
@@ -66,6 +75,7 @@ impl Debug {
             Show::Uv => (at.uv - at.uv.floor()).extend(0.0),
             Show::Depth => Vec3::splat(at.t as f32 * self.scale),
             Show::Material | Show::Cost => colour(at.material),
+            Show::Curvature => bend(at, self.scale),
         })
     }
 }
@@ -74,7 +84,7 @@ impl PathIntegrator for Debug {
     type State = ();
 
     fn wants(&self) -> Wants {
-        Wants::POSITION
+        if self.show == Show::Curvature { Wants::CURVATURE } else { Wants::POSITION }
     }
 
     fn start(&self, job: &Job, ask: &mut Ask<'_>) {

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
@@ -127,6 +127,10 @@ impl Shape for Box {
     fn distance(&self, p: DVec3) -> Option<f64> {
         let out = (p - self.center).abs() - 0.5 * self.size;
         Some(out.max(DVec3::ZERO).length() + out.max_element().min(0.0))
+    }
+
+    fn normal_derivatives(&self, _hit: &Hit, _at: &Surface) -> Option<NormalDerivatives> {
+        Some(NormalDerivatives::FLAT)
     }
 }
 

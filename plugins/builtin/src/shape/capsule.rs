@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64, sphere_roots};
 use luxel_sdk::params::Fault;
 
@@ -125,6 +125,11 @@ impl Shape for Capsule {
     fn distance(&self, p: DVec3) -> Option<f64> {
         let q = local(&self.frame, p - self.base);
         Some((q - DVec3::Z * q.z.clamp(0.0, self.height)).length() - self.radius)
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        let along = if hit.face == SIDE { DVec3::ZERO } else { at.dp_dv / self.radius };
+        Some(NormalDerivatives { dn_du: at.dp_du / self.radius, dn_dv: along })
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3, Vec3Swizzles as _};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 use luxel_sdk::sampling::disk_concentric;
@@ -150,6 +150,18 @@ impl Shape for Cone {
 
     fn is_closed(&self) -> bool {
         self.caps
+    }
+
+    /// None at an apex.
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        if hit.face != SIDE {
+            return Some(NormalDerivatives::FLAT);
+        }
+        // The normal leans outwards by as much all around.
+        let radius = self.radius + self.slope * hit.at.y;
+        let dn_du = at.dp_du / (radius * 1f64.hypot(self.slope));
+        let told = radius > 0.0 && dn_du.is_finite();
+        told.then_some(NormalDerivatives { dn_du, dn_dv: DVec3::ZERO })
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64, sphere_roots};
 use luxel_sdk::params::Fault;
 use luxel_sdk::sampling::disk_concentric;
@@ -117,6 +117,11 @@ impl Shape for Cylinder {
 
     fn is_closed(&self) -> bool {
         self.caps
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        let round = NormalDerivatives { dn_du: at.dp_du / self.radius, dn_dv: DVec3::ZERO };
+        Some(if hit.face == SIDE { round } else { NormalDerivatives::FLAT })
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 use luxel_sdk::sampling::disk_concentric;
@@ -99,6 +99,10 @@ impl Shape for Disk {
 
     fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
         self.area().recip()
+    }
+
+    fn normal_derivatives(&self, _hit: &Hit, _at: &Surface) -> Option<NormalDerivatives> {
+        Some(NormalDerivatives::FLAT)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
@@ -84,6 +84,10 @@ impl Shape for Plane {
 
     fn area(&self) -> f64 {
         f64::INFINITY
+    }
+
+    fn normal_derivatives(&self, _hit: &Hit, _at: &Surface) -> Option<NormalDerivatives> {
+        Some(NormalDerivatives::FLAT)
     }
 }
 

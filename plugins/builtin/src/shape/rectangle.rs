@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
@@ -132,6 +132,14 @@ impl Shape for Rectangle {
 
     fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
         self.density(self.seen_from(from).as_ref(), at.p)
+    }
+
+    fn parallelogram(&self) -> Option<Parallelogram> {
+        Some(Parallelogram { centre: self.center, u: self.u, v: self.v })
+    }
+
+    fn normal_derivatives(&self, _hit: &Hit, _at: &Surface) -> Option<NormalDerivatives> {
+        Some(NormalDerivatives::FLAT)
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3, Vec3Swizzles as _};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
@@ -113,6 +113,12 @@ impl Shape for Torus {
     fn distance(&self, p: DVec3) -> Option<f64> {
         let q = local(&self.frame, p - self.center);
         Some((q.xy().length() - self.radius).hypot(q.z) - self.minor)
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        let out = hit.at.y.cos();
+        let dn_du = at.dp_du * (out / (self.radius + self.minor * out));
+        Some(NormalDerivatives { dn_du, dn_dv: at.dp_dv / self.minor })
     }
 }
 

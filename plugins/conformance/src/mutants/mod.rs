@@ -16,6 +16,7 @@ mod paths;
 mod pattern;
 mod picture;
 mod plate;
+mod turning;
 mod settings;
 mod shape;
 
@@ -54,6 +55,7 @@ pub fn mutants() -> Vec<Mutant> {
         glass::MUTANTS,
         shape::MUTANTS,
         plate::MUTANTS,
+        turning::MUTANTS,
         light::MUTANTS,
         lamps::MUTANTS,
         dawn::MUTANTS,

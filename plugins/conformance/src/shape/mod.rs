@@ -2,6 +2,7 @@
 
 mod placed;
 mod sampling;
+mod turning;
 
 use glam::DVec3;
 use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
@@ -54,6 +55,8 @@ fn look_at(subject: &Subject<'_>, set: &Set, rng: &mut Rng, judge: &mut Judge) {
         look.rays(rng, judge);
         look.scales(rng, judge);
         look.distances(rng, judge);
+        look.turning(rng, judge);
+        look.parallelogram(rng, judge);
         if !shape.area().is_finite() {
             let none = shape.sample(None, [0.5; 2]).is_none();
             judge.holds("what cannot shine has no samples", none, || set.label.clone());

@@ -16,8 +16,8 @@ use super::{
 use crate::color::{Spectrum, Wavelengths};
 use crate::kind::{
     Arrival, Ask, CameraRay, Direct, Escaped, Eval, FreeFlight, Hit, Job, Kind, Lane, LightQuery,
-    LightSample, Onward, Queue, Raster, Requests, Sample, SampleAt, Scatter, Shadow, ShapeSample,
-    Sight, Surface, TexturePoint,
+    LightSample, NormalDerivatives, Onward, Parallelogram, Queue, Raster, Requests, Sample,
+    SampleAt, Scatter, Shadow, ShapeSample, Sight, Surface, TexturePoint,
 };
 use crate::num::{Bounds3, Ray};
 use crate::params::{ComplexIor, Emission, Look, Maybe, Text};
@@ -60,6 +60,10 @@ describe! { PLAIN, PLAIN_C {
     Surface => "luxel_surface" { p, p_err, ng, ns, uv, dp_du, dp_dv }
     /// A sampled point of a surface, and its density per m².
     ShapeSample => "luxel_shape_sample" { surface, pdf }
+    /// A flat piece: its middle, and its edges from end to end.
+    Parallelogram => "luxel_parallelogram" { centre, u, v }
+    /// Derivatives of the unit shading normal by the surface coordinates.
+    NormalDerivatives => "luxel_normal_derivatives" { dn_du, dn_dv }
     /// f·|cos_i| and the density of finding the direction.
     Eval => "luxel_eval" { f, pdf }
     /// A sampled direction. Lobes: 1 delta, 2 transmission, 4 dispersive.
@@ -99,6 +103,7 @@ describe! { PLAIN, PLAIN_C {
     /// A point that a path arrived at. Kinds: 0 escaped, 1 surface, 2 medium.
     Arrival => "luxel_arrival" {
         kind, p, p_err, ng, ns, lift, uv, t, wo, material, steps, le, le_pdf, direct, scatter, sight,
+        curvature,
     }
     /// A path in flight.
     Lane => "luxel_lane" { at, l, numbers }

@@ -28,6 +28,8 @@ impl Wants {
     pub const SCATTER: Self = Self(4);
     /// Where the camera would see the place: for paths that come from lights.
     pub const SIGHT: Self = Self(8);
+    /// How much the surface bends.
+    pub const CURVATURE: Self = Self(16);
 }
 flag_set!(Wants);
 
@@ -137,6 +139,9 @@ pub struct Arrival {
     pub scatter: Maybe<Scatter>,
     /// Where the camera sees it, if it does.
     pub sight: Maybe<Sight>,
+    /// Mean curvature of the smooth surface, m⁻¹, above 0 where it bulges to the side of `ns`; 0 where
+    /// the shape does not know. Of no meaning unless it is wanted, and at a surface.
+    pub curvature: f32,
 }
 
 impl Arrival {

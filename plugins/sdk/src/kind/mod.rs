@@ -30,7 +30,9 @@ pub use medium::{FreeFlight, Medium};
 pub use phase::Phase;
 pub use picture::{Picture, PictureIntegrator, PictureJob};
 pub use sampler::{SampleAt, Sampler, Samples};
-pub use shape::{Hit, Later, Shape, ShapeSample, Surface, TriangleMesh};
+pub use shape::{
+    Hit, Later, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface, TriangleMesh,
+};
 pub use sight::Sight;
 pub use texture::{Output, Texture, TexturePoint};
 

@@ -70,6 +70,49 @@ pub struct ShapeSample {
     pub pdf: f64,
 }
 
+/// A flat piece between two pairs of parallel edges, in the frame of the shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Parallelogram {
+    /// Its middle.
+    pub centre: DVec3,
+    /// One edge, from end to end.
+    pub u: DVec3,
+    /// The other edge, from end to end.
+    pub v: DVec3,
+}
+
+/// How the shading normal of a surface turns along its coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct NormalDerivatives {
+    /// ∂ns/∂u of the unit shading normal by the u of `Surface::uv`.
+    pub dn_du: DVec3,
+    /// ∂ns/∂v.
+    pub dn_dv: DVec3,
+}
+
+impl NormalDerivatives {
+    /// Of a flat surface, whose normal does not turn.
+    pub const FLAT: Self = Self { dn_du: DVec3::ZERO, dn_dv: DVec3::ZERO };
+
+    /// The same in the frame that a transform leads to, for the point whose unit shading normal was
+    /// `ns` in the frame that it leads from: the derivatives of the normal M⁻ᵀ·ns at unit length. A
+    /// mirroring one turns `dn_dv`, as `Surface::carried` turns `dp_dv`.
+    #[must_use]
+    pub fn carried(&self, ns: DVec3, transform: &Transform) -> Self {
+        let normal = transform.normal(ns);
+        let length = normal.length();
+        let n = normal / length;
+        let turned = |d: DVec3| {
+            let d = transform.normal(d) / length;
+            d - n * n.dot(d)
+        };
+        let turn = if transform.swaps_handedness() { -1.0 } else { 1.0 };
+        Self { dn_du: turned(self.dn_du), dn_dv: turned(self.dn_dv) * turn }
+    }
+}
+
 /// Triangles that the host takes over: it builds their tree and intersects them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
@@ -205,6 +248,22 @@ pub trait Shape: Send + Sync {
     /// point and of the bounds. `None` where the shape knows no such function, at any point.
     fn distance(&self, p: DVec3) -> Option<f64> {
         let _ = p;
+        None
+    }
+
+    /// The parallelogram that it is, where it is nothing else. `surface` then finds, by the hit alone
+    /// and for any place, the point `centre + at.x·u + at.y·v` with `at` in [−½, ½]²: of a lamp that
+    /// shears in its placement, the host chooses points so that light is found evenly.
+    fn parallelogram(&self) -> Option<Parallelogram> {
+        None
+    }
+
+    /// How the shading normal turns at a point that `surface` found by this hit, in the shape's frame.
+    ///
+    /// Exact to rounding, and finite. `None` where the shape does not know it, or where the normal has
+    /// no derivative, as at an apex.
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        let _ = (hit, at);
         None
     }
 }

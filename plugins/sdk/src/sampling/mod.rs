@@ -15,6 +15,7 @@ mod piecewise2;
 mod rng;
 mod sobol;
 mod sphere;
+mod spherical_triangle;
 mod weights;
 
 pub use alias::{Alias, AliasSample};
@@ -30,4 +31,5 @@ pub use sphere::{
     HEMISPHERE_PDF, SPHERE_PDF, cosine_hemisphere, cosine_hemisphere_pdf, one_minus_cos,
     one_minus_cos_from_sin2, uniform_cone, uniform_cone_pdf, uniform_hemisphere, uniform_sphere,
 };
+pub use spherical_triangle::SphericalTriangle;
 pub use weights::WeightError;

@@ -3,7 +3,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use luxel_sdk::abi::{MeshSink, ShapeTable, Triangles};
-use luxel_sdk::kind::{Hit, Later, Shape, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::kind::{
+    Hit, Later, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface, TriangleMesh,
+};
 use luxel_sdk::num::{Bounds3, Ray};
 
 use super::Head;
@@ -170,6 +172,31 @@ impl Shape for RemoteShape {
             return Some(distance);
         }
         self.0.wrong("gave a distance that is no number");
+        None
+    }
+
+    fn parallelogram(&self) -> Option<Parallelogram> {
+        // SAFETY: as above.
+        let found = self.0.found(unsafe { self.table().parallelogram(self.0.at()) })?;
+        let Parallelogram { centre, u, v } = found;
+        if centre.is_finite() && u.is_finite() && v.is_finite() {
+            return Some(found);
+        }
+        self.0.wrong("gave a parallelogram that is not finite");
+        None
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        if self.0.is_poisoned() {
+            return None;
+        }
+        // SAFETY: as above.
+        let found =
+            self.0.found(unsafe { self.table().normal_derivatives(self.0.at(), hit, at) })?;
+        if found.dn_du.is_finite() && found.dn_dv.is_finite() {
+            return Some(found);
+        }
+        self.0.wrong("gave derivatives of a normal that are not finite");
         None
     }
 

@@ -123,7 +123,7 @@ table! {
     /// How light is followed: what happens when a path begins and when it arrives.
     PathIntegrator => IntegratorTable "luxel_integrator_table" {
         /// What the host prepares at each arrival, as flags: 1 emission, 2 a light sample, 4 a
-        /// scattering sample, 8 where the camera sees it. Of what owns the picture: for all its paths.
+        /// scattering sample, 8 where the camera sees it, 16 curvature. Of what owns the picture: for all its paths.
         fn wants(integrator) -> Wants { Some(integrator.wants()) }
         /// What the lanes of its light mean: 0 values as they are, 1 linear sRGB.
         fn output(integrator) -> u32 { Some(integrator.output() as u32) }

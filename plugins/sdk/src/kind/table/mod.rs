@@ -18,8 +18,8 @@ mod shape;
 mod texture;
 
 use super::{
-    CameraRay, Escaped, Eval, FreeFlight, Hit, LightSample, Needs, Raster, Sample, ShapeSample,
-    Surface, Wants,
+    CameraRay, Escaped, Eval, FreeFlight, Hit, LightSample, Needs, NormalDerivatives,
+    Parallelogram, Raster, Sample, ShapeSample, Surface, Wants,
 };
 use crate::num::Bounds3;
 use crate::wire::{put_fields, put_whole};
@@ -148,6 +148,8 @@ put_whole!(
     PhaseRef<'static>,
     SceneSphere,
     Raster,
+    Parallelogram,
+    NormalDerivatives,
 );
 put_fields! {
     Eval { f, pdf }

@@ -3,7 +3,7 @@ use std::marker::PhantomData;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::table;
-use crate::kind::{Hit, Later, Shape, ShapeSample, Surface};
+use crate::kind::{Hit, Later, NormalDerivatives, Parallelogram, Shape, ShapeSample, Surface};
 use crate::num::{Bounds3, Ray};
 use crate::wire::{Slice, expect};
 
@@ -94,6 +94,12 @@ table! {
         fn intersect_part(shape, part: u32, ray: &Ray) -> Hit { shape.intersect_part(part, ray) }
         /// At least how far away the surface is, negative inside; nothing where that is not known.
         fn distance(shape, p: &DVec3) -> f64 { shape.distance(*p) }
+        /// The parallelogram that it is, where it is nothing else.
+        fn parallelogram(shape) -> Parallelogram { shape.parallelogram() }
+        /// How the shading normal turns at a point; nothing where that is not known.
+        fn normal_derivatives(shape, hit: &Hit, point: &Surface) -> NormalDerivatives {
+            shape.normal_derivatives(hit, point)
+        }
     }
 }
 
@@ -180,5 +186,15 @@ impl Shape for ShapeRef<'_> {
     fn distance(&self, p: DVec3) -> Option<f64> {
         // SAFETY: as above.
         expect(unsafe { self.table.distance(self.at, &p) })
+    }
+
+    fn parallelogram(&self) -> Option<Parallelogram> {
+        // SAFETY: as above.
+        expect(unsafe { self.table.parallelogram(self.at) })
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        // SAFETY: as above.
+        expect(unsafe { self.table.normal_derivatives(self.at, hit, at) })
     }
 }

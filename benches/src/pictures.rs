@@ -8,7 +8,6 @@ use luxel_core::render::{Control, Options, render};
 use luxel_core::stage::Stage;
 
 use crate::ply::grid;
-use crate::process::here;
 use crate::scene::{linked, stage_of, stage_with};
 use crate::series::Series;
 
@@ -25,18 +24,14 @@ const SIDE: u32 = 1024;
 /// # Errors
 /// A scene does not build.
 pub(crate) fn run() -> Result<(), String> {
-    let read = |name: &str| {
-        let path = here().join("scenes").join(name);
-        std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))
-    };
-    let cornell = read("cornell_rgb.scene")?.replace("(512, 512)", "(256, 256)");
-    let waves = read("waves.scene")?;
+    let cornell = include_str!("../scenes/cornell_rgb.scene").replace("(512, 512)", "(256, 256)");
+    let waves = include_str!("../scenes/waves.scene");
     let files = MemoryFiles::default().with("waves.ply", grid(SIDE).as_slice());
     let registry = linked();
     let box_of = |text: &str| stage_of(&registry, text);
     let stages = [
         ("Cornell box", box_of(&cornell)?),
-        ("2 M triangles", stage_with(&registry, files, &waves)?),
+        ("2 M triangles", stage_with(&registry, files, waves)?),
     ];
     println!("rays of whole pictures, one thread, Mpaths/s: best of {ROUNDS} rounds, interleaved");
     println!(

@@ -1,29 +1,26 @@
 //! From a scene to a stage.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::DVec3;
 use luxel_sdk::kind::{Kind, LightForm, Wants};
-use luxel_sdk::num::{Bounds3, Transform};
+use luxel_sdk::num::Transform;
 
 use super::analytic::Analytic;
 use super::flatten::{Flat, flatten};
 use super::geometry::mesh_part;
 use super::lights::LightSource;
+use super::made::{Made, Settings};
 use super::motion::Motion;
-use super::{
-    Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Mesh, Place, Placement, Skin, Stage,
-};
-use super::{failures, features, import, nesting, shining};
-use crate::accel::{BuildError, TopBvh, Watch};
+use super::{Cache, Film, Geometry, Mesh, Place, Placement, Skin, Stage};
+use super::{failures, features, import, shining};
+use crate::accel::{BuildError, Watch};
 use crate::cast::{index, whole};
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
-use crate::object::{Builder, ColorMode, Object, Objects};
+use crate::object::{Builder, Object};
 use crate::registry::Registry;
 use crate::registry::dynamic::{FAILED, remote};
-use crate::scene::{Hash, Node, NodeId, Pose, Scene, Value};
+use crate::scene::{Node, NodeId, Pose, Scene, Value};
 
 /// A stage with the warnings that arose.
 #[derive(Debug)]
@@ -96,7 +93,7 @@ pub fn build_watched(
     let (made, objects) = (maker.made, maker.builder.objects);
     match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
-            let stage = finish(made, settings, objects, (scene, film, mode), watch);
+            let stage = made.finish(settings, objects, (scene, film, mode), watch);
             let stage = stage.ok_or(Unbuilt::Cancelled)?;
             let mut found = stage.failures();
             found.extend(unseen(&stage));
@@ -111,32 +108,6 @@ pub fn build_watched(
             Err(Unbuilt::Faulty(diagnostics))
         }
     }
-}
-
-/// The objects that a scene has one of.
-struct Settings {
-    camera: Arc<Object>,
-    integrator: Arc<Object>,
-    sampler: Arc<Object>,
-    filter: Arc<Object>,
-    outside: Option<u32>,
-    camera_place: Place,
-}
-
-/// Lists in the making, each with the index of what is already in it.
-#[derive(Default)]
-struct Made {
-    geometries: Vec<Arc<Geometry>>,
-    geometry_of: BTreeMap<NodeId, u32>,
-    meshes: BTreeMap<Hash, (Arc<Object>, Arc<Geometry>)>,
-    placements: Vec<Placement>,
-    materials: Vec<Arc<Object>>,
-    material_nodes: Vec<NodeId>,
-    material_of: BTreeMap<NodeId, u32>,
-    media: Vec<Arc<Object>>,
-    medium_of: BTreeMap<NodeId, u32>,
-    lights: Vec<LightSource>,
-    default_material: Option<u32>,
 }
 
 struct Maker<'a> {
@@ -416,80 +387,6 @@ fn mesh_error(error: BuildError, span: Span) -> Diagnostic {
     Diagnostic::error("E0411", span, error.to_string())
 }
 
-fn finish(
-    mut made: Made,
-    settings: Settings,
-    objects: Objects,
-    (scene, film, mode): (Scene, Film, ColorMode),
-    watch: &Watch,
-) -> Option<Stage> {
-    let during = [film.time, film.time + film.shutter];
-    let boxed = |placement: &Placement| {
-        let local = made.geometries[placement.geometry as usize].bounds();
-        let world = placement.place.bounds(local, during);
-        (world.min, world.max)
-    };
-    let boxes: Vec<_> = made.placements.iter().map(boxed).collect();
-    let all = boxes.iter().fold(Bounds3::EMPTY, |all, (min, max)| {
-        let bounds = Bounds3 { min: *min, max: *max };
-        if bounds.is_empty() || !bounds.diagonal().is_finite() { all } else { all.union(bounds) }
-    });
-    let sphere = if all.is_empty() {
-        (DVec3::ZERO, 1.0)
-    } else {
-        (all.centre(), (all.diagonal().length() / 2.0).max(f64::MIN_POSITIVE))
-    };
-    let media = !made.media.is_empty();
-    let (places, shapes) = (&mut made.placements, &made.geometries);
-    let nested = nesting::settle(places, shapes, &boxes, &made.materials, media);
-    let open_surfaces = places.iter().any(|placement| placement.skin == Skin::Open);
-    let moves = |light: &LightSource| match light {
-        LightSource::Free { place, .. } => place.is_moving(),
-        LightSource::Surface { .. } => false,
-    };
-    let motion = settings.camera_place.is_moving()
-        || places.iter().any(|placement| placement.place.is_moving())
-        || shapes.iter().any(|shape| shape.is_moving())
-        || made.lights.iter().any(moves);
-    let features = Features { media, open_surfaces, nested, motion };
-    watch.name("the scene");
-    let top = TopBvh::build_watched(&boxes, watch)?;
-    let mut stage = Stage {
-        lights: Lights::new(made.lights, sphere.1, mode),
-        top,
-        geometries: made.geometries,
-        placements: made.placements,
-        materials: made.materials,
-        material_nodes: made.material_nodes,
-        media: made.media,
-        outside: settings.outside,
-        camera: settings.camera,
-        camera_place: settings.camera_place,
-        integrator: settings.integrator,
-        sampler: settings.sampler,
-        filter: settings.filter,
-        reach: sphere.1,
-        camera_media: MediumStack::default(),
-        eye: None,
-        cache: Cache { objects, meshes: made.meshes },
-        scene,
-        film,
-        mode,
-        features,
-        sphere,
-    };
-    stage.eye = Eye::of(stage.camera.fixed().camera(), stage.film.resolution);
-    let middle = stage.film.resolution.as_dvec2() / 2.0;
-    if let Some(seen) = stage.opening().camera_ray(middle, [0.5; 2]) {
-        let eye = seen.ray.o;
-        stage.reach = FOG_REACH * sphere.1.max(eye.distance(sphere.0));
-        if stage.features.is_tracked() {
-            stage.camera_media = stage.opening().media_at(eye);
-        }
-    }
-    Some(stage)
-}
-
 /// An integrator that looks for the camera from where light is, and a camera that is no point.
 fn unseen(stage: &Stage) -> Option<Diagnostic> {
     let integrator = stage.integrator.fixed().integrator();
@@ -505,7 +402,3 @@ fn unseen(stage: &Stage) -> Option<Diagnostic> {
         None => Diagnostic::unplaced("E0422", message),
     })
 }
-
-/// How far the medium that fills the outside reaches, in radii of what holds the scene and the
-/// camera: endless fog would let no light from far away through, and hold paths for ever.
-const FOG_REACH: f64 = 2.0;

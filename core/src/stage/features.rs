@@ -7,6 +7,7 @@ use super::ColorChoice;
 
 /// What the render has to do for this scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is asked for on its own")]
 pub struct Features {
     /// Something absorbs or scatters between surfaces.
     pub media: bool,

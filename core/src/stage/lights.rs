@@ -19,6 +19,7 @@ use crate::object::{ColorMode, Object, Scratch, Site};
 
 pub use emission::{EmissionNumbers, Emitted, Emitters, Lamp};
 pub use quad::Quad;
+pub use triangle::Facets;
 
 /// A source of light of the stage.
 #[derive(Debug)]
@@ -31,8 +32,8 @@ pub enum LightSource {
         placement: u32,
         /// Its area in the world, m².
         area: f64,
-        /// For meshes: how a triangle is chosen, by its area in the world.
-        triangles: Option<Alias>,
+        /// For meshes: their triangles.
+        triangles: Option<Facets>,
         /// For sheared parallelograms: what they are.
         quad: Option<Quad>,
     },
@@ -175,7 +176,7 @@ impl Moment<'_> {
         let u = [u[1], u[2]];
         let found = match chosen.source {
             LightSource::Surface { object, placement, area, triangles, quad } => {
-                let triangles = triangles.as_ref().map(|choice| (choice, chosen.u));
+                let triangles = triangles.as_ref().map(|facets| (facets, chosen.u));
                 let (placement, area, quad) = (*placement, *area, quad.as_ref());
                 let light = SurfaceLight { object, placement, area, triangles, quad };
                 self.sample_surface(&light, from, palette, u, scratch)
@@ -239,9 +240,9 @@ impl Moment<'_> {
         // Density per solid angle, where that is how a point is found.
         let mut direct = None;
         let mut sample = match (&**geometry, light.triangles) {
-            (Geometry::Mesh(mesh), Some((choice, choose))) => {
+            (Geometry::Mesh(mesh), Some((facets, choose))) => {
                 let (from, time) = (from.p + from.lift, self.time);
-                let point = Lit { mesh, choice, transform, from, time }.sample(u, choose);
+                let point = Lit { mesh, facets, transform, from, time }.sample(u, choose);
                 direct = point.pdf;
                 let precision = self.film.precision;
                 let surface = mesh.surface(point.triangle, point.at, precision, time);
@@ -341,8 +342,8 @@ impl Moment<'_> {
         let shape = match &*self.geometries[placement.geometry as usize] {
             Geometry::Analytic(shape) => shape.object().fixed().shape(),
             Geometry::Mesh(mesh) => {
-                let Some(choice) = triangles else { return Ok(0.0) };
-                let lit = Lit { mesh, choice, transform, from, time: self.time };
+                let Some(facets) = triangles else { return Ok(0.0) };
+                let lit = Lit { mesh, facets, transform, from, time: self.time };
                 if let Some(pdf) = lit.pdf(face) {
                     return Ok(pdf);
                 }
@@ -392,8 +393,8 @@ struct SurfaceLight<'a> {
     object: &'a Object,
     placement: u32,
     area: f64,
-    /// For meshes: how a triangle is chosen by its area, and a random number to choose by.
-    triangles: Option<(&'a Alias, f64)>,
+    /// For meshes: their triangles, and a random number to choose by.
+    triangles: Option<(&'a Facets, f64)>,
     quad: Option<&'a Quad>,
 }
 

@@ -13,6 +13,7 @@ mod flatten;
 mod geometry;
 mod import;
 mod lights;
+mod made;
 mod media;
 mod moment;
 mod motion;
@@ -41,7 +42,9 @@ pub use build::{Built, Unbuilt, build, build_watched};
 pub use eye::{Eye, Seen};
 pub use features::Features;
 pub use geometry::{Geometry, Mesh};
-pub use lights::{EmissionNumbers, Emitted, Emitters, FoundLight, Lamp, LightSource, Lights, Quad};
+pub use lights::{
+    EmissionNumbers, Emitted, Emitters, Facets, FoundLight, Lamp, LightSource, Lights, Quad,
+};
 pub use media::{Crossing, MediumStack};
 pub use moment::Moment;
 pub use motion::Motion;

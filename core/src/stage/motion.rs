@@ -166,7 +166,7 @@ fn polar(m: DMat3) -> Option<(DQuat, DMat3)> {
 
 /// At least by how much a matrix stretches any vector (Frobenius).
 fn norm(m: DMat3) -> f64 {
-    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.length_squared());
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(DVec3::length_squared);
     (x + y + z).sqrt()
 }
 

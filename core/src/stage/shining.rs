@@ -1,29 +1,33 @@
 //! Geometry that shines: how large it is, and whether its points can be chosen.
 
+use glam::DVec3;
 use luxel_sdk::num::Bounds3;
 use luxel_sdk::sampling::{Alias, sobol_owen_2d};
 
-use super::lights::Quad;
+use super::lights::{Facets, Quad};
 use super::{Geometry, Placement};
 use crate::cast::index;
 use crate::diag::{Diagnostic, Span};
 use crate::object::{Object, carried_area};
 use crate::scene::{NodeId, Scene};
 
-/// Area in the world, m², and how a triangle of a mesh is chosen.
-pub(super) fn measured(geometry: &Geometry, placement: &Placement) -> (f64, Option<Alias>) {
+/// Area in the world, m², and the triangles of a mesh.
+pub(super) fn measured(geometry: &Geometry, placement: &Placement) -> (f64, Option<Facets>) {
     let mesh = match geometry {
         Geometry::Analytic(shape) => return (world_area(shape.object(), placement), None),
         Geometry::Mesh(mesh) => mesh,
     };
-    let area = |i: u32| {
-        let [a, b, c] = mesh.opening_corners(i);
-        let normal = (b - a).cross(c - a);
-        let area = normal.length() / 2.0;
-        if area > 0.0 { area * placement.area_scale(normal / (2.0 * area)) } else { 0.0 }
-    };
-    let areas: Vec<f64> = (0..index(mesh.triangles().indices.len())).map(area).collect();
-    (areas.iter().sum(), Alias::new(&areas).ok())
+    let transform = placement.place.first();
+    let edge = |v: DVec3| transform.map_or(v, |transform| transform.vector(v));
+    let area = |[a, b, c]: [DVec3; 3]| edge(b - a).cross(edge(c - a)).length() / 2.0;
+    let triangles = 0..index(mesh.triangles().indices.len());
+    let areas: Vec<f64> = triangles.clone().map(|i| area(mesh.opening_corners(i))).collect();
+    let world = |p: DVec3| transform.map_or(p, |transform| transform.point(p));
+    let corners: Vec<_> = triangles.map(|i| mesh.opening_corners(i).map(world)).collect();
+    let stands = !(placement.place.is_moving() || geometry.is_moving());
+    let facets = Alias::new(&areas).ok();
+    let facets = facets.map(|choice| Facets::new(choice, stands.then_some(&corners)));
+    (areas.iter().sum(), facets)
 }
 
 /// The parallelogram of a shape that its placement shears.

@@ -81,13 +81,13 @@ impl Moment<'_> {
 
     /// How a ray comes to a placement that it enters at `t_enter`.
     #[inline(always)]
-    pub(super) fn approach<'a>(
+    pub(super) fn approach(
         self,
         processor: Processor,
-        local: &'a Local,
+        local: &Local,
         t_enter: f64,
         from: Option<u32>,
-    ) -> Approach<'a> {
+    ) -> Approach<'_> {
         let (precision, direction) = (self.film.precision, local.direction.as_ref());
         Approach { processor, precision, direction, t_enter, from, time: self.time }
     }

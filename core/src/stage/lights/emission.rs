@@ -130,7 +130,7 @@ impl Moment<'_> {
         let placement = &self.placements[*place as usize];
         let (mut surface, face, mut pdf) = match &*self.geometries[placement.geometry as usize] {
             Geometry::Mesh(mesh) => {
-                let triangle = index(triangles.as_ref()?.sample(left).index);
+                let triangle = index(triangles.as_ref()?.choice.sample(left).index);
                 let [_, b, c] = uniform_triangle(u.point).map(f64::from);
                 let surface =
                     mesh.surface(triangle, DVec2::new(b, c), self.film.precision, self.time);

@@ -1,7 +1,7 @@
 //! Triangles of shining meshes, as the points of the world see them that they light.
 
 use glam::{DVec2, DVec3};
-use luxel_sdk::num::Transform;
+use luxel_sdk::num::{Bounds3, Transform};
 use luxel_sdk::sampling::{Alias, SphericalTriangle, uniform_triangle};
 
 use super::super::geometry::Mesh;
@@ -15,11 +15,44 @@ const NEAR: f64 = 0.5;
 /// Most triangles of a mesh whose solid angles are all found, to choose by them.
 const FEW: usize = 4;
 
+/// The triangles of a shining mesh.
+#[derive(Debug)]
+pub struct Facets {
+    /// How one is chosen, by its area in the world when the shutter opens.
+    pub(super) choice: Alias,
+    /// Of a mesh that stands: a point of the world, and the square of a distance from there beyond
+    /// which no point is near a triangle.
+    near: Option<(DVec3, f64)>,
+}
+
+impl Facets {
+    /// Of a mesh whose triangles are chosen so, and whose corners in the world are these if it stands.
+    pub(in super::super) fn new(choice: Alias, corners: Option<&[[DVec3; 3]]>) -> Self {
+        let near = corners.map(|triangles| {
+            let all = Bounds3::of_points(triangles.iter().flatten().copied());
+            let longest2 = |[a, b, c]: &[DVec3; 3]| {
+                let edges = [*b - *a, *c - *b, *a - *c];
+                edges.map(DVec3::length_squared).into_iter().fold(0.0, f64::max)
+            };
+            let longest = triangles.iter().map(longest2).fold(0.0, f64::max).sqrt();
+            // As far as the middle of a triangle may be from where `near` still takes it.
+            let reach = all.diagonal().length() / 2.0 + longest / NEAR.sqrt();
+            (all.centre(), reach * reach * (1.0 + 1e-9))
+        });
+        Self { choice, near }
+    }
+
+    /// Whether a point is too far away for any triangle to go by its solid angle.
+    #[inline(always)]
+    fn are_far(&self, from: DVec3) -> bool {
+        self.near.is_some_and(|(centre, reach2)| from.distance_squared(centre) > reach2)
+    }
+}
+
 /// A shining mesh and the point of the world that it lights.
 pub(super) struct Lit<'a> {
     pub(super) mesh: &'a Mesh,
-    /// How a triangle is chosen by its area in the world.
-    pub(super) choice: &'a Alias,
+    pub(super) facets: &'a Facets,
     /// From the mesh's frame to the world.
     pub(super) transform: Option<&'a Transform>,
     /// The point.
@@ -42,7 +75,8 @@ impl Lit<'_> {
     /// their solid angle, others by their area. `u` uniform in [0, 1), as the last number.
     #[inline]
     pub(super) fn sample(&self, u: [f32; 2], choose: f64) -> Point {
-        if let Some((few, whole)) = self.few() {
+        let far = self.facets.are_far(self.from);
+        if !far && let Some((few, whole)) = self.few() {
             let mut left = choose * whole;
             // What rounds beyond the last belongs to it.
             let mut chosen = None;
@@ -59,9 +93,9 @@ impl Lit<'_> {
                 return Point { triangle: index(triangle), at, pdf: Some(whole.recip()) };
             }
         }
-        let drawn = self.choice.sample(choose);
+        let drawn = self.facets.choice.sample(choose);
         let triangle = index(drawn.index);
-        let seen = self.near(triangle);
+        let seen = if far { None } else { self.near(triangle) };
         let at = seen.map_or_else(|| spread(u), |seen| seen.sample(u.map(f64::from)));
         Point { triangle, at, pdf: seen.map(|seen| drawn.pmf / seen.solid_angle()) }
     }
@@ -69,7 +103,10 @@ impl Lit<'_> {
     /// The density with which `sample` finds a point of this triangle, as it says it.
     #[inline]
     pub(super) fn pdf(&self, triangle: u32) -> Option<f64> {
-        let chance = self.choice.pmf(triangle as usize);
+        if self.facets.are_far(self.from) {
+            return None;
+        }
+        let chance = self.facets.choice.pmf(triangle as usize);
         if chance <= 0.0 {
             return Some(0.0);
         }
@@ -83,13 +120,13 @@ impl Lit<'_> {
     /// solid angle.
     #[inline]
     fn few(&self) -> Option<([Option<SphericalTriangle>; FEW], f64)> {
-        let n = self.choice.n_bins();
+        let n = self.facets.choice.n_bins();
         if n > FEW {
             return None;
         }
         let (mut few, mut whole) = ([None; FEW], 0.0);
         for (i, place) in few.iter_mut().enumerate().take(n) {
-            if self.choice.pmf(i) > 0.0 {
+            if self.facets.choice.pmf(i) > 0.0 {
                 let seen = self.near(index(i))?;
                 whole += seen.solid_angle();
                 *place = Some(seen);

@@ -146,6 +146,7 @@ pub struct Later {
 
 impl Later {
     /// How far corners have come at a time: from 0 to 1.
+    #[expect(clippy::cast_possible_truncation, reason = "rounds; of a share 6e-8 at most")]
     pub fn share(&self, time: f64) -> f32 {
         let [from, to] = self.times;
         ((time - from) / (to - from)).clamp(0.0, 1.0) as f32

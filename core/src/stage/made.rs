@@ -1,0 +1,132 @@
+//! What a build has gathered, and the stage that it becomes.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use luxel_sdk::num::Bounds3;
+
+use super::lights::LightSource;
+use super::nesting;
+use super::{
+    Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Place, Placement, Skin, Stage,
+};
+use crate::accel::{Box64, TopBvh, Watch};
+use crate::object::{ColorMode, Object, Objects};
+use crate::scene::{Hash, NodeId, Scene};
+
+/// The objects that a scene has one of.
+pub(super) struct Settings {
+    pub(super) camera: Arc<Object>,
+    pub(super) integrator: Arc<Object>,
+    pub(super) sampler: Arc<Object>,
+    pub(super) filter: Arc<Object>,
+    pub(super) outside: Option<u32>,
+    pub(super) camera_place: Place,
+}
+
+/// Lists in the making, each with the index of what is already in it.
+#[derive(Default)]
+pub(super) struct Made {
+    pub(super) geometries: Vec<Arc<Geometry>>,
+    pub(super) geometry_of: BTreeMap<NodeId, u32>,
+    pub(super) meshes: BTreeMap<Hash, (Arc<Object>, Arc<Geometry>)>,
+    pub(super) placements: Vec<Placement>,
+    pub(super) materials: Vec<Arc<Object>>,
+    pub(super) material_nodes: Vec<NodeId>,
+    pub(super) material_of: BTreeMap<NodeId, u32>,
+    pub(super) media: Vec<Arc<Object>>,
+    pub(super) medium_of: BTreeMap<NodeId, u32>,
+    pub(super) lights: Vec<LightSource>,
+    pub(super) default_material: Option<u32>,
+}
+
+impl Made {
+    /// The stage; `None` once the watch is cancelled.
+    pub(super) fn finish(
+        self,
+        settings: Settings,
+        objects: Objects,
+        (scene, film, mode): (Scene, Film, ColorMode),
+        watch: &Watch,
+    ) -> Option<Stage> {
+        let mut made = self;
+        let during = [film.time, film.time + film.shutter];
+        let boxed = |placement: &Placement| {
+            let local = made.geometries[placement.geometry as usize].bounds();
+            let world = placement.place.bounds(local, during);
+            (world.min, world.max)
+        };
+        let boxes: Vec<_> = made.placements.iter().map(boxed).collect();
+        let sphere = around(&boxes);
+        let media = !made.media.is_empty();
+        let (places, shapes) = (&mut made.placements, &made.geometries);
+        let nested = nesting::settle(places, shapes, &boxes, &made.materials, media);
+        let open_surfaces = made.placements.iter().any(|placement| placement.skin == Skin::Open);
+        let motion = settings.camera_place.is_moving() || made.is_moving();
+        let features = Features { media, open_surfaces, nested, motion };
+        watch.name("the scene");
+        let top = TopBvh::build_watched(&boxes, watch)?;
+        let mut stage = Stage {
+            lights: Lights::new(made.lights, sphere.1, mode),
+            top,
+            geometries: made.geometries,
+            placements: made.placements,
+            materials: made.materials,
+            material_nodes: made.material_nodes,
+            media: made.media,
+            outside: settings.outside,
+            camera: settings.camera,
+            camera_place: settings.camera_place,
+            integrator: settings.integrator,
+            sampler: settings.sampler,
+            filter: settings.filter,
+            reach: sphere.1,
+            camera_media: MediumStack::default(),
+            eye: None,
+            cache: Cache { objects, meshes: made.meshes },
+            scene,
+            film,
+            mode,
+            features,
+            sphere,
+        };
+        stage.eye = Eye::of(stage.camera.fixed().camera(), stage.film.resolution);
+        let middle = stage.film.resolution.as_dvec2() / 2.0;
+        if let Some(seen) = stage.opening().camera_ray(middle, [0.5; 2]) {
+            let eye = seen.ray.o;
+            stage.reach = FOG_REACH * sphere.1.max(eye.distance(sphere.0));
+            if stage.features.is_tracked() {
+                stage.camera_media = stage.opening().media_at(eye);
+            }
+        }
+        Some(stage)
+    }
+
+    /// Whether something in a place moves while the shutter is open.
+    fn is_moving(&self) -> bool {
+        let moves = |light: &LightSource| match light {
+            LightSource::Free { place, .. } => place.is_moving(),
+            LightSource::Surface { .. } => false,
+        };
+        self.placements.iter().any(|placement| placement.place.is_moving())
+            || self.geometries.iter().any(|shape| shape.is_moving())
+            || self.lights.iter().any(moves)
+    }
+}
+
+/// A ball around everything that has an end.
+fn around(boxes: &[Box64]) -> (DVec3, f64) {
+    let all = boxes.iter().fold(Bounds3::EMPTY, |all, (min, max)| {
+        let bounds = Bounds3 { min: *min, max: *max };
+        if bounds.is_empty() || !bounds.diagonal().is_finite() { all } else { all.union(bounds) }
+    });
+    if all.is_empty() {
+        return (DVec3::ZERO, 1.0);
+    }
+    (all.centre(), (all.diagonal().length() / 2.0).max(f64::MIN_POSITIVE))
+}
+
+/// How far the medium that fills the outside reaches, in radii of what holds the scene and the
+/// camera: endless fog would let no light from far away through, and hold paths for ever.
+const FOG_REACH: f64 = 2.0;

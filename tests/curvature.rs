@@ -8,7 +8,7 @@ use luxel_core::files::MemoryFiles;
 use luxel_core::render::{Control, Options, render};
 use luxel_core::stage::{Geometry, SceneHit, Stage};
 use luxel_sdk::kind::Hit;
-use luxel_sdk::num::Ray;
+use luxel_sdk::num::{Ray, Transform};
 use luxel_sdk::sampling::Rng;
 
 use crate::load::stage_of;
@@ -73,7 +73,7 @@ fn normals_of_meshes_turn_as_their_neighbours_say_in_any_place() {
         let stage = stage.opening();
         let placement = &stage.placements[0];
         let Geometry::Mesh(mesh) = &*stage.geometries[0] else { panic!("a mesh") };
-        let swaps = placement.place.first().is_some_and(|t| t.swaps_handedness());
+        let swaps = placement.place.first().is_some_and(Transform::swaps_handedness);
         let turn = if swaps { -1.0 } else { 1.0 };
         for i in 0..100u32 {
             let at = DVec2::new(0.1 + 0.4 * rng.f64(), 0.1 + 0.4 * rng.f64());

@@ -27,7 +27,7 @@ fn rays(stage: &Stage) -> Rays {
     let (centre, radius) = stage.sphere;
     let mut rays: Rays = (0..3000)
         .map(|_| {
-            let time = stage.time_of(rng.f64() as f32);
+            let time = stage.time_of(rng.pair()[0]);
             let o = centre + direction(&mut rng) * radius;
             let towards = centre + direction(&mut rng) * 0.2 * radius;
             (Ray::new(o, towards - o), None, time)

@@ -209,16 +209,15 @@ fn large_ply() -> Vec<u8> {
     for i in 0..side {
         for j in 0..side {
             let (x, y) = (f32::from(i), f32::from(j));
-            [x, y, (x * 0.3).sin() * (y * 0.2).cos()]
-                .into_iter()
-                .for_each(|c| ply.extend(c.to_le_bytes()));
+            let corner = [x, y, (x * 0.3).sin() * (y * 0.2).cos()];
+            ply.extend(corner.into_iter().flat_map(f32::to_le_bytes));
         }
     }
     for (i, j) in (0..n - 1).flat_map(|i| (0..n - 1).map(move |j| (i, j))) {
         let at = i * n + j;
         for triangle in [[at, at + n, at + 1], [at + n, at + n + 1, at + 1]] {
             ply.push(3);
-            triangle.into_iter().for_each(|i| ply.extend(i.to_le_bytes()));
+            ply.extend(triangle.into_iter().flat_map(u32::to_le_bytes));
         }
     }
     ply

@@ -12,7 +12,7 @@
 //! | T9 nearly smooth | `metal_that_is_hardly_rough_is_a_mirror` |
 //! | T10 index of nearly one | `an_index_of_one_is_invisible_and_one_beside_it_hardly_reflects` |
 //! | T11 1e30 and 1e-30 | `lamps_sixty_orders_apart_stay_finite` |
-//! | T12 denormal values | `values_below_the_normal_numbers_stay_finite` |
+//! | T12 denormal values | `values_below_the_normal_numbers_stay_finite`; `luxel-bench -- pictures` |
 //! | T13 no numbers | `numbers_beyond_all_numbers_are_told_with_their_place`, `bad_input` |
 //! | T14 shadow terminator | `terminator` |
 //! | T15 thin layers | `both_faces_of_a_layer_of_forty_millionths_are_met` |
@@ -24,7 +24,7 @@
 //! | T21 mirroring, singular transforms | `mirrored_shapes_keep_their_inside`; `bad_input` |
 //! | T22 many lights | `one_lamp_of_ten_thousand_with_nearly_all_power_is_found` |
 //! | T23 empty scene, one pixel, no samples | `bad_input::a_scene_without_anything_is_black` |
-//! | T24 a shutter without duration | does not arise: nothing moves |
+//! | T24 a shutter without duration | `motion::without_an_interval_things_stand_where_they_are_at_that_time` |
 //! | T25 dense fog | `fog_of_a_hundred_free_paths_that_absorbs_nothing_is_unseen` |
 
 mod nested;

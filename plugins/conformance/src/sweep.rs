@@ -180,7 +180,7 @@ impl Bench {
     fn nominal(&self, class: &Class) -> Result<Given, Unmade> {
         let (mut why, mut failed) = (String::new(), false);
         for member in 0..4 {
-            for optional in [false, true] {
+            for optional in [Optional::None, Optional::All, Optional::Numbers] {
                 for file in files::NAMES.into_iter().chain([""]) {
                     let given = least(class, member, optional, file);
                     match self.build(class, &given, ColorMode::Rgb) {
@@ -264,13 +264,27 @@ pub(crate) fn own(class: &Class) -> impl Iterator<Item = &'static Param> + use<>
     class.params.iter().filter(|param| param.offset != usize::MAX && param.deprecated.is_empty())
 }
 
-/// What is required; of each group the given member; and the optional numbers, if wanted.
-fn least(class: &Class, member: usize, optional: bool, file: &str) -> Given {
+/// Which optional parameters without a default are given: some classes need a few, others refuse all of
+/// them together.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Optional {
+    None,
+    All,
+    Numbers,
+}
+
+/// What is required; of each group the given member; and optional ones, if wanted.
+fn least(class: &Class, member: usize, optional: Optional, file: &str) -> Given {
     let mut given = vec![];
     for (i, param) in own(class).enumerate() {
         let wanted = if param.group.is_empty() {
             let absent = values::preset(param).is_none();
-            param.required || (absent && values::is_needed(param)) || (optional && absent)
+            let more = match optional {
+                Optional::None => values::is_needed(param),
+                Optional::All => true,
+                Optional::Numbers => values::is_needed(param) || values::is_number(param),
+            };
+            param.required || (absent && more)
         } else {
             let members: Vec<&str> =
                 own(class).filter(|p| p.group == param.group).map(|p| p.name).collect();

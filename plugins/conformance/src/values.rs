@@ -77,7 +77,7 @@ fn number(param: &Param, x: f64) -> Value {
     Value::Number(if param.ty == Type::Int { x.round() } else { x }, dimension(param))
 }
 
-fn is_number(param: &Param) -> bool {
+pub(crate) fn is_number(param: &Param) -> bool {
     let number = matches!(
         param.ty,
         Type::Float | Type::Double | Type::Int | Type::MaybeFloat | Type::Emission

@@ -10,6 +10,7 @@ use luxel_sdk::params::Text;
 use super::*;
 
 mod made;
+mod moving;
 
 /// A host with one file.
 struct OneFile {

@@ -175,3 +175,57 @@ fn a_camera_that_is_carried_in_a_ball_of_fog_sees_as_one_that_stands_in_it() {
         assert!((mean.y - expected).abs() < 1e-6, "{carried}: {}", mean.y);
     }
 }
+
+/// Light on a floor from a lamp, found by asking for it and found by chance; both by far more samples
+/// than they differ. At `exact` a ray to a lamp ends within 1e-15 of it.
+fn lamp_is_found(lamp: &str, precision: &str) {
+    let of = |sampling: bool, seed| {
+        let text = format!(
+            "scene 1
+            camera perspective {{ look = look_at(from = (0, 6, 0.01) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 60 deg }}
+            film rgb {{ resolution = (16, 16), shutter = 1 s, precision = \"{precision}\" }}
+            sampler sobol {{ samples = {} }}
+            integrator path {{ light_sampling = {sampling} }}
+            shape rectangle {{ u = (0, 0, 40) m, v = (40, 0, 0) m }}
+            light area {{ shape = {lamp}, spectrum = rgb.linear_srgb(1, 1, 1), radiance = 1 W/m^2/sr, two_sided = true }}
+            ",
+            if sampling { 64 } else { 1024 }
+        );
+        picture(&text, &[], seed).mean().0.y
+    };
+    let stats = |sampling: bool| {
+        let means: Vec<f64> = (0..8).map(|seed| of(sampling, seed)).collect();
+        let mean = means.iter().sum::<f64>() / 8.0;
+        let squares: f64 = means.iter().map(|x| (x - mean).powi(2)).sum();
+        (mean, squares / 56.0)
+    };
+    let ((a, va), (b, vb)) = (stats(true), stats(false));
+    // Of fourteen degrees of freedom: by chance once in 10⁴.
+    let allowed = 5.4 * (va + vb).sqrt();
+    assert!(allowed < 0.25 * b, "{precision} {lamp}: {a} {b} {allowed}");
+    assert!((a - b).abs() < allowed, "{precision} {lamp}: {a}, by chance {b} ± {allowed}");
+}
+
+#[test]
+fn lamps_of_triangles_do_not_stand_in_their_own_light() {
+    let ball = "shape mesh { points = #[ 1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1 ] m, subdivide = 2, scheme = \"loop\",
+        indices = #[ 0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5 ] }";
+    let tilted =
+        "shape mesh { points = #[ -0.3 0 0  0.3 0.2 0  0.1 0.5 0.4 ] m, indices = #[ 0 1 2 ] }";
+    let bends = "shape mesh {
+        points = #[ 0 0 0  0.4 0 0  0 0 0.4 ] m, indices = #[ 0 1 2 ]
+        next_points = #[ 0 0 0  0 0.4 0  0 0 0.4 ] m
+    }";
+    let places = [
+        (ball, "scale(0.3), move((0, 1.5, 0) m)"),
+        (tilted, "move((0.2, 1.5, 0.1) m)"),
+        (tilted, "move((1, 1.5, 0) m), spin((0, 1, 0), 360 deg / (1 s))"),
+        // Its normal turns where the place stretches: so does the share of each moment.
+        (bends, "scale((1, 6, 1)), move((0, 2, 0) m)"),
+    ];
+    for (lamp, place) in places {
+        for precision in ["standard", "exact"] {
+            lamp_is_found(&format!("{lamp} with {{ transform = [{place}] }}"), precision);
+        }
+    }
+}

@@ -172,7 +172,9 @@ impl<'s> Flight<'s> {
         }
         let ray = Ray { t_max: self.walk.t_max, ..self.ray };
         let local = Local::of(placement, &ray, self.world, time);
-        let mesh = match &*stage.geometries[placement.geometry as usize] {
+        let geometry = &*stage.geometries[placement.geometry as usize];
+        let t_enter = local.entry(placement, geometry, t_enter);
+        let mesh = match geometry {
             Geometry::Analytic(shape) => {
                 let hit = if ANY && shape.occluded(&local.ray, processor) {
                     Some(Hit { t: 0.0, at: DVec2::ZERO, face: 0 })

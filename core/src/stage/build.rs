@@ -10,7 +10,7 @@ use super::flatten::{Flat, flatten};
 use super::geometry::mesh_part;
 use super::lights::LightSource;
 use super::made::{Made, Settings};
-use super::motion::Motion;
+use super::motion::{Motion, Splits};
 use super::{Cache, Film, Geometry, Mesh, Place, Placement, Skin, Stage};
 use super::{failures, features, import, shining};
 use crate::accel::{BuildError, Watch};
@@ -78,7 +78,15 @@ pub fn build_watched(
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(&mesh_part);
     let shutter = (film.time, film.shutter);
-    let mut maker = Maker { scene: &scene, shutter, builder, cache, made: Made::default(), watch };
+    let mut maker = Maker {
+        scene: &scene,
+        shutter,
+        splits: Splits::default(),
+        builder,
+        cache,
+        made: Made::default(),
+        watch,
+    };
     match flatten(&scene) {
         Ok(flats) => {
             flats.iter().take_while(|_| !watch.is_cancelled()).for_each(|flat| maker.place(flat));
@@ -114,6 +122,7 @@ struct Maker<'a> {
     scene: &'a Scene,
     /// When it opens and how long for, seconds.
     shutter: (f64, f64),
+    splits: Splits,
     builder: Builder<'a>,
     cache: &'a Cache,
     made: Made,
@@ -175,11 +184,11 @@ impl Maker<'_> {
         let (open, shutter) = self.shutter;
         let place = match pose {
             Pose::Fixed(affine) => Transform::new(*affine).map(|it| Place::Fixed(Box::new(it))),
-            Pose::Moving(steps) => Motion::new(steps).and_then(|motion| {
-                if shutter > 0.0 {
-                    return Place::moving(motion, open);
+            Pose::Moving(steps) => Motion::new(steps, &mut self.splits).and_then(|motion| {
+                if motion.stands([open, open + shutter]) || shutter <= 0.0 {
+                    return motion.at(open).map(|it| Place::Fixed(Box::new(it)));
                 }
-                motion.at(open).map(|it| Place::Fixed(Box::new(it)))
+                Place::moving(motion, open)
             }),
         };
         if place.is_none() {
@@ -217,7 +226,7 @@ impl Maker<'_> {
     fn shining(&mut self, object: Arc<Object>, placement: &Placement, span: Span) {
         let place = index(self.made.placements.len());
         let geometry = &self.made.geometries[placement.geometry as usize];
-        let (area, triangles) = shining::measured(geometry, placement);
+        let (area, triangles) = shining::measured(geometry, placement, self.during());
         let shape = (self.scene, placement.node);
         self.builder.diagnostics.extend(shining::doubts(geometry, area, shape, span));
         let quad = shining::sheared(geometry, placement);

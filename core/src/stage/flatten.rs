@@ -16,6 +16,9 @@ pub(super) struct Flat {
     pub(super) span: crate::diag::Span,
 }
 
+/// Most steps of a pose that moves: each costs time for every ray that comes near.
+const MOST_STEPS: usize = 256;
+
 /// Most placements that a stage holds.
 const LIMIT: usize = 100_000_000;
 
@@ -38,6 +41,11 @@ fn walk(
 ) -> Result<(), Box<Diagnostic>> {
     for item in &group.items {
         let pose = item.pose.then(pose);
+        if matches!(&pose, Pose::Moving(steps) if steps.len() > MOST_STEPS) {
+            let message =
+                format!("more than {MOST_STEPS} steps of the poses of groups in each other move");
+            return Err(Box::new(Diagnostic::error("E0501", item.span, message)));
+        }
         let material = item.material.or(material);
         match item.target {
             Target::Group(id) => walk(scene, scene.group(id), &pose, material, out)?,

@@ -15,6 +15,7 @@ use super::closed::is_closed;
 use crate::accel::{
     Begun, BuildError, Direction, MeshBvh, MeshHit, Precision, Processor, Query, Watch,
 };
+use crate::cast::index;
 
 pub(super) use part::mesh_part;
 
@@ -108,7 +109,7 @@ impl Mesh {
     }
 
     /// Whether its points move while the shutter is open.
-    fn is_moving(&self) -> bool {
+    pub(super) fn is_moving(&self) -> bool {
         let [open, close] = self.during.map(|time| self.share(time));
         open < close
     }
@@ -172,7 +173,7 @@ impl Mesh {
 
     /// What is asked of the tree about a ray that is taken up there.
     #[inline(always)]
-    fn query<'a>(
+    fn query<'a, const ANY: bool>(
         &self,
         ray: &Ray,
         approach: &Approach<'_>,
@@ -180,9 +181,14 @@ impl Mesh {
         taken: Taken,
     ) -> Query<'a> {
         let o = ray.at(taken.start) - self.centre;
-        // What is rounded stays beyond the end: `land` looks again.
         let t_max = (ray.t_max - taken.start) * direction.scale();
-        let t_max = t_max * (1.0 + f64::from(f32::EPSILON));
+        // What single precision rounds stays beyond the end where `land` looks again, else before it:
+        // a ray ends short of the lamp that it is sent to.
+        let t_max = match (approach.precision, ANY) {
+            (Precision::Exact, _) => t_max,
+            (_, true) => t_max * (1.0 - f64::from(f32::EPSILON)),
+            (_, false) => t_max * (1.0 + f64::from(f32::EPSILON)),
+        };
         let (skip, precision, share) =
             (approach.from, approach.precision, self.share(approach.time));
         Query { o, direction, t_max, skip, precision, share }
@@ -200,7 +206,7 @@ impl Mesh {
         let direction = approach.direction?;
         let mut taken = self.take_up(direction, approach.t_enter);
         loop {
-            let query = self.query(ray, &approach, direction, taken);
+            let query = self.query::<false>(ray, &approach, direction, taken);
             let (hit, n) = self.bvh.intersect(approach.processor, &query);
             *steps += n;
             match self.land(ray, &approach, taken, hit) {
@@ -241,14 +247,14 @@ impl Mesh {
         taken: Taken,
     ) -> Begun<'_> {
         let Some(direction) = approach.direction else { return Begun::Over(None, 0) };
-        self.bvh.begin::<ANY>(&self.query(ray, approach, direction, taken))
+        self.bvh.begin::<ANY>(&self.query::<ANY>(ray, approach, direction, taken))
     }
 
     #[inline(always)]
     fn occluded(&self, ray: &Ray, approach: Approach<'_>) -> bool {
         let Some(direction) = approach.direction else { return false };
         let taken = self.take_up(direction, approach.t_enter);
-        let query = self.query(ray, &approach, direction, taken);
+        let query = self.query::<true>(ray, &approach, direction, taken);
         self.bvh.occluded(approach.processor, &query)
             && (approach.from.is_none() || self.intersect(ray, approach, &mut 0).is_some())
     }
@@ -336,16 +342,10 @@ impl Mesh {
         self.corners(self.indices(triangle), self.during[0]).map(|p| self.centre + p)
     }
 
-    /// How many times as large a triangle is as when the shutter opened.
-    pub fn growth(&self, triangle: u32, time: f64) -> f64 {
-        if self.triangles.later.is_none() {
-            return 1.0;
-        }
-        let area = |time| {
-            let [a, b, c] = self.corners(self.indices(triangle), time);
-            (b - a).cross(c - a).length()
-        };
-        area(time) / area(self.during[0])
+    /// The area of a triangle at a time in the frame that `edge` carries its edges to.
+    pub(super) fn area(&self, triangle: u32, time: f64, edge: impl Fn(DVec3) -> DVec3) -> f64 {
+        let [a, b, c] = self.corners(self.indices(triangle), time);
+        edge(b - a).cross(edge(c - a)).length() / 2.0
     }
 
     /// The mean of the corners' colours, linear sRGB, if they have any; `at` as in `surface`.
@@ -425,6 +425,17 @@ impl Geometry {
                 }
                 None => Bounds3::EMPTY,
             },
+        }
+    }
+
+    /// A box that holds every point when the shutter opens.
+    pub(super) fn opening_bounds(&self) -> Bounds3 {
+        match self {
+            Self::Mesh(mesh) if mesh.is_moving() => {
+                let triangles = 0..index(mesh.triangles.indices.len());
+                Bounds3::of_points(triangles.flat_map(|i| mesh.opening_corners(i)))
+            }
+            _ => self.bounds(),
         }
     }
 

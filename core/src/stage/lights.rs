@@ -9,11 +9,11 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::{Arrival, Hit, Light, LightQuery, Output, ShapeSample, Surface};
-use luxel_sdk::num::{Ray, offset_origin, unit_and_length};
+use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
 use self::triangle::Lit;
-use super::{Geometry, Moment, Place, Placement};
+use super::{Geometry, Mesh, Moment, Place, Placement};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 
@@ -246,9 +246,10 @@ impl Moment<'_> {
                 direct = point.pdf;
                 let precision = self.film.precision;
                 let surface = mesh.surface(point.triangle, point.at, precision, time);
-                // The world's density in the mesh's own frame, when it was chosen by its area.
-                let growth = mesh.growth(point.triangle, time);
-                let pdf = placement.area_scale(surface.ng) / (light.area * growth);
+                // The world's density in the mesh's own frame.
+                let chosen = (facets, point.triangle);
+                let pdf = self.facet_density(placement, mesh, chosen, light.area, transform)
+                    * transform.map_or(1.0, |transform| transform.area_scale(surface.ng));
                 Some(ShapeSample { surface, pdf })
             }
             (Geometry::Analytic(shape), _) => {
@@ -324,6 +325,22 @@ impl Moment<'_> {
         (le, narrow(pdf * self.lights.chance(light)))
     }
 
+    /// Density per area of the world of a point of a triangle that is chosen for its size.
+    fn facet_density(
+        self,
+        placement: &Placement,
+        mesh: &Mesh,
+        (facets, triangle): (&Facets, u32),
+        area: f64,
+        transform: Option<&Transform>,
+    ) -> f64 {
+        if !(placement.place.is_moving() || mesh.is_moving()) {
+            return 1.0 / area;
+        }
+        let edge = |v| transform.map_or(v, |transform| transform.vector(v));
+        facets.choice.pmf(triangle as usize) / mesh.area(triangle, self.time, edge)
+    }
+
     /// Density per solid angle with which a point of a shining surface is sampled from there.
     ///
     /// # Errors
@@ -347,12 +364,8 @@ impl Moment<'_> {
                 if let Some(pdf) = lit.pdf(face) {
                     return Ok(pdf);
                 }
-                let area = area * mesh.growth(face, self.time);
-                let Some(now) = transform.filter(|_| place.is_moving()) else {
-                    return Err(1.0 / area);
-                };
-                let ng = now.inverse_normal(surface.ng).normalize();
-                return Err(placement.area_scale(ng) / (area * now.area_scale(ng)));
+                let chosen = (facets, face);
+                return Err(self.facet_density(placement, mesh, chosen, *area, transform));
             }
         };
         if let Some(seen) = quad.as_ref().and_then(|quad| quad.seen(transform, from)) {

@@ -1,5 +1,8 @@
 //! Where moving things stand at a time, and a box around where they pass.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use luxel_sdk::num::{Bounds3, Transform};
 
@@ -12,8 +15,31 @@ pub struct Motion(Vec<Part>);
 #[derive(Clone, Debug)]
 enum Part {
     Fixed(DAffine3),
-    Keys(Vec<Split>),
+    Keys(Arc<[Split]>),
     Spin { axis: DVec3, rate: f64 },
+}
+
+/// Keys that have been split, each list once. A list is known by its address, and held so that no other
+/// takes that.
+#[derive(Debug, Default)]
+pub(super) struct Splits(BTreeMap<usize, Known>);
+
+#[derive(Debug)]
+struct Known {
+    _keys: Arc<[Key]>,
+    splits: Arc<[Split]>,
+}
+
+impl Splits {
+    fn of(&mut self, keys: &Arc<[Key]>) -> Option<Arc<[Split]>> {
+        let address = keys.as_ptr().addr();
+        if let Some(known) = self.0.get(&address) {
+            return Some(known.splits.clone());
+        }
+        let splits: Arc<[Split]> = keys.iter().map(Split::of).collect::<Option<_>>()?;
+        self.0.insert(address, Known { _keys: keys.clone(), splits: splits.clone() });
+        Some(splits)
+    }
 }
 
 /// A key in parts that change on their own.
@@ -40,17 +66,27 @@ const ROUNDS: u32 = 32;
 
 impl Motion {
     /// Of the steps of a pose; `None` where a key cannot be split into a rotation and a stretch.
-    pub fn new(steps: &[Step]) -> Option<Self> {
-        let part = |step: &Step| {
+    /// Keys that several poses share are split once, into `known`.
+    pub(super) fn new(steps: &[Step], known: &mut Splits) -> Option<Self> {
+        let mut part = |step: &Step| {
             Some(match step {
                 Step::Fixed(transform) => Part::Fixed(*transform),
-                Step::Keys(keys) => {
-                    Part::Keys(keys.iter().map(Split::of).collect::<Option<Vec<_>>>()?)
-                }
+                Step::Keys(keys) => Part::Keys(known.of(keys)?),
                 Step::Spin { axis, rate } => Part::Spin { axis: *axis, rate: *rate },
             })
         };
-        steps.iter().map(part).collect::<Option<Vec<_>>>().map(Self)
+        steps.iter().map(&mut part).collect::<Option<Vec<_>>>().map(Self)
+    }
+
+    /// Whether nothing changes in an interval of time.
+    pub fn stands(&self, [open, close]: [f64; 2]) -> bool {
+        self.0.iter().all(|part| match part {
+            Part::Fixed(_) => true,
+            Part::Keys(keys) => {
+                keys.len() == 1 || close <= keys[0].time || open >= keys[keys.len() - 1].time
+            }
+            Part::Spin { rate, .. } => *rate == 0.0,
+        })
     }
 
     /// The whole transform at a time in seconds.
@@ -72,7 +108,7 @@ impl Motion {
         }
         let radius = local.min.abs().max(local.max.abs()).length();
         let start = Reach { radius, speed: 0.0 };
-        let reach = self.0.iter().fold(start, |reach, part| part.carried(reach));
+        let reach = self.0.iter().fold(start, |reach, part| part.carried(reach, [open, close]));
         let step = (close - open) / f64::from(MOMENTS);
         let mut all = Bounds3::EMPTY;
         for i in 0..=MOMENTS {
@@ -80,7 +116,9 @@ impl Motion {
         }
         // Half a step away from the nearest moment; and rotations are rounded.
         let slack = reach.speed * step / 2.0 + reach.radius * 64.0 * f64::EPSILON;
-        Bounds3 { min: all.min - slack, max: all.max + slack }
+        // However it turns, it stays within its reach.
+        let most = DVec3::splat(reach.radius * (1.0 + 64.0 * f64::EPSILON));
+        Bounds3 { min: (all.min - slack).max(-most), max: (all.max + slack).min(most) }
     }
 }
 
@@ -94,7 +132,7 @@ impl Part {
     }
 
     /// What holds of points beyond this part.
-    fn carried(&self, Reach { radius, speed }: Reach) -> Reach {
+    fn carried(&self, Reach { radius, speed }: Reach, [open, close]: [f64; 2]) -> Reach {
         match self {
             Self::Fixed(transform) => {
                 let norm = norm(transform.matrix3);
@@ -104,7 +142,9 @@ impl Part {
             Self::Keys(keys) => {
                 let largest = |of: &dyn Fn(&Split) -> f64| keys.iter().map(of).fold(0.0, f64::max);
                 let norm = largest(&|key| norm(key.stretch));
-                let own = keys.windows(2).map(|pair| pair[0].speed(&pair[1], radius, norm));
+                let met = |pair: &&[Split]| pair[0].time < close && pair[1].time > open;
+                let own = keys.windows(2).filter(met);
+                let own = own.map(|pair| pair[0].speed(&pair[1], radius, norm));
                 let speed = norm * speed + own.fold(0.0, f64::max);
                 Reach { radius: norm * radius + largest(&|key| key.translation.length()), speed }
             }
@@ -164,16 +204,20 @@ fn polar(m: DMat3) -> Option<(DQuat, DMat3)> {
     (turn.is_finite() && stretch.is_finite()).then_some((turn, stretch))
 }
 
-/// At least by how much a matrix stretches any vector (Frobenius).
+/// At least by how much a matrix stretches any vector: the smaller of two bounds of the largest
+/// singular value, which is exact where axes stay axes. Up to 4 roundings.
 fn norm(m: DMat3) -> f64 {
+    let sums = |m: DMat3| {
+        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.abs().element_sum());
+        x.max(y).max(z)
+    };
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(DVec3::length_squared);
-    (x + y + z).sqrt()
+    (x + y + z).sqrt().min((sums(m) * sums(m.transpose())).sqrt())
 }
 
 #[cfg(test)]
 mod tests {
     use std::f64::consts::{FRAC_PI_2, TAU};
-    use std::sync::Arc;
 
     use super::*;
 
@@ -182,7 +226,7 @@ mod tests {
             .iter()
             .map(|(time, transform)| Key { time: *time, transform: *transform })
             .collect();
-        Motion::new(&[Step::Keys(keys)]).unwrap()
+        Motion::new(&[Step::Keys(keys)], &mut Splits::default()).unwrap()
     }
 
     fn close(a: DAffine3, b: DAffine3) -> bool {
@@ -210,7 +254,8 @@ mod tests {
                 * DAffine3::from_axis_angle(DVec3::Z, FRAC_PI_2 * share);
             assert!(close(motion.affine(share), expected), "{share}");
         }
-        let spin = Motion::new(&[Step::Spin { axis: DVec3::X, rate: TAU }]).unwrap();
+        let spin = Motion::new(&[Step::Spin { axis: DVec3::X, rate: TAU }], &mut Splits::default())
+            .unwrap();
         assert!(close(spin.affine(1.25), DAffine3::from_rotation_x(FRAC_PI_2)));
     }
 
@@ -238,15 +283,22 @@ mod tests {
         let keys = [(0.2, DAffine3::IDENTITY), (0.6, there)];
         let keys = keys.map(|(time, transform)| Key { time, transform });
         let aside = Step::Fixed(DAffine3::from_translation(DVec3::X * 2.0));
-        let motion = Motion::new(&[aside, spin, Step::Keys(Arc::new(keys))]).unwrap();
+        let steps = [aside, spin, Step::Keys(Arc::new(keys))];
+        let motion = Motion::new(&steps, &mut Splits::default()).unwrap();
         let local = Bounds3 { min: DVec3::new(-1.0, 0.0, -0.5), max: DVec3::ONE };
         let bounds = motion.bounds(local, [0.0, 1.0]);
         for i in 0..=997 {
             let at = local.transform(&motion.affine(f64::from(i) / 997.0));
             assert!(bounds.min.cmple(at.min).all() && bounds.max.cmpge(at.max).all(), "{i}");
         }
-        // No larger than what is passed and a thirty-second of the way: at most 27 + 3 + 5 a second
-        // and 1.6 times the radius 3 of a box about to be turned.
-        assert!(bounds.diagonal().max_element() < 16.0, "{}", bounds.diagonal());
+        // What is a blade's length away stays so, however fast it turns; and what stands, stands.
+        let steps = [Step::Spin { axis: DVec3::Y, rate: 6e3 }];
+        let fan = Motion::new(&steps, &mut Splits::default()).unwrap();
+        let blade = Bounds3 { min: DVec3::ZERO, max: DVec3::X };
+        assert!(fan.bounds(blade, [0.0, 1.0]).max.max_element() < 1.0 + 1e-12);
+        assert!(!fan.stands([0.0, 1.0]) && !motion.stands([0.0, 0.3]));
+        let steps = [Step::Keys(Arc::new(keys))];
+        let keyed = Motion::new(&steps, &mut Splits::default()).unwrap();
+        assert!(keyed.stands([0.0, 0.2]) && keyed.stands([0.6, 9.0]) && !keyed.stands([0.1, 0.3]));
     }
 }

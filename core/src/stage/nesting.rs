@@ -77,7 +77,7 @@ fn overlap(a: Box64, b: Box64) -> bool {
 fn rank(placements: &mut [Placement], geometries: &[Arc<Geometry>]) {
     // Where the shutter opens: what moves fast is no larger.
     let size = |placement: &Placement| {
-        let local = geometries[placement.geometry as usize].bounds();
+        let local = geometries[placement.geometry as usize].opening_bounds();
         let bounds = placement.place.first().map_or(local, |it| local.transform(it.affine()));
         bounds.diagonal().max(DVec3::ZERO).element_product()
     };

@@ -1,6 +1,5 @@
 //! Geometry in its place: rays into its frame, points back into the world.
 
-use glam::DVec3;
 use luxel_sdk::kind::Hit;
 use luxel_sdk::num::{Bounds3, Transform};
 
@@ -112,14 +111,6 @@ pub struct Placement {
     pub rank: u32,
     /// The node of the shape.
     pub node: NodeId,
-}
-
-impl Placement {
-    /// How much larger an area whose local unit normal is `ng` is in the world, when the shutter
-    /// opens.
-    pub fn area_scale(&self, ng: DVec3) -> f64 {
-        self.place.first().map_or(1.0, |transform| transform.area_scale(ng))
-    }
 }
 
 /// The primitive that a ray leaves: a flat one cannot be met again.

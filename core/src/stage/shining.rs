@@ -12,22 +12,35 @@ use crate::object::{Object, carried_area};
 use crate::scene::{NodeId, Scene};
 
 /// Area in the world, m², and the triangles of a mesh.
-pub(super) fn measured(geometry: &Geometry, placement: &Placement) -> (f64, Option<Facets>) {
+pub(super) fn measured(
+    geometry: &Geometry,
+    placement: &Placement,
+    [open, close]: [f64; 2],
+) -> (f64, Option<Facets>) {
     let mesh = match geometry {
         Geometry::Analytic(shape) => return (world_area(shape.object(), placement), None),
         Geometry::Mesh(mesh) => mesh,
     };
-    let transform = placement.place.first();
-    let edge = |v: DVec3| transform.map_or(v, |transform| transform.vector(v));
-    let area = |[a, b, c]: [DVec3; 3]| edge(b - a).cross(edge(c - a)).length() / 2.0;
     let triangles = 0..index(mesh.triangles().indices.len());
-    let areas: Vec<f64> = triangles.clone().map(|i| area(mesh.opening_corners(i))).collect();
+    let areas = |time: f64| -> Vec<f64> {
+        let mut room = None;
+        let transform = placement.place.at(time, &mut room);
+        let edge = |v: DVec3| transform.map_or(v, |transform| transform.vector(v));
+        triangles.clone().map(|i| mesh.area(i, time, edge)).collect()
+    };
+    let first = areas(open);
+    let area = first.iter().sum();
+    if placement.place.is_moving() || mesh.is_moving() {
+        // What is flat at one time may shine at another.
+        let others = [areas(0.5 * open + 0.5 * close), areas(close)];
+        let all = first.iter().zip(&others[0]).zip(&others[1]);
+        let mean: Vec<f64> = all.map(|((a, b), c)| (a + b + c) / 3.0).collect();
+        return (area, Alias::new(&mean).ok().map(|choice| Facets::new(choice, None)));
+    }
+    let transform = placement.place.first();
     let world = |p: DVec3| transform.map_or(p, |transform| transform.point(p));
     let corners: Vec<_> = triangles.map(|i| mesh.opening_corners(i).map(world)).collect();
-    let stands = !(placement.place.is_moving() || geometry.is_moving());
-    let facets = Alias::new(&areas).ok();
-    let facets = facets.map(|choice| Facets::new(choice, stands.then_some(&corners)));
-    (areas.iter().sum(), facets)
+    (area, Alias::new(&first).ok().map(|choice| Facets::new(choice, Some(&corners))))
 }
 
 /// The parallelogram of a shape that its placement shears.

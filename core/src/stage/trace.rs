@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use luxel_sdk::kind::Surface;
-use luxel_sdk::num::Ray;
+use luxel_sdk::num::{Ray, gamma64};
 
 use crate::accel::{Direction, Processor, Room};
 
@@ -30,6 +30,7 @@ impl Moment<'_> {
             let geometry = &self.geometries[placement.geometry as usize];
             let local = Local::of(placement, &Ray { t_max: walk.t_max, ..*ray }, world, self.time);
             let from = Leaving::face_on(from, index);
+            let t_enter = local.entry(placement, geometry, t_enter);
             let approach = self.approach(processor, &local, t_enter, from);
             if let Some(hit) = geometry.intersect(&local.ray, approach, steps) {
                 found = Some(SceneHit { placement: index, hit });
@@ -54,6 +55,7 @@ impl Moment<'_> {
             let geometry = &self.geometries[placement.geometry as usize];
             let local = Local::of(placement, ray, world, self.time);
             let from = Leaving::face_on(from, index);
+            let t_enter = local.entry(placement, geometry, t_enter);
             let approach = self.approach(processor, &local, t_enter, from);
             if geometry.occluded(&local.ray, approach) {
                 return true;
@@ -72,6 +74,7 @@ impl Moment<'_> {
             let place = &self.placements[placement as usize];
             let geometry = &self.geometries[place.geometry as usize];
             let local = Local::of(place, ray, world, self.time);
+            let t_enter = local.entry(place, geometry, t_enter);
             let approach = self.approach(processor, &local, t_enter, None);
             if let Some(hit) = geometry.intersect(&local.ray, approach, &mut 0) {
                 see(&SceneHit { placement, hit });
@@ -137,6 +140,21 @@ pub(super) struct Local {
 }
 
 impl Local {
+    /// Where the ray enters the geometry of a placement whose box in the world it enters at `t_enter`:
+    /// the box of what moves holds all of its way, and precision wants to begin nearby.
+    #[inline(always)]
+    pub(super) fn entry(&self, placement: &Placement, geometry: &Geometry, t_enter: f64) -> f64 {
+        if placement.place.is_moving() { self.own_entry(geometry, t_enter) } else { t_enter }
+    }
+
+    #[inline(never)]
+    fn own_entry(&self, geometry: &Geometry, t_enter: f64) -> f64 {
+        let bounds = geometry.bounds();
+        let found = bounds.intersect_ray(self.ray.o, self.ray.d.recip(), f64::INFINITY);
+        // A difference and a product, by a rounded inverse.
+        found.map_or(t_enter, |(near, _)| t_enter.max(near / (1.0 + gamma64(4))))
+    }
+
     /// Carries a ray of the world, whose direction is `world` made ready.
     #[inline(always)]
     pub(super) fn of(

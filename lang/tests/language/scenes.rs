@@ -213,6 +213,6 @@ fn materials_of_an_asset_are_replaced_by_name() {
 fn fixed(pose: &luxel_core::scene::Pose) -> glam::DAffine3 {
     match pose {
         luxel_core::scene::Pose::Fixed(transform) => *transform,
-        moving => panic!("{moving:?}"),
+        moving @ luxel_core::scene::Pose::Moving(_) => panic!("{moving:?}"),
     }
 }

@@ -130,12 +130,17 @@ impl Moment<'_> {
         let placement = &self.placements[*place as usize];
         let (mut surface, face, mut pdf) = match &*self.geometries[placement.geometry as usize] {
             Geometry::Mesh(mesh) => {
-                let triangle = index(triangles.as_ref()?.choice.sample(left).index);
+                let facets = triangles.as_ref()?;
+                let triangle = index(facets.choice.sample(left).index);
                 let [_, b, c] = uniform_triangle(u.point).map(f64::from);
                 let surface =
                     mesh.surface(triangle, DVec2::new(b, c), self.film.precision, self.time);
-                let area = area * mesh.growth(triangle, self.time);
-                (surface, triangle, placement.area_scale(surface.ng) / area)
+                let mut room = None;
+                let transform = placement.place.at(self.time, &mut room);
+                let chosen = (facets, triangle);
+                let pdf = self.facet_density(placement, mesh, chosen, *area, transform)
+                    * transform.map_or(1.0, |transform| transform.area_scale(surface.ng));
+                (surface, triangle, pdf)
             }
             Geometry::Analytic(shape) => {
                 let sample = shape.object().fixed().shape().sample(None, u.point)?;

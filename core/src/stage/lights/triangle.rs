@@ -18,7 +18,7 @@ const FEW: usize = 4;
 /// The triangles of a shining mesh.
 #[derive(Debug)]
 pub struct Facets {
-    /// How one is chosen, by its area in the world when the shutter opens.
+    /// How one is chosen, by its area in the world: of one that moves the mean over the shutter.
     pub(super) choice: Alias,
     /// Of a mesh that stands: a point of the world, and the square of a distance from there beyond
     /// which no point is near a triangle.

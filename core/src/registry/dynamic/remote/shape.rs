@@ -263,6 +263,8 @@ fn moves_well(mesh: &TriangleMesh, later: &Later) -> bool {
     from.is_finite()
         && to.is_finite()
         && from < to
+        && (to - from).is_finite()
+        && later.points.iter().zip(&mesh.points).all(|(p, first)| (*p - *first).is_finite())
         && later.points.len() == mesh.points.len()
         && later.normals.len() == mesh.normals.len()
         && later.normals.iter().all(|normal| normal.is_finite())

@@ -31,9 +31,14 @@ impl Mesh<'_> {
     /// Rules between the parameters of motion.
     pub(super) fn check_motion(&self) -> Result<(), Fault> {
         let Some(field) = self.motion() else { return Ok(()) };
-        if !(self.next_at > self.at) {
+        if !(self.next_at > self.at && (self.next_at - self.at).is_finite()) {
             let message = "`next_at`, when the corners are there, is later than `at`";
             return Err(Fault::mesh("next_at", message));
+        }
+        if field == "next_points" && !self.normals.get().is_empty() {
+            let message =
+                "`normals` do not turn with the corners: leave them out, and say `smooth`";
+            return Err(Fault::mesh("normals", message));
         }
         if self.displace.is_given() {
             let message = "a mesh that is displaced cannot move its corners";
@@ -69,10 +74,16 @@ impl Mesh<'_> {
             );
             return Err(vec![Fault::mesh(field, message)]);
         }
+        if last.normals.len() != mesh.normals.len() {
+            let message =
+                "of the two one has normals and one has none: `smooth` says what both have";
+            return Err(vec![Fault::mesh(field, message)]);
+        }
         let aside = last.centre - mesh.centre;
         let points: Vec<Vec3> =
             last.points.iter().map(|p| (p.as_dvec3() + aside).as_vec3()).collect();
-        if let Some(far) = points.iter().position(|p| !p.is_finite()) {
+        let too_far = |(p, first): (&Vec3, &Vec3)| !(*p - *first).is_finite();
+        if let Some(far) = points.iter().zip(&mesh.points).position(too_far) {
             let message = format!("corner {far} moves farther than a mesh reaches, 3.4e38 m");
             return Err(vec![Fault::mesh(field, message)]);
         }

@@ -44,37 +44,36 @@ pub(super) struct Made {
 impl Made {
     /// The stage; `None` once the watch is cancelled.
     pub(super) fn finish(
-        self,
+        mut self,
         settings: Settings,
         objects: Objects,
         (scene, film, mode): (Scene, Film, ColorMode),
         watch: &Watch,
     ) -> Option<Stage> {
-        let mut made = self;
         let during = [film.time, film.time + film.shutter];
         let boxed = |placement: &Placement| {
-            let local = made.geometries[placement.geometry as usize].bounds();
+            let local = self.geometries[placement.geometry as usize].bounds();
             let world = placement.place.bounds(local, during);
             (world.min, world.max)
         };
-        let boxes: Vec<_> = made.placements.iter().map(boxed).collect();
+        let boxes: Vec<_> = self.placements.iter().map(boxed).collect();
         let sphere = around(&boxes);
-        let media = !made.media.is_empty();
-        let (places, shapes) = (&mut made.placements, &made.geometries);
-        let nested = nesting::settle(places, shapes, &boxes, &made.materials, media);
-        let open_surfaces = made.placements.iter().any(|placement| placement.skin == Skin::Open);
-        let motion = settings.camera_place.is_moving() || made.is_moving();
+        let media = !self.media.is_empty();
+        let (places, shapes) = (&mut self.placements, &self.geometries);
+        let nested = nesting::settle(places, shapes, &boxes, &self.materials, media);
+        let open_surfaces = self.placements.iter().any(|placement| placement.skin == Skin::Open);
+        let motion = settings.camera_place.is_moving() || self.is_moving();
         let features = Features { media, open_surfaces, nested, motion };
         watch.name("the scene");
         let top = TopBvh::build_watched(&boxes, watch)?;
         let mut stage = Stage {
-            lights: Lights::new(made.lights, sphere.1, mode),
+            lights: Lights::new(self.lights, sphere.1, mode),
             top,
-            geometries: made.geometries,
-            placements: made.placements,
-            materials: made.materials,
-            material_nodes: made.material_nodes,
-            media: made.media,
+            geometries: self.geometries,
+            placements: self.placements,
+            materials: self.materials,
+            material_nodes: self.material_nodes,
+            media: self.media,
             outside: settings.outside,
             camera: settings.camera,
             camera_place: settings.camera_place,
@@ -84,7 +83,7 @@ impl Made {
             reach: sphere.1,
             camera_media: MediumStack::default(),
             eye: None,
-            cache: Cache { objects, meshes: made.meshes },
+            cache: Cache { objects, meshes: self.meshes },
             scene,
             film,
             mode,

@@ -27,6 +27,8 @@ impl Dimension {
     pub const ANGLE: Self = Self([0, 0, 0, 0, 0, 1, 0]);
     /// Steradian.
     pub const SOLID_ANGLE: Self = Self([0, 0, 0, 0, 0, 0, 1]);
+    /// Radian per second.
+    pub const ANGULAR_SPEED: Self = Self([0, 0, -1, 0, 0, 1, 0]);
     /// Watt.
     pub const POWER: Self = Self([2, 1, -3, 0, 0, 0, 0]);
     /// Joule.
@@ -53,7 +55,7 @@ impl Dimension {
 
     /// The word a person would use, or the base units: `length`, `angle`, `m^2/s`.
     pub fn name(self) -> String {
-        const WORDS: [(Dimension, &str); 7] = [
+        const WORDS: [(Dimension, &str); 8] = [
             (Dimension::NONE, "a plain number"),
             (Dimension::LENGTH, "a length"),
             (Dimension::TIME, "a time"),
@@ -61,6 +63,7 @@ impl Dimension {
             (Dimension::ANGLE, "an angle"),
             (Dimension::SOLID_ANGLE, "a solid angle"),
             (Dimension::POWER, "a power"),
+            (Dimension::ANGULAR_SPEED, "an angular speed, as `90 deg/s`"),
         ];
         match WORDS.iter().find(|(dimension, _)| *dimension == self) {
             Some((_, word)) => (*word).to_owned(),

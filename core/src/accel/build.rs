@@ -151,7 +151,12 @@ impl<T: Timber> Tree<T> {
             at = (at.0 + part.nodes.len(), at.1 + part.blocks.len());
         }
         // Parts are alike: room for all of them, of which only what is written takes memory.
-        let room = |n: usize| n + n * (n_parts - roots.len()) / roots.len() / 50 * 51;
+        let left = n_parts - roots.len();
+        let room = |n: usize| {
+            let more = n * left / roots.len();
+            // A fiftieth more than the mean.
+            n + more + more / 50
+        };
         append(
             &mut self.nodes,
             room(at.0),

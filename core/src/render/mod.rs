@@ -29,7 +29,8 @@ pub struct Options {
     pub crop: Option<Rect>,
     /// Threads; as many as there are cores if absent.
     pub threads: Option<NonZeroUsize>,
-    /// Whether rays take turns, which changes no bit; as is sooner for the stage if absent.
+    /// Whether rays of path integrators take turns, which changes no bit; as is sooner for the stage
+    /// if absent.
     pub turns: Option<bool>,
 }
 
@@ -119,8 +120,8 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
             film.tiles_mut().par_iter_mut().for_each_init(
                 || {
                     let output = integrator.output();
-                    let new = tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output);
-                    new.in_turns(turns)
+                    let worker = tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output);
+                    worker.in_turns(turns)
                 },
                 |worker, tile| worker.pass(tile, from..to, stop),
             );

@@ -77,10 +77,10 @@ pub fn build_watched(
     let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(&mesh_part);
-    let shutter = (film.time, film.shutter);
+    let during = film.during();
     let mut maker = Maker {
         scene: &scene,
-        shutter,
+        during,
         splits: Splits::default(),
         builder,
         cache,
@@ -120,8 +120,8 @@ pub fn build_watched(
 
 struct Maker<'a> {
     scene: &'a Scene,
-    /// When it opens and how long for, seconds.
-    shutter: (f64, f64),
+    /// When the shutter opens and closes, seconds.
+    during: [f64; 2],
     splits: Splits,
     builder: Builder<'a>,
     cache: &'a Cache,
@@ -130,12 +130,6 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// When the shutter opens and closes, seconds.
-    fn during(&self) -> [f64; 2] {
-        let (open, shutter) = self.shutter;
-        [open, open + shutter]
-    }
-
     fn place(&mut self, flat: &Flat) {
         if self.scene.node(flat.node).kind == Kind::Shape {
             self.shape(flat, flat.node, None);
@@ -181,11 +175,11 @@ impl Maker<'_> {
         if pose.is_identity() {
             return Some(Place::Here);
         }
-        let (open, shutter) = self.shutter;
+        let [open, _] = self.during;
         let place = match pose {
             Pose::Fixed(affine) => Transform::new(*affine).map(|it| Place::Fixed(Box::new(it))),
             Pose::Moving(steps) => Motion::new(steps, &mut self.splits).and_then(|motion| {
-                if motion.stands([open, open + shutter]) || shutter <= 0.0 {
+                if motion.stands(self.during) {
                     return motion.at(open).map(|it| Place::Fixed(Box::new(it)));
                 }
                 Place::moving(motion, open)
@@ -226,7 +220,7 @@ impl Maker<'_> {
     fn shining(&mut self, object: Arc<Object>, placement: &Placement, span: Span) {
         let place = index(self.made.placements.len());
         let geometry = &self.made.geometries[placement.geometry as usize];
-        let (area, triangles) = shining::measured(geometry, placement, self.during());
+        let (area, triangles) = shining::measured(geometry, placement, self.during);
         let shape = (self.scene, placement.node);
         self.builder.diagnostics.extend(shining::doubts(geometry, area, shape, span));
         let quad = shining::sheared(geometry, placement);
@@ -243,9 +237,7 @@ impl Maker<'_> {
         let known = self.made.meshes.get(&hash).or_else(|| self.cache.meshes.get(&hash));
         let geometry = match known {
             // The object itself is kept only where no file that it read has changed.
-            Some((kept, geometry))
-                if Arc::ptr_eq(kept, &object) && geometry.is_of(self.during()) =>
-            {
+            Some((kept, geometry)) if Arc::ptr_eq(kept, &object) && geometry.is_of(self.during) => {
                 geometry.clone()
             }
             _ => Arc::new(self.new_geometry(id, &object)?),
@@ -264,7 +256,7 @@ impl Maker<'_> {
             return Some(Geometry::Analytic(Analytic::new(object.clone(), self.watch)?));
         };
         let span = self.scene.node(id).span;
-        match Mesh::build(triangles, self.during(), self.watch) {
+        match Mesh::build(triangles, self.during, self.watch) {
             Ok(mesh) => {
                 if mesh.dropped() > 0 {
                     let message = format!("{} triangles without area left out", mesh.dropped());

@@ -1,5 +1,6 @@
 //! Geometry in its own frame: analytic shapes, and meshes with their tree.
 
+mod chart;
 mod part;
 #[cfg(test)]
 mod tests;
@@ -7,9 +8,10 @@ mod tests;
 use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3, Vec3};
-use luxel_sdk::kind::{Hit, Surface, TriangleMesh};
+use luxel_sdk::kind::{Hit, Later, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray, gamma32, gamma64, unit_and_length};
 
+use self::chart::parametrisation;
 use super::analytic::Analytic;
 use super::closed::is_closed;
 use crate::accel::{
@@ -17,6 +19,7 @@ use crate::accel::{
 };
 use crate::cast::index;
 
+pub(super) use chart::by_coordinates;
 pub(super) use part::mesh_part;
 
 /// What a placement places. Shared by every placement of the same shape.
@@ -144,21 +147,28 @@ impl Mesh {
 
     /// The corners of a triangle at a time, about the centre: as the tree has them, to the bit.
     #[inline(always)]
-    pub(super) fn corners(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
-        let points = &self.triangles.points;
-        match &self.triangles.later {
-            None => [points[a].as_dvec3(), points[b].as_dvec3(), points[c].as_dvec3()],
-            Some(later) => between(points, &later.points, [a, b, c], later.share(time)),
-        }
+    pub(super) fn corners(&self, corners: [usize; 3], time: f64) -> [DVec3; 3] {
+        self.moved(&self.triangles.points, |later| &later.points, corners, time)
     }
 
     /// The normals at its corners at a time, unit where the mesh stands.
     #[inline(always)]
-    pub(super) fn normals(&self, [a, b, c]: [usize; 3], time: f64) -> [DVec3; 3] {
-        let normals = &self.triangles.normals;
+    pub(super) fn normals(&self, corners: [usize; 3], time: f64) -> [DVec3; 3] {
+        self.moved(&self.triangles.normals, |later| &later.normals, corners, time)
+    }
+
+    /// What three corners have at a time, of two lists with one for each corner.
+    #[inline(always)]
+    fn moved(
+        &self,
+        first: &[Vec3],
+        last: impl Fn(&Later) -> &[Vec3],
+        [a, b, c]: [usize; 3],
+        time: f64,
+    ) -> [DVec3; 3] {
         match &self.triangles.later {
-            None => [normals[a].as_dvec3(), normals[b].as_dvec3(), normals[c].as_dvec3()],
-            Some(later) => between(normals, &later.normals, [a, b, c], later.share(time)),
+            None => [first[a].as_dvec3(), first[b].as_dvec3(), first[c].as_dvec3()],
+            Some(later) => between(first, last(later), [a, b, c], later.share(time)),
         }
     }
 
@@ -366,48 +376,11 @@ fn between(first: &[Vec3], last: &[Vec3], corners: [usize; 3], share: f32) -> [D
     corners.map(|i| (first[i] + (last[i] - first[i]) * share).as_dvec3())
 }
 
-/// Surface coordinates and the derivatives of the point by them (PBR4 §6.5.3).
-#[inline(always)]
-fn parametrisation(
-    mesh: &TriangleMesh,
-    corners: [usize; 3],
-    [a, b, c]: [DVec3; 3],
-    w: [f64; 3],
-) -> (DVec2, DVec3, DVec3) {
-    let barycentric = (DVec2::new(w[1], w[2]), b - a, c - a);
-    if mesh.uvs.is_empty() {
-        return barycentric;
-    }
-    let [ta, tb, tc] = corners.map(|i| mesh.uvs[i].as_dvec2());
-    let uv = ta * w[0] + tb * w[1] + tc * w[2];
-    let (d1, d2) = (tb - ta, tc - ta);
-    let det = d1.perp_dot(d2);
-    let dp_du = ((b - a) * d2.y - (c - a) * d1.y) / det;
-    let dp_dv = ((c - a) * d1.x - (b - a) * d2.x) / det;
-    if dp_du.is_finite() && dp_dv.is_finite() && dp_du != DVec3::ZERO {
-        (uv, dp_du, dp_dv)
-    } else {
-        (uv, barycentric.1, barycentric.2)
-    }
-}
-
-/// Derivatives by the barycentrics of the second and the third corner as those by the surface
-/// coordinates, where `parametrisation` tells the point's by them.
-pub(super) fn by_coordinates(
-    mesh: &TriangleMesh,
-    corners: [usize; 3],
-    points: [DVec3; 3],
-    [x, y]: [DVec3; 2],
-) -> (DVec3, DVec3) {
-    let (_, dp_du, dp_dv) = parametrisation(mesh, corners, points, [1.0, 0.0, 0.0]);
-    let [a, b, c] = points;
-    if mesh.uvs.is_empty() || (dp_du, dp_dv) == (b - a, c - a) {
-        return (x, y);
-    }
-    let [ta, tb, tc] = corners.map(|i| mesh.uvs[i].as_dvec2());
-    let (d1, d2) = (tb - ta, tc - ta);
-    let det = d1.perp_dot(d2);
-    ((x * d2.y - y * d1.y) / det, (y * d1.x - x * d2.x) / det)
+/// Where a ray enters a box, or a little before; `None` where it passes.
+pub(super) fn enter(bounds: &Bounds3, ray: &Ray) -> Option<f64> {
+    let found = bounds.intersect_ray(ray.o, ray.d.recip(), f64::INFINITY);
+    // A difference and a product, by a rounded inverse.
+    found.map(|(near, _)| near / (1.0 + gamma64(4)))
 }
 
 impl Geometry {

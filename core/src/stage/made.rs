@@ -50,7 +50,7 @@ impl Made {
         (scene, film, mode): (Scene, Film, ColorMode),
         watch: &Watch,
     ) -> Option<Stage> {
-        let during = [film.time, film.time + film.shutter];
+        let during = film.during();
         let boxed = |placement: &Placement| {
             let local = self.geometries[placement.geometry as usize].bounds();
             let world = placement.place.bounds(local, during);

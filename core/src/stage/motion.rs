@@ -78,15 +78,16 @@ impl Motion {
         steps.iter().map(&mut part).collect::<Option<Vec<_>>>().map(Self)
     }
 
-    /// Whether nothing changes in an interval of time.
+    /// Whether nothing changes in an interval of time, which may be a moment.
     pub fn stands(&self, [open, close]: [f64; 2]) -> bool {
-        self.0.iter().all(|part| match part {
-            Part::Fixed(_) => true,
-            Part::Keys(keys) => {
-                keys.len() == 1 || close <= keys[0].time || open >= keys[keys.len() - 1].time
-            }
-            Part::Spin { rate, .. } => *rate == 0.0,
-        })
+        open >= close
+            || self.0.iter().all(|part| match part {
+                Part::Fixed(_) => true,
+                Part::Keys(keys) => {
+                    keys.len() == 1 || close <= keys[0].time || open >= keys[keys.len() - 1].time
+                }
+                Part::Spin { rate, .. } => *rate == 0.0,
+            })
     }
 
     /// The whole transform at a time in seconds.

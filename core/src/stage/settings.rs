@@ -59,6 +59,11 @@ impl Default for Film {
 }
 
 impl Film {
+    /// When the shutter opens and closes, seconds.
+    pub fn during(&self) -> [f64; 2] {
+        [self.time, self.time + self.shutter]
+    }
+
     /// Reads a film node; what it does not give keeps its default. The node fits its schema.
     pub fn of_node(node: Option<&Node>) -> Self {
         let mut film = Self::default();

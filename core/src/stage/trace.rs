@@ -2,11 +2,11 @@
 
 use glam::{DVec3, Vec3};
 use luxel_sdk::kind::Surface;
-use luxel_sdk::num::{Ray, gamma64};
+use luxel_sdk::num::Ray;
 
 use crate::accel::{Direction, Processor, Room};
 
-use super::geometry::Approach;
+use super::geometry::{Approach, enter};
 use super::{Geometry, Leaving, Moment, Placement, SceneHit, Skin};
 
 impl Moment<'_> {
@@ -149,10 +149,7 @@ impl Local {
 
     #[inline(never)]
     fn own_entry(&self, geometry: &Geometry, t_enter: f64) -> f64 {
-        let bounds = geometry.bounds();
-        let found = bounds.intersect_ray(self.ray.o, self.ray.d.recip(), f64::INFINITY);
-        // A difference and a product, by a rounded inverse.
-        found.map_or(t_enter, |(near, _)| t_enter.max(near / (1.0 + gamma64(4))))
+        enter(&geometry.bounds(), &self.ray).map_or(t_enter, |near| t_enter.max(near))
     }
 
     /// Carries a ray of the world, whose direction is `world` made ready.

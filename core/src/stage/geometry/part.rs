@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
-use luxel_sdk::num::{Bounds3, Ray, gamma64};
+use luxel_sdk::num::{Bounds3, Ray};
 
-use super::{Approach, Geometry, Mesh};
+use super::{Approach, Geometry, Mesh, enter};
 use crate::accel::{Direction, Precision, Processor, Watch};
 
 /// A mesh that intersects itself: its triangles in double precision, as analytic shapes are.
@@ -26,24 +26,12 @@ pub(in super::super) fn mesh_part(
     if triangles.later.is_some() {
         return Err("a mesh whose points move is no part of a solid".to_owned());
     }
-    let area = |i: u32| {
-        let [a, b, c] = triangles.corners(i);
-        0.5 * (b - a).cross(c - a).length()
-    };
-    let area = (0..crate::cast::index(triangles.indices.len())).map(area).sum();
     let mesh = Mesh::build(triangles, [0.0; 2], watch).map_err(|e| e.to_string())?;
+    let triangles = 0..crate::cast::index(mesh.triangles().indices.len());
+    let area = triangles.map(|i| mesh.area(i, 0.0, |edge| edge)).sum();
     let mesh = Geometry::Mesh(Arc::new(mesh));
     let bounds = mesh.bounds();
     Ok(Arc::new(MeshPart { mesh, bounds, area }))
-}
-
-impl MeshPart {
-    /// Where a ray enters the box, or a little before; `None` where it passes.
-    fn enter(&self, ray: &Ray) -> Option<f64> {
-        let found = self.bounds.intersect_ray(ray.o, ray.d.recip(), f64::INFINITY);
-        // A difference and a product, by a rounded inverse.
-        found.map(|(near, _)| near / (1.0 + gamma64(4)))
-    }
 }
 
 impl Shape for MeshPart {
@@ -57,7 +45,7 @@ impl Shape for MeshPart {
             processor: Processor::ANY,
             precision: Precision::Exact,
             direction: Some(&direction),
-            t_enter: self.enter(ray)?,
+            t_enter: enter(&self.bounds, ray)?,
             from: None,
             time: 0.0,
         };

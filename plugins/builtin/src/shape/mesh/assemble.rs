@@ -139,6 +139,11 @@ pub(super) fn finish(mesh: &mut TriangleMesh, smooth: Shading) -> usize {
     lost
 }
 
+/// The angle between two vectors, accurate however small it is.
+pub(super) fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
+}
+
 /// A normal for each point: the mean of its faces' normals, weighted by their angles there. Points
 /// at the same place share it, so that seams of textures do not show.
 ///
@@ -153,8 +158,7 @@ fn vertex_normals(mesh: &TriangleMesh) -> Vec<Vec3> {
         let Some(n) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else { continue };
         for k in 0..3 {
             let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-            let angle = a.cross(b).length().atan2(a.dot(b));
-            *sums.entry(key(triangle[k])).or_default() += n * angle;
+            *sums.entry(key(triangle[k])).or_default() += n * angle(a, b);
         }
     }
     let n_points = u32::try_from(mesh.points.len()).expect("indices are u32");

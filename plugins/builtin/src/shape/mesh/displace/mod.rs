@@ -12,6 +12,7 @@ use luxel_sdk::params::Fault;
 
 use self::tessellate::tessellate;
 use super::Shading;
+use super::assemble::angle;
 use super::net::{MOST_TRIANGLES, Net};
 
 /// What is asked for.
@@ -130,8 +131,7 @@ impl Net {
             let p = triangle.map(|i| self.places[i as usize]);
             for k in 0..3 {
                 let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-                let angle = a.cross(b).length().atan2(a.dot(b));
-                sums[triangle[k] as usize] += vector(3 * i + k, face) * angle;
+                sums[triangle[k] as usize] += vector(3 * i + k, face) * angle(a, b);
             }
         }
         sums.into_iter().map(DVec3::normalize_or_zero).collect()

@@ -9,6 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
+use super::super::assemble::angle;
 use super::Scheme;
 
 /// What lies around a point, relative to it, counter-clockwise.
@@ -46,8 +47,7 @@ impl Ring {
         let mut sum = DVec3::ZERO;
         for i in 0..n_faces {
             let (a, b) = (self.far[i], self.far[(i + 1) % n]);
-            let cross = a.cross(b);
-            sum += cross.normalize_or_zero() * cross.length().atan2(a.dot(b));
+            sum += a.cross(b).normalize_or_zero() * angle(a, b);
         }
         sum.try_normalize().unwrap_or(DVec3::Y)
     }

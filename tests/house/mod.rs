@@ -60,8 +60,8 @@ const ROOMS: [(&str, &[&str]); 17] = [
     ("obvhs::", &["core/src/accel/"]),
     ("std::arch", &["core/src/accel/"]),
     ("core::arch", &["core/src/accel/"]),
-    ("is_x86_feature_detected", &["core/src/accel/"]),
-    ("target_feature", &["core/src/accel/"]),
+    ("is_x86_feature_detected", &["core/src/accel/", "plugins/sdk/src/sampling/sobol.rs"]),
+    ("target_feature", &["core/src/accel/", "plugins/sdk/src/sampling/sobol.rs"]),
     ("rayon::", &["core/src/accel/", "core/src/render/"]),
     ("libloading", &["core/src/registry/dynamic"]),
     (
@@ -71,6 +71,8 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "plugins/sdk/src/kind/table/",
             "plugins/sdk/src/wire/",
             "plugins/sdk/src/params/",
+            // Points with what the processor has.
+            "plugins/sdk/src/sampling/sobol.rs",
             // It writes the unsafe implementation that `params` asks for.
             "plugins/sdk-derive/src/",
             "core/src/object/",

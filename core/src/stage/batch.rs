@@ -8,7 +8,7 @@ use luxel_sdk::num::Ray;
 use crate::accel::{Begun, Direction, MeshHit, MeshWalk, Processor, Room, Stack, TopWalk};
 
 use super::geometry::{Approach, Geometry, Landed, Mesh, Taken};
-use super::trace::Local;
+use super::trace::{Carried, Local};
 use super::{Leaving, Moment, SceneHit, Skin, Stage};
 
 /// Rays that take turns.
@@ -110,7 +110,7 @@ impl Stage {
 struct Flight<'s> {
     number: usize,
     ray: Ray,
-    world: Option<Direction>,
+    direction: Option<Direction>,
     from: Option<Leaving>,
     moment: Moment<'s>,
     walk: TopWalk<'s>,
@@ -124,7 +124,7 @@ struct Flight<'s> {
 struct Visit<'s> {
     placement: u32,
     mesh: &'s Mesh,
-    local: Local,
+    carried: Option<Carried>,
     t_enter: f64,
     taken: Taken,
 }
@@ -134,9 +134,9 @@ type Stacks<'a, 'r> = (&'a mut Stack<'r, f64>, &'a mut Stack<'r, f32>);
 impl<'s> Flight<'s> {
     #[inline(always)]
     fn new(stage: &'s Stage, (number, (ray, from, time)): (usize, Asked<'_>)) -> Self {
-        let (world, walk) = (Direction::new(ray.d), stage.top.walk(ray.o, ray.d, ray.t_max));
+        let (direction, walk) = (Direction::new(ray.d), stage.top.walk(ray.o, ray.d, ray.t_max));
         let moment = stage.at(time);
-        Self { number, ray: *ray, world, from, moment, walk, within: None, hit: None, steps: 0 }
+        Self { number, ray: *ray, direction, from, moment, walk, within: None, hit: None, steps: 0 }
     }
 
     /// Goes on until it has to wait for memory; true when it is over.
@@ -170,28 +170,30 @@ impl<'s> Flight<'s> {
         if ANY && placement.skin == Skin::Open {
             return false;
         }
-        let ray = Ray { t_max: self.walk.t_max, ..self.ray };
-        let local = Local::of(placement, &ray, self.world, time);
+        let mut carried = None;
+        let local = Local::of(placement, self.local(), time, &mut carried);
         let geometry = &*stage.geometries[placement.geometry as usize];
         let t_enter = local.entry(placement, geometry, t_enter);
         let mesh = match geometry {
             Geometry::Analytic(shape) => {
-                let hit = if ANY && shape.occluded(&local.ray, processor) {
+                let mut steps = 0;
+                let hit = if ANY && shape.occluded(local.ray, processor) {
                     Some(Hit { t: 0.0, at: DVec2::ZERO, face: 0 })
                 } else if ANY {
                     None
                 } else {
-                    shape.intersect(&local.ray, processor, &mut self.steps)
+                    shape.intersect(local.ray, processor, &mut steps)
                 };
+                self.steps += steps;
                 return self.take(index, hit);
             }
             Geometry::Mesh(mesh) => mesh,
         };
-        let Some(direction) = &local.direction else { return false };
+        let Some(direction) = local.direction else { return false };
         let taken = mesh.take_up(direction, t_enter);
-        let visit = Visit { placement: index, mesh, local, t_enter, taken };
-        let approach = visit.approach(self.moment, processor, self.from);
-        match mesh.begin::<ANY>(&visit.local.ray, &approach, taken) {
+        let visit = Visit { placement: index, mesh, carried, t_enter, taken };
+        let (ray, approach) = self.approach(&visit, processor);
+        match mesh.begin::<ANY>(ray, &approach, taken) {
             Begun::Over(hit, steps) => {
                 self.steps += steps;
                 self.land::<ANY>(processor, &visit, hit)
@@ -222,19 +224,21 @@ impl<'s> Flight<'s> {
         hit: Option<MeshHit>,
     ) -> bool {
         let Some(found) = hit else { return false };
-        let approach = visit.approach(self.moment, processor, self.from);
-        let (mesh, ray) = (visit.mesh, &visit.local.ray);
+        let (ray, approach) = self.approach(visit, processor);
+        let mesh = visit.mesh;
+        let mut steps = 0;
         let landed = if ANY && approach.from.is_none() {
             Some(Hit { t: 0.0, at: DVec2::ZERO, face: found.triangle })
         } else if ANY {
-            mesh.intersect(ray, approach, &mut self.steps)
+            mesh.intersect(ray, approach, &mut steps)
         } else {
             match mesh.land(ray, &approach, visit.taken, hit) {
                 Landed::At(hit) => Some(hit),
                 Landed::Nowhere => None,
-                Landed::Behind(_) => mesh.intersect(ray, approach, &mut self.steps),
+                Landed::Behind(_) => mesh.intersect(ray, approach, &mut steps),
             }
         };
+        self.steps += steps;
         self.take(visit.placement, landed)
     }
 
@@ -242,20 +246,25 @@ impl<'s> Flight<'s> {
     fn take(&mut self, placement: u32, hit: Option<Hit>) -> bool {
         let Some(hit) = hit else { return false };
         self.hit = Some(SceneHit { placement, hit });
-        self.walk.t_max = hit.t;
+        (self.walk.t_max, self.ray.t_max) = (hit.t, hit.t);
         true
     }
-}
 
-impl Visit<'_> {
+    /// The ray in the world.
     #[inline(always)]
-    fn approach(
-        &self,
-        moment: Moment<'_>,
+    fn local(&self) -> Local<'_> {
+        Local { ray: &self.ray, direction: self.direction.as_ref() }
+    }
+
+    /// The ray in the frame of a mesh, and how it comes to it.
+    #[inline(always)]
+    fn approach<'a>(
+        &'a self,
+        visit: &'a Visit<'_>,
         processor: Processor,
-        from: Option<Leaving>,
-    ) -> Approach<'_> {
-        let from = Leaving::face_on(from, self.placement);
-        moment.approach(processor, &self.local, self.t_enter, from)
+    ) -> (&'a Ray, Approach<'a>) {
+        let from = Leaving::face_on(self.from, visit.placement);
+        let local = visit.carried.as_ref().map_or(self.local(), Local::from);
+        (local.ray, self.moment.approach(processor, local, visit.t_enter, from))
     }
 }

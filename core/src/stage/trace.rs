@@ -19,22 +19,24 @@ impl Moment<'_> {
         from: Option<Leaving>,
         steps: &mut u32,
     ) -> Option<SceneHit> {
-        let world = Direction::new(ray.d);
+        let direction = Direction::new(ray.d);
         let mut room = Room::default();
         let mut stack = room.stack();
         let mut walk = self.top.walk(ray.o, ray.d, ray.t_max);
-        let mut found = None;
+        let (mut ray, mut found) = (*ray, None);
         while let Some((index, t_enter)) = walk.next(processor, &mut stack) {
             *steps += 1;
             let placement = &self.placements[index as usize];
             let geometry = &self.geometries[placement.geometry as usize];
-            let local = Local::of(placement, &Ray { t_max: walk.t_max, ..*ray }, world, self.time);
+            let mut room = None;
+            let world = Local { ray: &ray, direction: direction.as_ref() };
+            let local = Local::of(placement, world, self.time, &mut room);
             let from = Leaving::face_on(from, index);
             let t_enter = local.entry(placement, geometry, t_enter);
-            let approach = self.approach(processor, &local, t_enter, from);
-            if let Some(hit) = geometry.intersect(&local.ray, approach, steps) {
+            let approach = self.approach(processor, local, t_enter, from);
+            if let Some(hit) = geometry.intersect(local.ray, approach, steps) {
                 found = Some(SceneHit { placement: index, hit });
-                walk.t_max = hit.t;
+                (walk.t_max, ray.t_max) = (hit.t, hit.t);
             }
         }
         found
@@ -43,7 +45,8 @@ impl Moment<'_> {
     /// Whether a surface that stops light lies along a ray that leaves `from`.
     #[inline(always)]
     pub fn occluded(self, processor: Processor, ray: &Ray, from: Option<Leaving>) -> bool {
-        let world = Direction::new(ray.d);
+        let direction = Direction::new(ray.d);
+        let world = Local { ray, direction: direction.as_ref() };
         let mut room = Room::default();
         let mut stack = room.stack();
         let mut walk = self.top.walk(ray.o, ray.d, ray.t_max);
@@ -53,11 +56,12 @@ impl Moment<'_> {
                 continue;
             }
             let geometry = &self.geometries[placement.geometry as usize];
-            let local = Local::of(placement, ray, world, self.time);
+            let mut room = None;
+            let local = Local::of(placement, world, self.time, &mut room);
             let from = Leaving::face_on(from, index);
             let t_enter = local.entry(placement, geometry, t_enter);
-            let approach = self.approach(processor, &local, t_enter, from);
-            if geometry.occluded(&local.ray, approach) {
+            let approach = self.approach(processor, local, t_enter, from);
+            if geometry.occluded(local.ray, approach) {
                 return true;
             }
         }
@@ -66,17 +70,19 @@ impl Moment<'_> {
 
     /// The nearest hit of every placement along a ray, in no order.
     pub(super) fn along(self, processor: Processor, ray: &Ray, mut see: impl FnMut(&SceneHit)) {
-        let world = Direction::new(ray.d);
+        let direction = Direction::new(ray.d);
+        let world = Local { ray, direction: direction.as_ref() };
         let mut room = Room::default();
         let mut stack = room.stack();
         let mut walk = self.top.walk(ray.o, ray.d, ray.t_max);
         while let Some((placement, t_enter)) = walk.next(processor, &mut stack) {
             let place = &self.placements[placement as usize];
             let geometry = &self.geometries[place.geometry as usize];
-            let local = Local::of(place, ray, world, self.time);
+            let mut room = None;
+            let local = Local::of(place, world, self.time, &mut room);
             let t_enter = local.entry(place, geometry, t_enter);
-            let approach = self.approach(processor, &local, t_enter, None);
-            if let Some(hit) = geometry.intersect(&local.ray, approach, &mut 0) {
+            let approach = self.approach(processor, local, t_enter, None);
+            if let Some(hit) = geometry.intersect(local.ray, approach, &mut 0) {
                 see(&SceneHit { placement, hit });
             }
         }
@@ -87,11 +93,11 @@ impl Moment<'_> {
     pub(super) fn approach(
         self,
         processor: Processor,
-        local: &Local,
+        local: Local<'_>,
         t_enter: f64,
         from: Option<u32>,
     ) -> Approach<'_> {
-        let (precision, direction) = (self.film.precision, local.direction.as_ref());
+        let (precision, direction) = (self.film.precision, local.direction);
         Approach { processor, precision, direction, t_enter, from, time: self.time }
     }
 
@@ -134,38 +140,47 @@ impl Moment<'_> {
 }
 
 /// A ray in the frame of a placement.
-pub(super) struct Local {
-    pub(super) ray: Ray,
-    pub(super) direction: Option<Direction>,
+#[derive(Clone, Copy)]
+pub(super) struct Local<'a> {
+    pub(super) ray: &'a Ray,
+    pub(super) direction: Option<&'a Direction>,
 }
 
-impl Local {
+/// A ray that was carried into another frame than the world's, and its direction made ready.
+pub(super) type Carried = (Ray, Option<Direction>);
+
+impl<'a> Local<'a> {
+    /// Carries a ray of the world into `room`; where the frame is the world's it stays as it is.
+    #[inline(always)]
+    pub(super) fn of(
+        placement: &Placement,
+        world: Self,
+        time: f64,
+        room: &'a mut Option<Carried>,
+    ) -> Self {
+        *room = placement.place.at(time, &mut None).map(|transform| {
+            let ray = transform.inverse_ray(world.ray);
+            (ray, Direction::new(ray.d))
+        });
+        room.as_ref().map_or(world, Self::from)
+    }
+
     /// Where the ray enters the geometry of a placement whose box in the world it enters at `t_enter`:
     /// the box of what moves holds all of its way, and precision wants to begin nearby.
     #[inline(always)]
-    pub(super) fn entry(&self, placement: &Placement, geometry: &Geometry, t_enter: f64) -> f64 {
+    pub(super) fn entry(self, placement: &Placement, geometry: &Geometry, t_enter: f64) -> f64 {
         if placement.place.is_moving() { self.own_entry(geometry, t_enter) } else { t_enter }
     }
 
     #[inline(never)]
-    fn own_entry(&self, geometry: &Geometry, t_enter: f64) -> f64 {
-        enter(&geometry.bounds(), &self.ray).map_or(t_enter, |near| t_enter.max(near))
+    fn own_entry(self, geometry: &Geometry, t_enter: f64) -> f64 {
+        enter(&geometry.bounds(), self.ray).map_or(t_enter, |near| t_enter.max(near))
     }
+}
 
-    /// Carries a ray of the world, whose direction is `world` made ready.
+impl<'a> From<&'a Carried> for Local<'a> {
     #[inline(always)]
-    pub(super) fn of(
-        placement: &Placement,
-        ray: &Ray,
-        world: Option<Direction>,
-        time: f64,
-    ) -> Self {
-        match placement.place.at(time, &mut None) {
-            None => Self { ray: *ray, direction: world },
-            Some(transform) => {
-                let ray = transform.inverse_ray(ray);
-                Self { ray, direction: Direction::new(ray.d) }
-            }
-        }
+    fn from((ray, direction): &'a Carried) -> Self {
+        Self { ray, direction: direction.as_ref() }
     }
 }

@@ -163,12 +163,13 @@ impl Arrival {
 
     /// A ray that leaves this point along the unit direction `wi`, its origin beyond the error of
     /// the point.
+    #[inline(always)]
     pub fn ray(&self, wi: DVec3) -> Ray {
         self.ray_to(wi, f64::INFINITY)
     }
 
     /// The same, up to a distance in metres.
-    #[inline]
+    #[inline(always)]
     pub fn ray_to(&self, wi: DVec3, distance: f64) -> Ray {
         Ray { o: self.origin(wi), d: wi, t_max: distance }
     }

@@ -2,6 +2,7 @@
 //!
 //! Burley 2020, "Practical Hash-based Owen Scrambling", with the Laine–Karras hash as improved by
 //! Vegdahl 2021. Higher dimensions are padded: one seed for each pair of dimensions of a path.
+#![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
 
 use super::hash::{hash32, hash64, u32_to_unit};
 
@@ -32,9 +33,32 @@ pub fn sobol_owen_2d(index: u32, seed: u64) -> [f32; 2] {
 }
 
 /// The points of two seeds, for less than twice the price: both go through every step side by side,
-/// written so that the compiler finds it.
-#[inline(always)]
+/// with what the processor has for products of several numbers and for the order of bits.
+#[inline]
 pub fn sobol_owen_2d_pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("gfni")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
+    {
+        let [a, b] = seeds;
+        // SAFETY: the processor was asked.
+        return unsafe { pair_in_avx512(index, a, b) };
+    }
+    pair(index, seeds)
+}
+
+/// The seeds come one by one, in registers: read as one right after they were written as two, they
+/// would be waited for.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "gfni,avx512dq,avx512vl")]
+fn pair_in_avx512(index: u32, a: u64, b: u64) -> [[f32; 2]; 2] {
+    pair(index, [a, b])
+}
+
+/// Written so that the compiler finds the four lanes.
+#[inline(always)]
+fn pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
     let [(shuffle_a, a), (shuffle_b, b)] = seeds.map(hash64).map(halves);
     let index = index.reverse_bits();
     let [i, j] = [owen_reversed(index, shuffle_a), owen_reversed(index, shuffle_b)];

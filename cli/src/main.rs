@@ -46,6 +46,7 @@ Exit codes: 0 fine, 1 the input is at fault, 2 usage, 3 incomplete (interrupted)
 Examples:
   luxel render scenes/cornell.scene
   luxel watch scenes/cornell.scene --spp 16
+  luxel view cornell.exr
   luxel describe material diffuse";
 
 #[derive(Subcommand)]

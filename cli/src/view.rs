@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut shown = BTreeMap::new();
     for (side, path) in sides.into_iter().filter_map(|(side, path)| Some((side, path?))) {
         let stamp = stamp(path);
-        let picture = Some(Picture::read(path)?);
+        let picture = Some(Picture::open(path)?);
         let path = path.clone();
         shown
             .insert(side as u8, Shown { path, side, stamp, generation: 1, picture, problem: None });
@@ -117,7 +117,7 @@ fn look_again(preview: &Preview, shown: &mut BTreeMap<u8, Shown>) {
         }
         changed = true;
         file.stamp = now;
-        file.problem = match Picture::read(&file.path) {
+        file.problem = match Picture::open(&file.path) {
             Ok(picture) => {
                 (file.picture, file.generation) = (Some(picture), file.generation + 1);
                 show(preview, file);

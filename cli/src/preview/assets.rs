@@ -14,10 +14,21 @@ macro_rules! script {
 }
 
 /// Path, type and text of each file.
-const FILES: [(&str, &str, &str); 3] = [
+const FILES: [(&str, &str, &str); 14] = [
     ("/", HTML, include_str!("page/index.html")),
     ("/page.css", CSS, include_str!("page/page.css")),
+    script!("bar"),
+    script!("flat"),
+    script!("gl"),
+    script!("keys"),
     script!("main"),
+    script!("maps"),
+    script!("pan"),
+    script!("panels"),
+    script!("picture"),
+    script!("shade"),
+    script!("shader"),
+    script!("wire"),
 ];
 
 /// A file as it is sent.

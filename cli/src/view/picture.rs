@@ -1,7 +1,7 @@
 //! Reading an EXR: ours with standard error and samples, others with R, G and B or Y alone.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
 use exr::image::FlatSamples;
@@ -36,7 +36,7 @@ impl Picture {
     ///
     /// # Errors
     /// A file that is missing, no EXR, too large, or without colour.
-    pub(super) fn read(path: &Path) -> Result<Self, Failure> {
+    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let wrong = |what: &dyn std::fmt::Display| {
             Failure::new(Exit::Input, format!("cannot read the picture {}: {what}", path.display()))
         };
@@ -134,7 +134,7 @@ impl Picture {
 type Decoded = (Layer<AnyChannels<FlatSamples>>, (UVec2, glam::IVec2));
 
 /// The first layer, and the display window's size and place.
-fn decode(from: BufReader<File>) -> Result<Decoded, String> {
+fn decode(from: impl Read + Seek) -> Result<Decoded, String> {
     let told = |error: exr::error::Error| error.to_string();
     let reader = exr::block::read(from, false).map_err(told)?;
     for header in reader.headers() {
@@ -178,5 +178,97 @@ fn counts(plane: &FlatSamples) -> Vec<u32> {
         #[expect(clippy::cast_possible_truncation, reason = "saturates")]
         #[expect(clippy::cast_sign_loss, reason = "saturates")]
         floats => floats.values_as_f32().map(|v| v as u32).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use exr::prelude::{AnyChannel, Encoding, Image, Vec2, WritableImage, f16};
+    use luxel_core::film::Film;
+    use luxel_core::stage;
+
+    use super::*;
+    use crate::output::Output;
+    use crate::picture;
+    use crate::testing::Folder;
+
+    /// An EXR with these channels, 3 × 2 pixels at (-1, 4), as another program may write it.
+    fn foreign(names: &[&str]) -> Vec<u8> {
+        let plane = |name: &&str| {
+            let values = (0..6_u8).map(|i| f16::from_f32(f32::from(i) + 0.5)).collect();
+            AnyChannel::new(*name, FlatSamples::F16(values))
+        };
+        let channels = AnyChannels::sort(names.iter().map(plane).collect());
+        let about = LayerAttributes { layer_position: Vec2(-1, 4), ..LayerAttributes::default() };
+        let layer = Layer::new((3, 2), about, Encoding::SMALL_FAST_LOSSLESS, channels);
+        let mut file = Cursor::new(vec![]);
+        Image::from_layer(layer).write().to_buffered(&mut file).unwrap();
+        file.into_inner()
+    }
+
+    fn of_bytes(bytes: &[u8]) -> Result<Picture, String> {
+        let (layer, display) = decode(Cursor::new(bytes))?;
+        Picture::of_layer(layer, display)
+    }
+
+    #[test]
+    fn a_picture_of_ours_is_read_with_error_samples_and_settings() {
+        let folder = Folder::new("view-own");
+        let output = Output { exr: folder.path("a.exr"), png: folder.path("a.png") };
+        let film = Film::new(UVec2::new(9, 8), Rect::new(UVec2::new(2, 3), UVec2::new(4, 5)));
+        let json = r#"{"exposure":9.5,"display":"filmic","spp":7,"complete":false}"#.to_owned();
+        picture::write(&output, &film, &stage::Film::default(), &picture::Notes { json }).unwrap();
+        let picture = Picture::open(&output.exr).unwrap();
+        let frame = picture.frame();
+        assert_eq!((frame.size, frame.window), (film.size, film.window));
+        assert_eq!((frame.exposure, frame.display), (Some(9.5), Display::Filmic));
+        assert_eq!((frame.of_samples, frame.complete), (7, false));
+        let facts = picture.facts(UVec2::new(5, 7));
+        assert_eq!(facts[0], ("radiance".to_owned(), "0 0 0".to_owned()));
+        assert_eq!(facts[1], ("standard error".to_owned(), "inf inf inf".to_owned()));
+        assert_eq!(facts[2], ("samples".to_owned(), "0".to_owned()));
+        for outside in [UVec2::new(6, 7), UVec2::new(1, 7), UVec2::MAX] {
+            assert!(picture.facts(outside).is_empty());
+        }
+    }
+
+    #[test]
+    fn pictures_of_others_are_read_if_they_have_colour_or_luminance() {
+        let grey = of_bytes(&foreign(&["Y", "Z"])).unwrap();
+        assert_eq!(grey.rgb[3..6], [1.5; 3]);
+        assert!(grey.frame().complete && grey.se.is_empty());
+        let at = grey.window.min + UVec2::new(2, 1);
+        assert_eq!(grey.facts(at), [("radiance".to_owned(), "5.5 5.5 5.5".to_owned())]);
+        assert!(of_bytes(&foreign(&["R", "G", "B", "A"])).is_ok());
+        let wrong = of_bytes(&foreign(&["Z"])).err().unwrap();
+        assert!(wrong.contains("no channels R, G and B"), "{wrong}");
+    }
+
+    #[test]
+    fn files_that_are_no_picture_are_told_by_name() {
+        let folder = Folder::new("view-wrong");
+        folder.write("a.exr", b"no picture");
+        for name in ["a.exr", "none.exr"] {
+            let wrong = Picture::open(&folder.path(name)).err().unwrap();
+            assert_eq!(wrong.exit, Exit::Input);
+            assert!(wrong.message.contains(name), "{}", wrong.message);
+        }
+    }
+
+    #[test]
+    fn a_damaged_file_is_an_error_or_another_picture_but_no_panic() {
+        let whole = foreign(&["R", "G", "B"]);
+        for end in 0..whole.len() {
+            assert!(of_bytes(&whole[..end]).is_err(), "{end} bytes");
+        }
+        for i in 0..whole.len() {
+            for flip in [1, 0x80, 0xff] {
+                let mut damaged = whole.clone();
+                damaged[i] ^= flip;
+                let _ = of_bytes(&damaged);
+            }
+        }
     }
 }

@@ -1,0 +1,195 @@
+// The page: what is shown, and what follows when something changes.
+
+import { bar } from "./bar.js";
+import { flat } from "./flat.js";
+import { withGl } from "./gl.js";
+import { keys } from "./keys.js";
+import { Pan } from "./pan.js";
+import { $, histogram, inspect, legend, problems } from "./panels.js";
+import { luminance } from "./picture.js";
+import { connect } from "./wire.js";
+
+const canvas = $("picture");
+const painter = withGl(canvas) ?? flat(canvas);
+
+const state = {
+  a: null, b: null, previous: null, pinned: null,
+  view: "colour", tone: "srgb", ev: 0, compare: "off", wipe: 0.5, flipped: false, bins: false,
+  hovered: null, held: null, reply: null,
+  get other() { return this.compare === "off" ? null : this[this.compare]; },
+  get otherName() { return this.compare === "b" ? this.b?.name || "B" : this.compare; },
+  get shownPicture() { return this.flipped && this.other ? this.other : this.a; },
+  // Both of two pictures are exposed as the first.
+  scaleOf() { return this.a.scale * 2 ** this.ev; },
+};
+
+const pan = new Pan(canvas, {
+  changed: () => redraw(),
+  tapped: (at) => hold(at),
+  hovered: (at) => hover(at),
+  wheeled: (notches) => act.exposureBy(notches / 3),
+});
+
+// Drawing: once for all that changed between two pictures of the screen.
+let due = false;
+let afterDrawing = [];
+function redraw() {
+  if (due) return;
+  due = true;
+  requestAnimationFrame(() => {
+    due = false;
+    paint();
+    afterDrawing.splice(0).forEach((done) => done());
+  });
+}
+
+function paint() {
+  const ratio = devicePixelRatio, [w, h] = pan.room.map((side) => Math.max(Math.round(side * ratio), 1));
+  if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
+  $("empty").hidden = Boolean(state.a);
+  if (!state.a) return;
+  try {
+    painter.draw(state, pan, ratio);
+  } catch (error) {
+    $("empty").hidden = false;
+    $("empty").textContent = error.message;
+  }
+  legend(state);
+  $("histogram").hidden = !state.bins;
+  if (state.bins) histogram(state);
+  placeWipe();
+  placeMark();
+  tellPixel();
+  controls.update();
+}
+
+function placeWipe() {
+  const wiped = Boolean(state.other) && !state.flipped && state.view !== "difference";
+  const x = state.wipe * pan.room[0], top = Math.max(pan.y, 0);
+  for (const id of ["wipe", "left", "right"]) {
+    $(id).hidden = !wiped;
+    $(id).style.left = `${x}px`;
+    $(id).style.top = `${id === "wipe" ? top : top + 10}px`;
+  }
+  $("wipe").style.height = `${Math.max(Math.min(pan.y + pan.size[1] * pan.zoom, pan.room[1]) - top, 0)}px`;
+  $("wipe").setAttribute("aria-valuenow", Math.round(state.wipe * 100));
+  $("left").textContent = state.compare === "b" ? state.a.name || "A" : "now";
+  $("right").textContent = state.otherName;
+}
+
+function placeMark() {
+  const mark = $("mark");
+  mark.hidden = !state.held;
+  if (!state.held) return;
+  const side = Math.max(pan.zoom, 5), shift = (pan.zoom - side) / 2;
+  mark.style.left = `${pan.x + state.held[0] * pan.zoom + shift}px`;
+  mark.style.top = `${pan.y + state.held[1] * pan.zoom + shift}px`;
+  mark.style.width = mark.style.height = `${side}px`;
+}
+
+// The pixel in hand, and the question for what the program knows of it.
+let asking = 0;
+function sideOf(at) {
+  const right = pan.x + (at[0] + 0.5) * pan.zoom > state.wipe * pan.room[0];
+  const shown = state.flipped || (right && state.view !== "difference");
+  return state.other && shown ? "b" : "a";
+}
+function tellPixel() {
+  const at = state.held ?? state.hovered;
+  const side = at ? sideOf(at) : "a";
+  const reply = state.reply?.key === `${at} ${side}` ? state.reply : null;
+  inspect(state, at, side, reply, Boolean(state.held));
+}
+function ask() {
+  clearTimeout(asking);
+  asking = setTimeout(() => {
+    const at = state.held ?? state.hovered;
+    if (!at) return;
+    const side = sideOf(at);
+    // Of pictures of the past the program knows nothing.
+    if (side === "a" || state.compare === "b") wire.ask({ pixel: { at, side } });
+  }, 40);
+}
+function hover(at) {
+  if (String(at) === String(state.hovered)) return;
+  state.hovered = at;
+  if (at) $("inspector").classList.toggle("aside", pan.x + at[0] * pan.zoom > pan.room[0] - 400 && pan.y + at[1] * pan.zoom < 260);
+  ask();
+  redraw();
+}
+function hold(at) {
+  state.held = at && String(at) !== String(state.held) ? at : null;
+  state.hovered = at;
+  ask();
+  redraw();
+}
+
+const act = {
+  view(view) { state.view = view === "difference" && !state.other ? state.view : view; redraw(); },
+  exposure(ev) { state.ev = Math.min(Math.max(ev, -30), 30); redraw(); },
+  exposureBy(stops) { act.exposure(Math.round((state.ev + stops) * 60) / 60); },
+  // The 98th part of a hundred comes to white.
+  autoExposure() {
+    const all = state.a && [...state.a.spread(100000)].map((rgb) => luminance(...rgb)).filter((v) => v > 0 && v < Infinity);
+    if (!all?.length) return;
+    const bright = all.sort((x, y) => x - y)[Math.floor(all.length * 0.98)];
+    act.exposure(Math.round(-Math.log2(bright * state.a.scale) * 20) / 20);
+  },
+  tone(tone) { state.tone = tone; redraw(); },
+  nextTone() { act.tone({ srgb: "linear", linear: "filmic", filmic: "srgb" }[state.tone]); },
+  compare(what) {
+    state.compare = what === "off" || state[what] ? what : "off";
+    if (!state.other && state.view === "difference") state.view = "colour";
+    redraw();
+  },
+  nextCompare() {
+    const ways = ["off", "b", "previous", "pinned"].filter((way) => way === "off" || state[way]);
+    act.compare(ways[(ways.indexOf(state.compare) + 1) % ways.length]);
+  },
+  pin() { state.pinned = state.a; act.compare("pinned"); },
+  wipe(t) { state.wipe = Math.min(Math.max(t, 0), 1); redraw(); },
+  wipeBy(t) { if (state.other) act.wipe(state.wipe + t); },
+  flip(flipped) { if (state.flipped !== flipped) { state.flipped = flipped; redraw(); } },
+  fit() { pan.fit(); },
+  oneToOne() { pan.oneToOne(); },
+  zoom(factor) { pan.zoomBy(factor); },
+  histogram() { state.bins = !state.bins; redraw(); },
+  help() { $("help").showModal(); },
+  release() { state.held = null; state.reply = null; redraw(); },
+};
+
+const controls = bar(state, pan, act);
+keys(act);
+
+const wire = connect({
+  picture(picture, drawn) {
+    const first = !state.a;
+    if (picture.side === "b") {
+      state.b = picture;
+      if (state.compare === "off") state.compare = "b";
+    } else {
+      if (state.a && state.a.generation !== picture.generation) state.previous = state.a;
+      state.a = picture;
+      if (first) state.tone = picture.display;
+      pan.resize(picture.size);
+      ask();
+    }
+    painter.forget([state.a, state.b, state.previous, state.pinned]);
+    if (!state.a) return drawn();
+    afterDrawing.push(drawn);
+    redraw();
+  },
+  words(message) {
+    if (message.title !== undefined) controls.title(message.title);
+    if (message.status !== undefined) controls.status(message.status);
+    if (message.problems) problems(message.problems);
+    if (message.pixel) {
+      state.reply = { ...message.pixel, key: `${message.pixel.at} ${message.pixel.side}` };
+      redraw();
+    }
+  },
+  state(now) { controls.connection(now); },
+});
+
+new ResizeObserver(() => (pan.fits ? pan.fit() : redraw())).observe(canvas);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);

@@ -9,10 +9,11 @@ use luxel_sdk::kind::{
 use luxel_sdk::num::{Ray, offset_origin};
 use rayon::prelude::*;
 
+use super::lattice::Lattice;
 use super::light::{Bundle, Splat};
 use super::tile::{StageHost, Worker};
 use super::watched::Watched;
-use super::{FROM_CAMERA, Stop};
+use super::{FROM_CAMERA, Look, Seen, Stop};
 use crate::accel::Processor;
 use crate::film::{Film, Rect};
 use crate::stage::{Emitters, Leaving, Moment, Skin, Stage};
@@ -29,7 +30,7 @@ pub(super) fn render(
     owner: &dyn PictureIntegrator,
     stage: &Stage,
     (samples, seed): (u32, u32),
-    film: &mut Film,
+    (film, look): (&mut Film, &mut Look<'_>),
     stop: Stop<'_>,
 ) {
     let most = Wants(owner.wants().0 & (FROM_CAMERA.0 | Wants::SIGHT.0));
@@ -45,6 +46,7 @@ pub(super) fn render(
         output,
         window,
         film: RefCell::new(film),
+        look: RefCell::new(look),
         emitters: OnceCell::new(),
         pass: RefCell::new(pass),
         calls: Cell::new(0),
@@ -61,6 +63,7 @@ struct PictureHost<'a> {
     output: Output,
     window: Rect,
     film: RefCell<&'a mut Film>,
+    look: RefCell<&'a mut Look<'a>>,
     emitters: OnceCell<Emitters>,
     pass: RefCell<Pass>,
     /// Runs of light paths so far: each has numbers of its own.
@@ -151,7 +154,7 @@ impl PictureJob for PictureHost<'_> {
             .map_init(
                 || Worker::new(stage, seed, &paths, most, output),
                 |worker, rect| {
-                    let done = worker.samples(*rect, pass..pass + 1, stop);
+                    let done = worker.samples(*rect, pass..pass + 1, Lattice::All, stop);
                     done.then(|| worker.results.clone())
                 },
             )
@@ -217,6 +220,7 @@ impl PictureJob for PictureHost<'_> {
         pass.sum.fill(DVec3::ZERO);
         pass.done += 1;
         self.stop.control.add(self.window.area() as u64);
+        (self.look.borrow_mut())(&self.film.borrow(), Seen { step: 1, samples: pass.done });
     }
 }
 

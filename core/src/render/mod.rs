@@ -77,6 +77,11 @@ impl Control {
         self.superseded.store(true, Ordering::Relaxed);
     }
 
+    /// Whether an end was asked for in this way.
+    pub fn is_superseded(&self) -> bool {
+        self.superseded.load(Ordering::Relaxed)
+    }
+
     /// Samples that have been added to pixels so far.
     pub fn samples_done(&self) -> u64 {
         self.samples.load(Ordering::Relaxed)
@@ -213,8 +218,8 @@ impl Stop<'_> {
     }
 
     fn is_asked(self) -> bool {
-        let superseded = self.control.superseded.load(Ordering::Relaxed);
-        self.control.is_cancelled() || (superseded && !self.first) || self.is_failure()
+        let superseded = self.control.is_superseded() && !self.first;
+        self.control.is_cancelled() || superseded || self.is_failure()
     }
 }
 

@@ -1,53 +1,77 @@
 //! Watching and rendering in one process: what is saved is read while the last picture goes on, and
 //! ends it only if it shows something else.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::{Scope, ScopedJoinHandle};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::Scope;
+use std::time::Duration;
 
+use luxel_core::accel::Watch;
 use luxel_core::render::Control;
-use luxel_core::scene::Hash;
-use luxel_core::stage::Stage;
 
 use super::Args;
-use super::changes::{Changes, Wake};
+use super::changes::{Changes, Noticed, Wake};
 use super::round::{self, Course, Read};
+use super::shown::{Shown, Subject};
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
-use crate::files::{Seen, Watched, look};
+use crate::files::look;
 use crate::interrupt::Guard;
 use crate::isolate::Beat;
 use crate::libraries::{Plugins, Session, Surroundings};
 use crate::load::{self, Loaded, Text};
-use crate::report::{self, Form, Stream};
+use crate::report::{self, Stream};
 
-/// The render in flight, so that Ctrl-C can end it.
-type Current = Arc<Mutex<Arc<Control>>>;
+/// Between two looks at whether a scene is ready.
+const TICK: Duration = Duration::from_millis(1);
+
+/// What Ctrl-C ends: the render and the build in hand.
+#[derive(Clone, Default)]
+struct InHand(Arc<Mutex<(Arc<Control>, Arc<Watch>)>>);
+
+impl InHand {
+    fn get(&self) -> MutexGuard<'_, (Arc<Control>, Arc<Watch>)> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What to do after a round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// Wait for a save.
+    Wait,
+    /// There has been one.
+    Read,
+    /// The end is asked for.
+    End,
+}
 
 pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let (mut session, surroundings) = (Session::new(), Surroundings::of_process());
     let plugins = session.refresh(&args.plugins, &surroundings)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
     let (mut changes, waker) = Changes::new()?;
-    let current = Current::default();
-    let stopped = current.clone();
-    let course = load::Course { line: !args.quiet, ..load::Course::default() };
-    let loading = course.watch.clone();
+    let in_hand = InHand::default();
+    let stopped = in_hand.clone();
     let guard = Guard::default();
     guard.on_ctrl_c(move || {
         let _ = waker.send(Wake::Stop);
-        loading.cancel();
-        stopped.lock().unwrap_or_else(PoisonError::into_inner).cancel();
+        let (render, build) = &*stopped.get();
+        render.cancel();
+        build.cancel();
     })?;
     changes.arm([args.file.as_path()])?;
     std::thread::scope(|scope| {
-        let shown = None;
+        let (shown, impatient) = (None, true);
         let mut watching =
-            Watching { args, scope, guard: &guard, current, course, plugins, changes, shown };
+            Watching { args, scope, guard: &guard, in_hand, plugins, changes, shown, impatient };
         loop {
-            watching.round()?;
-            if !watching.changes.wait() {
+            let next = match watching.round()? {
+                Next::Wait if watching.changes.wait() => Next::Read,
+                Next::Wait => Next::End,
+                next => next,
+            };
+            if next == Next::End {
                 watching.end();
                 report::note("watching has ended");
                 return Ok(Exit::Fine);
@@ -61,142 +85,126 @@ struct Watching<'scope, 'env> {
     args: &'env Args,
     scope: &'scope Scope<'scope, 'env>,
     guard: &'env Guard,
-    current: Current,
-    course: load::Course,
+    in_hand: InHand,
     plugins: Plugins,
     changes: Changes,
     /// The last good scene.
     shown: Option<Shown<'scope>>,
+    /// Whether a save ends the making ready of a scene. Not twice in a row: however fast saves come,
+    /// pictures follow.
+    impatient: bool,
 }
 
-/// A scene whose picture is rendered, or was.
-struct Shown<'scope> {
-    hash: Hash,
-    scene: Arc<(Stage, Read)>,
-    /// Everything that it was made of, and which of that is text that the hash speaks for.
-    files: Watched,
-    texts: BTreeSet<PathBuf>,
-    control: Arc<Control>,
-    thread: Option<ScopedJoinHandle<'scope, ()>>,
-}
-
-impl Shown<'_> {
-    /// Ends its render, if that still runs, once there is something to see.
-    fn supersede(&self) {
-        if self.thread.as_ref().is_some_and(|thread| !thread.is_finished()) {
-            self.control.supersede();
-        }
-    }
-
-    /// Whether a text that was read shows the same scene, of files that have not changed.
-    fn is_of(&self, text: &Text) -> bool {
-        let same =
-            |(path, seen): (&PathBuf, &Seen)| self.texts.contains(path) || look(path) == *seen;
-        text.scene.as_ref().is_some_and(|scene| scene.hash() == self.hash)
-            && !self.scene.0.has_failed()
-            && self.files.iter().all(same)
-    }
-}
-
-impl<'scope> Watching<'scope, '_> {
+impl Watching<'_, '_> {
     /// Reads the scene, and renders it if it shows something else than before.
     ///
     /// # Errors
     /// If standard error cannot be written or the system watches no more files.
-    fn round(&mut self) -> Result<(), Failure> {
+    fn round(&mut self) -> Result<Next, Failure> {
         match self.load() {
-            Ok(()) => Ok(()),
-            Err(_) if self.course.watch.is_cancelled() => Ok(()),
             // A panic in a plugin ends this attempt, not the watch.
-            Err(failure) => {
+            Err(failure) if failure.exit == Exit::Ours => {
                 report::failure(&failure);
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
-                self.changes.expect_news(libraries.chain([self.args.file.as_path()]))
+                self.changes.expect_news(libraries.chain([self.args.file.as_path()]))?;
+                Ok(Next::Wait)
             }
+            // Ctrl-C has ended it, which the wait is told too.
+            Err(failure) if failure.exit == Exit::Incomplete => Ok(Next::Wait),
+            ended => ended,
         }
     }
 
-    fn load(&mut self) -> Result<(), Failure> {
+    fn load(&mut self) -> Result<Next, Failure> {
         let Args { file, load, render, .. } = self.args;
-        let text = load::read(file, load, render.size, &self.plugins, &self.course.beat)?;
-        if let Some(shown) = &mut self.shown
-            && shown.is_of(&text)
+        let text = load::read(file, load, render.size, &self.plugins, &Beat::silent())?;
+        if let Some(Shown { subject, .. }) = &mut self.shown
+            && subject.is_of(&text)
         {
-            shown.files.extend(text.files.asked());
-            return self.changes.expect(shown.files.clone());
+            subject.files.extend(text.files.asked());
+            self.changes.expect(subject.files.clone())?;
+            return Ok(Next::Wait);
         }
-        let texts = text.files.asked().into_keys().collect();
         let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
         if let (Some(_), Some(shown)) = (hash, &self.shown) {
             shown.supersede();
         }
-        let before = self.shown.as_ref().map(|shown| &shown.scene.0);
-        let loaded = load::build(file, text, &self.plugins, before, &self.course)?;
+        let texts = text.files.asked().into_keys().collect();
+        let (loaded, noticed) = self.build(text)?;
+        let loaded = match noticed {
+            Noticed::Save => return Ok(Next::Read),
+            Noticed::Stop => return Ok(Next::End),
+            Noticed::Nothing => loaded?,
+        };
         let mut watched = loaded.files.asked();
         watched.extend(self.plugins.watched.clone());
         self.changes.expect(watched.clone())?;
-        report::diagnostics(&loaded.diagnostics, &loaded.sources, self.form(), Stream::Error)?;
+        let form = self.args.form();
+        report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
         let Loaded { stage, files, sources, .. } = loaded;
-        match (stage, hash) {
-            (Some(stage), Some(hash)) => {
-                let scene = Arc::new((stage, Read { files, sources }));
-                self.show((hash, scene), watched, texts);
-            }
-            // The last good one goes on from its beginning if it was ended for this one.
-            _ => self.show_again(),
+        if let (Some(stage), Some(hash)) = (stage, hash) {
+            let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
+            self.show(Subject { hash, stage, read, files: watched, texts });
+        } else if let Some(shown) = self.shown.take_if(|shown| shown.control.is_superseded()) {
+            // The last good one was ended for nothing.
+            self.show(shown.ended());
         }
-        Ok(())
+        Ok(Next::Wait)
     }
 
-    fn form(&self) -> Form {
-        self.args.form()
+    /// Makes a scene ready, unless a save comes between.
+    ///
+    /// # Errors
+    /// If the system watches no more files.
+    fn build(&mut self, text: Text) -> Result<(Result<Loaded, Failure>, Noticed), Failure> {
+        let course = load::Course { line: !self.args.quiet, ..load::Course::default() };
+        self.in_hand.get().1 = course.watch.clone();
+        let mut now = text.files.asked();
+        now.extend(self.plugins.watched.clone());
+        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
+        let (file, plugins, changes) = (&self.args.file, &self.plugins, &mut self.changes);
+        let patient = !self.impatient;
+        changes.expect(now)?;
+        let (built, noticed) = std::thread::scope(|scope| {
+            let building = scope.spawn(|| load::build(file, text, plugins, before, &course));
+            let mut noticed = Noticed::Nothing;
+            while !building.is_finished() && noticed == Noticed::Nothing {
+                noticed = match changes.within(TICK) {
+                    Noticed::Save if patient => break,
+                    noticed => noticed,
+                };
+            }
+            if noticed != Noticed::Nothing {
+                course.watch.cancel();
+            }
+            (building.join(), noticed)
+        });
+        self.impatient = noticed == Noticed::Nothing;
+        let lost = |_| Failure::new(Exit::Ours, "the scene could not be made ready");
+        Ok((built.unwrap_or_else(|payload| Err(lost(payload))), noticed))
     }
 
     /// Ends the picture before, and begins one.
-    fn show(
-        &mut self,
-        (hash, scene): (Hash, Arc<(Stage, Read)>),
-        files: Watched,
-        texts: BTreeSet<PathBuf>,
-    ) {
-        if let Some(thread) = self.shown.take().and_then(|shown| shown.thread) {
-            // What it has to say it has said; a panic was caught and told inside.
-            let _ = thread.join();
-        }
+    fn show(&mut self, subject: Subject) {
+        let _ = self.shown.take().map(Shown::ended);
         let control = Arc::new(Control::default());
-        self.current.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&control);
-        let thread = Some(self.render(scene.clone(), control.clone()));
-        self.shown = Some(Shown { hash, scene, files, texts, control, thread });
-    }
-
-    fn show_again(&mut self) {
-        let Some(shown) = self.shown.take_if(|shown| shown.control.is_superseded()) else { return };
-        let (scene, files, texts) = (shown.scene.clone(), shown.files.clone(), shown.texts.clone());
-        let hash = shown.hash;
-        self.shown = Some(shown);
-        self.show((hash, scene), files, texts);
-    }
-
-    fn render(
-        &self,
-        scene: Arc<(Stage, Read)>,
-        control: Arc<Control>,
-    ) -> ScopedJoinHandle<'scope, ()> {
+        self.in_hand.get().0.clone_from(&control);
         let (args, guard) = (self.args, self.guard);
-        self.scope.spawn(move || {
-            let course = Course { control: &control, guard, beat: &Beat::silent() };
-            let (stage, read) = &*scene;
-            if let Err(failure) = round::render(args, (stage, read), &course, &mut |_, _| {}) {
+        let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
+        let thread = self.scope.spawn(move || {
+            let course = Course { control: &ends, guard, beat: &Beat::silent() };
+            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut |_, _| {}) {
                 report::failure(&failure);
             }
-        })
+        });
+        self.shown = Some(Shown { subject, control, thread });
     }
 
     /// Ends the picture in hand.
     fn end(&mut self) {
         if let Some(shown) = self.shown.take() {
             shown.control.cancel();
-            let _ = shown.thread.map(ScopedJoinHandle::join);
+            shown.ended();
         }
     }
 
@@ -215,7 +223,7 @@ impl<'scope> Watching<'scope, '_> {
         match session.refresh(args, surroundings) {
             Ok(renewed) => {
                 self.plugins = renewed;
-                self.plugins.notes.tell(self.form(), Stream::Error)
+                self.plugins.notes.tell(self.args.form(), Stream::Error)
             }
             // A lock or configuration that cannot be understood leaves everything as it was.
             Err(failure) => {

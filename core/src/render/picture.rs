@@ -6,7 +6,7 @@ use glam::DVec3;
 use luxel_sdk::kind::{
     Arrival, ArrivalKind, Host, Output, PathsRef, PictureIntegrator, PictureJob, Raster, Wants,
 };
-use luxel_sdk::num::{Ray, offset_origin};
+use luxel_sdk::num::Ray;
 use rayon::prelude::*;
 
 use super::lattice::Lattice;
@@ -14,9 +14,8 @@ use super::light::{Bundle, Splat};
 use super::tile::{StageHost, Worker};
 use super::watched::Watched;
 use super::{FROM_CAMERA, Look, Seen, Stop};
-use crate::accel::Processor;
 use crate::film::{Film, Rect};
-use crate::stage::{Emitters, Leaving, Moment, Skin, Stage};
+use crate::stage::{Emitters, First, Moment, Skin, Stage};
 
 /// Light paths that one thread follows at a time.
 const BUNDLE: u32 = 1024;
@@ -227,24 +226,13 @@ impl PictureJob for PictureHost<'_> {
 /// Where a ray arrives, as `Wants::POSITION` says.
 fn arrival(stage: Moment<'_>, ray: Ray) -> Arrival {
     let mut at = Arrival { t: f64::INFINITY, wo: -ray.d, material: u32::MAX, ..Arrival::default() };
-    let (mut leg, mut flown, mut from) = (ray, 0.0, None);
-    while let Some(hit) = stage.intersect(Processor::ANY, &leg, from, &mut at.steps) {
-        let surface = stage.surface(&leg, &hit);
-        let skin = stage.placements[hit.placement as usize].skin;
-        if skin == Skin::Open {
-            from = Some(Leaving::from(&hit));
-            let o = offset_origin(surface.p, surface.p_err, surface.ng, leg.d);
-            flown += (o - leg.o).dot(leg.d);
-            leg = Ray { o, t_max: ray.t_max - flown, ..leg };
-            continue;
-        }
-        (at.kind, at.t) = (ArrivalKind::Surface, flown + hit.hit.t);
+    if let Some(First { t, hit, surface }) = stage.first(ray, &mut at.steps) {
+        (at.kind, at.t) = (ArrivalKind::Surface, t);
         (at.p, at.p_err, at.uv) = (surface.p, surface.p_err, surface.uv.as_vec2());
         (at.ng, at.ns) = (surface.ng, surface.ns);
-        if let Skin::Material(material) = skin {
+        if let Skin::Material(material) = stage.placements[hit.placement as usize].skin {
             at.material = material;
         }
-        break;
     }
     at
 }

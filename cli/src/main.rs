@@ -15,12 +15,14 @@ mod measure;
 mod output;
 mod picture;
 mod plugin;
+mod preview;
 mod progress;
 mod render;
 mod report;
 mod summary;
 #[cfg(test)]
 mod testing;
+mod view;
 mod watch;
 mod words;
 
@@ -50,6 +52,7 @@ Examples:
 enum Command {
     Render(render::Args),
     Watch(watch::Args),
+    View(view::Args),
     Check(check::Args),
     List(list::Args),
     Describe(describe::Args),
@@ -71,6 +74,7 @@ fn main() -> ExitCode {
     let done = exit::guarded(|| match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Watch(args) => watch::run(args),
+        Command::View(args) => view::run(args),
         Command::Check(args) => check::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),

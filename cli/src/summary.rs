@@ -17,6 +17,8 @@ use crate::progress::duration;
 pub(crate) struct Summary {
     size: UVec2,
     window: [u32; 4],
+    exposure: Option<f64>,
+    display: String,
     spp: u32,
     seed: u32,
     mode: String,
@@ -52,6 +54,8 @@ impl Summary {
         Self {
             size: film.size,
             window: [window.min.x, window.min.y, window.size.x, window.size.y],
+            exposure: stage.film.exposure,
+            display: format!("{:?}", stage.film.display).to_lowercase(),
             spp: options.samples(stage),
             seed: options.seed(stage),
             mode: format!("{:?}", stage.mode).to_lowercase(),
@@ -74,6 +78,8 @@ impl Summary {
             "files_hash": self.files,
             "size": self.size.to_array(),
             "window": self.window,
+            "exposure": self.exposure,
+            "display": self.display,
             "spp": self.spp,
             "seed": self.seed,
             "color": self.mode,

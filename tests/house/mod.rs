@@ -27,7 +27,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
 ];
 
 /// External packages, each with the folders of the only packages that may depend on them.
-const DEPENDENCIES: [(&str, &[&str]); 17] = [
+const DEPENDENCIES: [(&str, &[&str]); 23] = [
     ("pest", &["lang"]),
     ("pest_derive", &["lang"]),
     ("tobj", &["plugins/builtin"]),
@@ -45,6 +45,12 @@ const DEPENDENCIES: [(&str, &[&str]); 17] = [
     ("toml", &["cli"]),
     ("sha2", &["cli"]),
     ("tempfile", &["cli"]),
+    ("axum", &["cli"]),
+    ("tokio", &["cli"]),
+    ("hyper", &["cli"]),
+    ("hyper-util", &["cli"]),
+    ("getrandom", &["cli"]),
+    ("subtle", &["cli"]),
 ];
 
 /// Words of the source, each with the only places where they may stand.

@@ -6,7 +6,7 @@ use luxel_sdk::color::{luminance_cd_m2, srgb_encode};
 
 /// Factor on radiance: at an exposure value EV (ISO 100), a luminance of 1.2·2^EV cd/m² becomes 1;
 /// without one a radiance of 1 does.
-pub(super) fn scale(exposure: Option<f64>) -> f64 {
+pub(crate) fn scale(exposure: Option<f64>) -> f64 {
     exposure.map_or(1.0, |ev| luminance_cd_m2(1.0) / (1.2 * ev.exp2()))
 }
 

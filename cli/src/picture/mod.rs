@@ -12,6 +12,7 @@ use luxel_core::stage;
 use crate::exit::Failure;
 use crate::output::{Draft, Output, unwritable};
 
+pub(crate) use display::scale;
 pub(crate) use exr::Notes;
 
 /// Writes both files. They take their places only when both are whole on the disk.

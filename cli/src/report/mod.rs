@@ -119,6 +119,11 @@ pub(crate) fn diagnostics(
     Ok(())
 }
 
+/// A diagnostic with its excerpt, as for people, without colours.
+pub(crate) fn excerpt(diagnostic: &Diagnostic, sources: &Sources) -> String {
+    snippet::render(diagnostic, sources, false)
+}
+
 fn put(stream: Stream, text: &str) -> Result<(), Failure> {
     match stream {
         Stream::Out => {

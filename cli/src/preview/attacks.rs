@@ -1,0 +1,226 @@
+//! What is tried from outside, byte by byte as it comes over the wire.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use super::*;
+
+fn preview() -> Preview {
+    Preview::start(Options::default()).unwrap()
+}
+
+/// Port and token.
+fn place(preview: &Preview) -> (u16, String) {
+    let rest = preview.url().strip_prefix("http://127.0.0.1:").unwrap();
+    let (port, token) = rest.split_once("/?token=").unwrap();
+    (port.parse().unwrap(), token.to_owned())
+}
+
+fn connect(port: u16) -> TcpStream {
+    let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
+    // Far above what an answer takes on a busy machine.
+    stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    stream
+}
+
+/// What comes back until the other end closes.
+fn say(port: u16, request: &str) -> String {
+    let mut stream = connect(port);
+    // The server may answer and close before it has read everything.
+    let _ = stream.write_all(request.as_bytes());
+    let mut answer = vec![];
+    let _ = stream.read_to_end(&mut answer);
+    String::from_utf8_lossy(&answer).into_owned()
+}
+
+fn code(answer: &str) -> u16 {
+    answer.split(' ').nth(1).and_then(|code| code.parse().ok()).unwrap_or(0)
+}
+
+/// A request with the right host and these further lines.
+fn ask(port: u16, target: &str, lines: &str) -> String {
+    say(port, &format!("GET {target} HTTP/1.1\r\nhost: 127.0.0.1:{port}\r\n{lines}\r\n"))
+}
+
+const UPGRADE: &str = "connection: Upgrade\r\nupgrade: websocket\r\nsec-websocket-version: 13\r\n\
+                       sec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+
+/// Opens a socket as a page does; the head of the answer is read.
+fn socket(port: u16, token: &str) -> TcpStream {
+    let mut stream = connect(port);
+    let lines = format!("host: 127.0.0.1:{port}\r\norigin: http://127.0.0.1:{port}\r\n{UPGRADE}");
+    write!(stream, "GET /ws?token={token} HTTP/1.1\r\n{lines}\r\n").unwrap();
+    let mut head = vec![];
+    while !head.ends_with(b"\r\n\r\n") {
+        let mut byte = [0];
+        stream.read_exact(&mut byte).unwrap();
+        head.push(byte[0]);
+    }
+    assert!(head.starts_with(b"HTTP/1.1 101"), "{}", String::from_utf8_lossy(&head));
+    stream
+}
+
+/// The kind (1 text, 2 binary, 8 end) and content of the next message, which is not masked.
+fn message(stream: &mut TcpStream) -> (u8, Vec<u8>) {
+    let mut take = |n: usize| {
+        let mut bytes = vec![0; n];
+        stream.read_exact(&mut bytes).unwrap();
+        bytes
+    };
+    let head = take(2);
+    let length = match head[1] {
+        126 => usize::from(u16::from_be_bytes(take(2).try_into().unwrap())),
+        127 => u64::from_be_bytes(take(8).try_into().unwrap()).try_into().unwrap(),
+        short => short.into(),
+    };
+    (head[0] & 15, take(length))
+}
+
+/// A masked text message, as browsers send; the mask is zero.
+fn tell(stream: &mut TcpStream, text: &str) {
+    let mut bytes = vec![0x81, 0x80 | u8::try_from(text.len()).unwrap(), 0, 0, 0, 0];
+    bytes.extend(text.bytes());
+    stream.write_all(&bytes).unwrap();
+}
+
+#[test]
+fn the_own_page_is_served_with_headers_that_shut_it_in() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let answer = ask(port, &format!("/?token={token}"), "");
+    assert_eq!(code(&answer), 200, "{answer}");
+    for line in [
+        "content-security-policy: default-src 'none'; script-src 'self'",
+        "frame-ancestors 'none'",
+        "cross-origin-resource-policy: same-origin",
+        "x-content-type-options: nosniff",
+        "cache-control: no-store",
+        "referrer-policy: no-referrer",
+    ] {
+        assert!(answer.contains(line), "{line} in {answer}");
+    }
+    assert!(!answer.contains("access-control"), "{answer}");
+}
+
+#[test]
+fn a_foreign_page_gets_no_socket_and_no_file_though_it_knows_the_token() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    for origin in ["http://evil.example", "null", "http://127.0.0.1:1", "http://localhost"] {
+        let lines = format!("origin: {origin}\r\n{UPGRADE}");
+        assert_eq!(code(&ask(port, &format!("/ws?token={token}"), &lines)), 403, "{origin}");
+        let lines = format!("origin: {origin}\r\n");
+        let answer = ask(port, &format!("/?token={token}"), &lines);
+        assert_eq!(code(&answer), 403, "{origin}");
+        assert!(!answer.contains(&token), "{answer}");
+    }
+}
+
+#[test]
+fn a_name_that_was_made_to_point_here_gets_no_answer() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    for host in ["evil.example", &format!("evil.example:{port}"), "127.0.0.1"] {
+        let request = format!("GET /?token={token} HTTP/1.1\r\nhost: {host}\r\n\r\n");
+        assert_eq!(code(&say(port, &request)), 421, "{host}");
+    }
+    let without = format!("GET /?token={token} HTTP/1.0\r\n\r\n");
+    assert_eq!(code(&say(port, &without)), 421);
+}
+
+#[test]
+fn without_the_token_nothing_is_told_not_even_what_exists() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let wrong = "0".repeat(32);
+    for path in ["/", "/main.js", "/page.css", "/ws", "/nothing"] {
+        for query in ["", "?token=", &format!("?token={wrong}"), &format!("?token={token}0")] {
+            assert_eq!(code(&ask(port, &format!("{path}{query}"), "")), 403, "{path}{query}");
+        }
+    }
+}
+
+#[test]
+fn nothing_but_get_and_no_path_leads_out() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    for method in ["POST", "PUT", "DELETE", "OPTIONS", "HEAD", "TRACE", "BREW"] {
+        let lines = format!("host: 127.0.0.1:{port}\r\ncontent-length: 0\r\n");
+        let answer = say(port, &format!("{method} /?token={token} HTTP/1.1\r\n{lines}\r\n"));
+        assert_eq!(code(&answer), 405, "{method}");
+    }
+    for path in ["/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd", "/page/main.js"]
+    {
+        let answer = ask(port, &format!("{path}?token={token}"), "");
+        assert_eq!(code(&answer), 404, "{path}");
+        assert!(!answer.contains("root:"), "{answer}");
+    }
+}
+
+#[test]
+fn a_giant_head_and_a_half_open_connection_keep_nobody_waiting() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let mut half_open: Vec<_> = (0..8).map(|_| connect(port)).collect();
+    half_open.iter_mut().for_each(|stream| stream.write_all(b"GET / HTTP/1.1\r\nhost:").unwrap());
+    let giant = format!("x: {}\r\n", "a".repeat(1 << 20));
+    let answer = ask(port, &format!("/?token={token}"), &giant);
+    assert!([0, 431].contains(&code(&answer)), "{answer}");
+    assert_eq!(code(&ask(port, &format!("/?token={token}"), "")), 200);
+    let since = Instant::now();
+    let mut rest = vec![];
+    // The server closes it: with an answer, an end or a reset, but not by our own patience.
+    let _ = half_open[0].read_to_end(&mut rest);
+    assert!(since.elapsed() < Duration::from_secs(15), "{:?}", since.elapsed());
+}
+
+#[test]
+fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let frame = |generation| {
+        let pixels = Pixels::new(glam::UVec2::ONE, &[1.0; 3], &[], vec![]);
+        let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
+        let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
+        let settings = luxel_core::stage::Film::default();
+        Frame { generation, pixels, ..Frame::of_film(&film, &settings, 1) }
+    };
+    preview.status("busy");
+    preview.show(&frame(1));
+    let mut page = socket(port, &token);
+    let (kind, title) = message(&mut page);
+    assert!(kind == 1 && title.starts_with(b"{\"title\""));
+    assert_eq!(message(&mut page), (1, b"{\"status\":\"busy\"}".to_vec()));
+    let generation = |bytes: &[u8]| {
+        let head = serde_json::Deserializer::from_slice(&bytes[8..]).into_iter().next();
+        let head: serde_json::Value = head.unwrap().unwrap();
+        head["generation"].as_u64().unwrap()
+    };
+    let (kind, picture) = message(&mut page);
+    assert_eq!((kind, generation(&picture)), (2, 1));
+    // While a picture is being drawn words come, and pictures do not.
+    (2..=9).for_each(|i| preview.show(&frame(i)));
+    preview.status("done");
+    assert_eq!(message(&mut page), (1, b"{\"status\":\"done\"}".to_vec()));
+    tell(&mut page, r#"{"ask":{"pixel":{"at":[0,0],"side":"a"}}}"#);
+    let command = preview.commands().recv_timeout(Duration::from_secs(20)).unwrap();
+    assert_eq!(command, Command::Pixel { at: [0, 0], side: Side::A });
+    tell(&mut page, "\"drawn\"");
+    let (kind, picture) = message(&mut page);
+    assert_eq!((kind, generation(&picture)), (2, 9));
+    // Who talks nonsense is left.
+    tell(&mut page, "nonsense");
+    assert!(matches!(page.read(&mut [0; 64]), Ok(0) | Err(_)));
+}
+
+#[test]
+fn a_port_that_is_taken_is_told_and_a_dropped_preview_frees_it() {
+    let first = preview();
+    let (port, _) = place(&first);
+    let again = Options { port, ..Options::default() };
+    let wrong = Preview::start(again.clone()).err().unwrap();
+    assert!(wrong.message.contains(&port.to_string()), "{}", wrong.message);
+    drop(first);
+    assert!(Preview::start(again).is_ok());
+}

@@ -1,0 +1,134 @@
+//! The preview: a page on this machine that shows a picture as it was measured, in linear floats.
+//!
+//! What is here serves and tells; what exposes, compares and inspects is the page itself (`page/`).
+//! Nobody but the browser of whoever holds the address gets an answer (`guard`).
+
+mod assets;
+#[cfg(test)]
+mod attacks;
+mod board;
+mod browser;
+mod frame;
+mod guard;
+mod problem;
+mod server;
+mod session;
+
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver};
+use std::thread::JoinHandle;
+
+use serde_json::json;
+use tokio::sync::oneshot;
+
+use crate::exit::{Exit, Failure};
+use board::{Board, Topic};
+use guard::Gate;
+
+pub(crate) use browser::open;
+pub(crate) use frame::{Frame, Pixels, Side};
+pub(crate) use problem::Problem;
+pub(crate) use session::Command;
+
+/// How the page is served.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Options {
+    /// The port; 0 takes any that is free.
+    pub(crate) port: u16,
+    /// Names by which the page may be asked for besides 127.0.0.1 and localhost, as `name` or
+    /// `name:port`: the near end of a tunnel.
+    pub(crate) allow_hosts: Vec<String>,
+    /// What the page is about: a file's name.
+    pub(crate) title: String,
+}
+
+/// What is known of one pixel beyond the picture: the answer to `Command::Pixel`.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PixelReply {
+    /// The pixel, from the upper left of the whole picture.
+    pub(crate) at: glam::UVec2,
+    /// Which picture it belongs to.
+    pub(crate) side: Side,
+    /// Names and values in reading order: exact radiance, material, depth, normal, `file:line:column`.
+    pub(crate) facts: Vec<(String, String)>,
+}
+
+/// A page being served from a thread of its own. Dropped, the server ends.
+pub(crate) struct Preview {
+    url: String,
+    board: Arc<Board>,
+    commands: Receiver<Command>,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Preview {
+    /// Serves the page on the loopback address from now on.
+    ///
+    /// # Errors
+    /// A port that is taken; a system without threads or random numbers.
+    pub(crate) fn start(options: Options) -> Result<Self, Failure> {
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, options.port));
+        let taken = |error: std::io::Error| {
+            let message = format!("cannot serve the preview on {address}: {error}");
+            Failure::new(Exit::Input, message).help("another port: --port N, or 0 for any")
+        };
+        let listener = TcpListener::bind(address).map_err(taken)?;
+        listener.set_nonblocking(true).map_err(taken)?;
+        let port = listener.local_addr().map_err(taken)?.port();
+        let gate = Gate::new(port, &options.allow_hosts)?;
+        let url = format!("http://127.0.0.1:{port}/?token={}", gate.token());
+        let board = Arc::new(Board::new());
+        board.tell(Topic::Title, &json!({ "title": options.title }));
+        let (sender, commands) = mpsc::sync_channel(session::WAITING_COMMANDS);
+        let (stop, stopped) = oneshot::channel();
+        let state = server::State::new(gate, board.clone(), sender);
+        let thread = std::thread::Builder::new()
+            .name("preview".into())
+            .spawn(move || server::run(listener, state, stopped))
+            .map_err(taken)?;
+        Ok(Self { url, board, commands, stop: Some(stop), thread: Some(thread) })
+    }
+
+    /// The page's address; whoever knows it sees the picture.
+    pub(crate) fn url(&self) -> &str {
+        &self.url
+    }
+
+    /// Shows a picture in place of the last one of its side. Pages that are slow miss those between.
+    pub(crate) fn show(&self, frame: &Frame) {
+        self.board.pin(frame.side.topic(), frame.encode().into());
+    }
+
+    /// Lays messages over the last good picture; none takes them away.
+    pub(crate) fn problems(&self, problems: &[Problem]) {
+        self.board.tell(Topic::Problems, &json!({ "problems": problems }));
+    }
+
+    /// One line below the picture: what changed, samples, time left.
+    pub(crate) fn status(&self, text: &str) {
+        self.board.tell(Topic::Status, &json!({ "status": text }));
+    }
+
+    /// Answers the last question for a pixel.
+    pub(crate) fn pixel(&self, reply: &PixelReply) {
+        let PixelReply { at, side, facts } = reply;
+        let reply = json!({ "pixel": { "at": at.to_array(), "side": side, "facts": facts } });
+        self.board.tell(Topic::Pixel, &reply);
+    }
+
+    /// What the page asks for. Commands that nobody takes are dropped once a few wait.
+    pub(crate) fn commands(&self) -> &Receiver<Command> {
+        &self.commands
+    }
+}
+
+impl Drop for Preview {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}

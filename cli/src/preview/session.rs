@@ -1,0 +1,117 @@
+//! One page that looks on: pictures at its pace, words at once.
+
+use std::sync::mpsc::SyncSender;
+use std::time::Duration;
+
+use axum::body::Bytes;
+use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
+use serde::Deserialize;
+use tokio::time::{Instant, sleep_until, timeout};
+
+use super::board::{Board, Topic};
+use super::frame::Side;
+
+/// What a page asks of the program.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Command {
+    /// What is known of a pixel; answered with `Preview::pixel`.
+    Pixel {
+        /// From the upper left of the whole picture.
+        at: [u32; 2],
+        /// In which picture.
+        side: Side,
+    },
+    /// A `param` of the scene was moved.
+    Param {
+        /// Its name.
+        name: String,
+        /// Its value, as the scene language writes it.
+        value: String,
+    },
+}
+
+/// What a page says.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum Said {
+    /// The last picture is on the screen: the next may come.
+    Drawn,
+    Ask(Command),
+}
+
+/// Bytes that a page may say at once.
+pub(super) const ASKED_BYTES: usize = 4 << 10;
+/// Commands that wait for the program; further ones are dropped.
+pub(super) const WAITING_COMMANDS: usize = 64;
+/// At most ten pictures a second.
+const PACE: Duration = Duration::from_millis(100);
+/// A page that takes nothing for so long is given up.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Tells the page everything until it goes.
+pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSender<Command>) {
+    let mut changes = board.subscribe();
+    let mut told = [0; Topic::ALL.len()];
+    let (mut drawing, mut next) = (false, Instant::now());
+    loop {
+        let _ = changes.borrow_and_update();
+        for topic in Topic::ALL {
+            if topic.is_picture() && (drawing || Instant::now() < next) {
+                continue;
+            }
+            let Some((number, bytes)) = board.later(topic, told[topic as usize]) else { continue };
+            if send(&mut socket, topic, bytes).await.is_none() {
+                return;
+            }
+            told[topic as usize] = number;
+            if topic.is_picture() {
+                (drawing, next) = (true, Instant::now() + PACE);
+            }
+        }
+        tokio::select! {
+            changed = changes.changed() => if changed.is_err() { return },
+            () = sleep_until(next), if !drawing && Instant::now() < next => {}
+            said = socket.recv() => match said {
+                Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
+                    Ok(Said::Drawn) => drawing = false,
+                    Ok(Said::Ask(command)) => { let _ = commands.try_send(command); }
+                    // Not one of our pages.
+                    Err(_) => return,
+                },
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
+                _ => return,
+            },
+        }
+    }
+}
+
+/// `None` when the page has gone or takes nothing any more.
+async fn send(socket: &mut WebSocket, topic: Topic, bytes: Bytes) -> Option<()> {
+    let message = if topic.is_picture() {
+        Message::Binary(bytes)
+    } else {
+        Message::Text(Utf8Bytes::try_from(bytes).ok()?)
+    };
+    timeout(PATIENCE, socket.send(message)).await.ok()?.ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_page_says_is_understood_or_refused() {
+        let pixel = r#"{"ask":{"pixel":{"at":[3,4],"side":"b"}}}"#;
+        let expected = Command::Pixel { at: [3, 4], side: Side::B };
+        let Ok(Said::Ask(command)) = serde_json::from_str(pixel) else { panic!("refused") };
+        assert_eq!(command, expected);
+        let param = r#"{"ask":{"param":{"name":"a","value":"1 m"}}}"#;
+        let Ok(Said::Ask(command)) = serde_json::from_str(param) else { panic!("refused") };
+        assert_eq!(command, Command::Param { name: "a".into(), value: "1 m".into() });
+        assert!(matches!(serde_json::from_str(r#""drawn""#), Ok(Said::Drawn)));
+        for wrong in ["", "drawn", r#"{"ask":{"pixel":{"at":[-1,4],"side":"a"}}}"#, "[]"] {
+            assert!(serde_json::from_str::<Said>(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec3, UVec2};
 use luxel_core::files::MemoryFiles;
 use luxel_core::film::{Film, Rect};
-use luxel_core::render::{Control, Options, render};
+use luxel_core::render::{Control, Options, Outcome, Seen, render, render_seen};
 use luxel_core::stage::{Geometry, Stage};
 
 use crate::load::stage_of;
@@ -63,6 +63,49 @@ fn the_picture_has_the_same_bits_for_any_number_of_threads() {
     for n in [2, 7] {
         assert_eq!(one, with(n), "{n} threads");
     }
+}
+
+#[test]
+fn a_picture_that_is_looked_at_has_the_bits_of_one_that_is_not() {
+    let stage = stage(SCENE, &[], None);
+    let whole = picture(&stage, &Options::default());
+    let options = Options { coarse: true, ..Options::default() };
+    let mut seen = vec![];
+    let mut look = |film: &Film, now: Seen| {
+        // What is there is what the finished picture began with, and what is told is there.
+        for (at, pixel) in film.pixels() {
+            let on = (at % now.step).cmpeq(UVec2::ZERO).all();
+            assert_eq!(pixel.n + pixel.bad, if on { now.samples } else { 0 }, "{at} {now:?}");
+        }
+        seen.push((now.step, now.samples));
+    };
+    let (film, outcome) = render_seen(&stage, &options, &Control::default(), &mut look);
+    assert_eq!(outcome, Outcome::Complete);
+    assert_eq!(bits(&film), bits(&whole));
+    assert_eq!(seen[..5], [(8, 1), (4, 1), (2, 1), (1, 1), (1, 2)]);
+    assert_eq!(seen.last().map(|seen| seen.1), Some(options.samples(&stage)));
+}
+
+#[test]
+fn a_picture_that_is_superseded_shows_its_first_step_and_one_that_is_cancelled_nothing() {
+    let stage = stage(SCENE, &[], None);
+    let options = Options { coarse: true, ..Options::default() };
+    let steps = |control: &Control| {
+        let mut steps = vec![];
+        let look = &mut |_: &Film, now: Seen| steps.push(now.step);
+        let (film, outcome) = render_seen(&stage, &options, control, look);
+        assert_eq!(outcome, Outcome::Cancelled);
+        let n = film.pixels().filter(|(_, pixel)| pixel.n > 0).count();
+        (steps, n, film.pixels().count())
+    };
+    let control = Control::default();
+    control.supersede();
+    let (seen, n, all) = steps(&control);
+    assert_eq!(seen, [8]);
+    // Of 41 × 23 pixels, every eighth of every eighth row.
+    assert_eq!((n, all), (6 * 3, 41 * 23));
+    control.cancel();
+    assert_eq!(steps(&control), (vec![], 0, all));
 }
 
 #[test]

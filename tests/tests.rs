@@ -30,6 +30,8 @@ mod manual;
 #[cfg(test)]
 mod motion;
 #[cfg(test)]
+mod probe;
+#[cfg(test)]
 mod scenes;
 #[cfg(test)]
 mod solids;

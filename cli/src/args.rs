@@ -78,7 +78,7 @@ pub(crate) struct RenderArgs {
 impl RenderArgs {
     pub(crate) fn options(&self) -> Options {
         let Self { spp, seed, crop, threads, .. } = *self;
-        Options { spp, seed, crop, threads, turns: None }
+        Options { spp, seed, crop, threads, ..Options::default() }
     }
 }
 

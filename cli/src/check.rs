@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     plugins.notes.tell(form, stream)?;
     let mut exit = Exit::Fine;
     for file in &args.files {
-        let loaded = load::load(file, &args.load, None, &plugins, None, &Course::default())?;
+        let loaded = load::load(file, &args.load, None, &plugins, &Course::default())?;
         report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream)?;
         if loaded.stage.is_none() || loaded.diagnostics.iter().any(Diagnostic::is_error) {
             exit = Exit::Input;

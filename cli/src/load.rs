@@ -70,42 +70,80 @@ pub(crate) struct Course {
     pub(crate) line: bool,
 }
 
-/// Reads a scene and makes it ready to trace, at `size` if one is given, keeping what has not
-/// changed since `before`.
+/// Reads a scene and makes it ready to trace, at `size` if one is given.
 ///
 /// # Errors
-/// A panic below, as our fault; that the course's watch was cancelled. The author's mistakes are in
-/// `diagnostics`.
+/// As `read` and `build`.
 pub(crate) fn load(
     path: &Path,
     args: &LoadArgs,
     size: Option<UVec2>,
     plugins: &Plugins,
-    before: Option<&Stage>,
-    Course { beat, watch, line }: &Course,
+    course: &Course,
 ) -> Result<Loaded, Failure> {
-    let loaded = blaming(&path.display().to_string(), || {
+    build(path, read(path, args, size, plugins, &course.beat)?, plugins, None, course)
+}
+
+/// A scene's text and what it says.
+pub(crate) struct Text {
+    /// The scene, if it has no error.
+    pub(crate) scene: Option<Scene>,
+    diagnostics: Vec<Diagnostic>,
+    sources: Sources,
+    /// The files that were asked for: so far, texts alone.
+    pub(crate) files: DiskFiles,
+}
+
+/// Reads a scene, whose picture is to have `size` if one is given.
+///
+/// # Errors
+/// A panic below, as our fault. The author's mistakes are among what was found.
+pub(crate) fn read(
+    path: &Path,
+    args: &LoadArgs,
+    size: Option<UVec2>,
+    plugins: &Plugins,
+    beat: &Beat,
+) -> Result<Text, Failure> {
+    blaming(&path.display().to_string(), || {
         let files = DiskFiles::new(path, &args.allow_path);
         beat.reading(files.shared());
         beat.phase(Phase::Loading);
-        let registry = &plugins.registry;
         let settings = luxel_lang::Settings {
             set: args.set.clone(),
             unloaded: plugins.unloaded(),
             ..Default::default()
         };
-        let read = luxel_lang::load(path, &files, registry, &settings);
-        let (mut scene, mut diagnostics) = (read.scene, read.diagnostics);
+        let read = luxel_lang::load(path, &files, &plugins.registry, &settings);
+        let mut scene = read.scene;
         if let (Some(scene), Some(size)) = (&mut scene, size) {
             scene.set_resolution(size);
         }
         if let (Some(scene), Some(precision)) = (&mut scene, args.precision) {
             scene.set_precision(precision);
         }
+        Text { scene, diagnostics: read.diagnostics, sources: read.sources, files }
+    })
+}
+
+/// Makes what was read ready to trace, keeping what has not changed since `before`.
+///
+/// # Errors
+/// A panic below, as our fault; that the course's watch was cancelled. The author's mistakes are in
+/// `diagnostics`.
+pub(crate) fn build(
+    path: &Path,
+    text: Text,
+    plugins: &Plugins,
+    before: Option<&Stage>,
+    Course { beat, watch, line }: &Course,
+) -> Result<Loaded, Failure> {
+    let loaded = blaming(&path.display().to_string(), || {
+        let Text { scene, mut diagnostics, sources, files } = text;
         beat.building(watch);
         let build = |scene: &Scene| {
             let told = |_| progress::building(&watch.standing());
-            let build = || stage::build_watched(scene, registry, &files, before, watch);
+            let build = || stage::build_watched(scene, &plugins.registry, &files, before, watch);
             progress::shown_while(told, *line, build)
         };
         let built = scene.as_ref().map(build);
@@ -121,7 +159,7 @@ pub(crate) fn load(
             Some(Err(Unbuilt::Cancelled)) | None => None,
         };
         let stage = stage.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
-        Loaded { scene, stage, diagnostics, sources: read.sources, files }
+        Loaded { scene, stage, diagnostics, sources, files }
     })?;
     if watch.is_cancelled() {
         return Err(Failure::new(Exit::Incomplete, CANCELLED));

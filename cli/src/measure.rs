@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::UVec2;
 use luxel_core::film::{Film, Rect};
-use luxel_core::render::{Control, Options, Outcome, render};
+use luxel_core::render::{Control, Look, Options, Outcome, render_seen};
 use luxel_core::stage::Stage;
 
 use crate::exit::{Exit, Failure, blaming};
@@ -41,7 +41,7 @@ pub(crate) fn window(stage: &Stage, options: &Options) -> Result<Rect, Failure> 
     Ok(window)
 }
 
-/// Renders, with a line of progress if wanted.
+/// Renders, with a line of progress if wanted; `look` sees the picture grow.
 ///
 /// # Errors
 /// As `window`; a panic in the renderer or a plugin, with the scene's name.
@@ -50,13 +50,14 @@ pub(crate) fn measure(
     options: &Options,
     control: &Control,
     line: bool,
+    look: &mut Look<'_>,
 ) -> Result<Measured, Failure> {
     let window = window(stage, options)?;
     let total = window.area() as u64 * u64::from(options.samples(stage));
     let start = Instant::now();
     let rendered = blaming(&scene.display().to_string(), || {
         let told = |seconds| progress::line(control.samples_done(), total, seconds);
-        progress::shown_while(told, line, || render(stage, options, control))
+        progress::shown_while(told, line, || render_seen(stage, options, control, look))
     });
     let (film, outcome) = rendered?;
     Ok(Measured { film, outcome, seconds: start.elapsed().as_secs_f64() })

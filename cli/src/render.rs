@@ -77,7 +77,7 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
         stop.cancel();
         report::aside("interrupted: what was measured will be written; Ctrl-C again gives it up");
     })?;
-    let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, None, &course)?;
+    let loaded = load::load(&args.file, &args.load, args.render.size, &plugins, &course)?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
     let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
         return Ok(Exit::Input);
@@ -92,7 +92,8 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     output.check(&files)?;
     beat.phase(Phase::Rendering);
     let line = !args.quiet;
-    let measured = measure::measure((&args.file, &stage), &options, &control, line)?;
+    let of = (args.file.as_path(), &stage);
+    let measured = measure::measure(of, &options, &control, line, &mut |_, _| {})?;
     let Measured { film, outcome, seconds } = measured;
     if outcome == Outcome::Failed {
         // What was measured may be wrong: there is no picture of it.

@@ -28,3 +28,29 @@ fn a_save_changes_the_picture_a_mistake_keeps_it_and_ctrl_c_ends_well() {
     assert!(done.err.contains("E0402"), "{done:?}");
     assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene"]);
 }
+
+#[test]
+fn comments_and_mistakes_leave_a_render_in_hand_alone() {
+    let scene = |comment: &str, radius: &str| {
+        let long = SCENE.replace("samples = 4", "samples = 1024").replace("radius", radius);
+        format!("{long}// {comment}\n")
+    };
+    assert!(scene("", "radius").contains("1024"), "the test's scene has another form");
+    let folder = Folder::new("watch-goes-on").with("a.scene", &scene("one", "radius"));
+    let mut watching = folder.start(&["watch", "a.scene", "--json"]);
+    until("the coarse picture", || folder.names().contains(&"a.png".to_owned()));
+    folder.write("a.scene", &scene("two", "radus"));
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    folder.write("a.scene", &scene("three", "radius"));
+    until("the picture", || folder.names().contains(&"a.exr".to_owned()));
+    // Another comment once it is done asks for nothing either.
+    let picture = folder.read("a.exr");
+    folder.write("a.scene", &scene("four", "radius"));
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    assert_eq!(folder.read("a.exr"), picture);
+    watching.interrupt();
+    let done = watching.end();
+    assert_eq!(done.code, 0, "{done:?}");
+    assert!(done.err.contains("E0402"), "{done:?}");
+    assert_eq!(done.out.lines().count(), 1, "one picture, told once: {done:?}");
+}

@@ -157,14 +157,8 @@ mod tests {
             }
             // Nothing but its own class is missing.
             let scene = dir.join("my_own.scene");
-            let loaded = load::load(
-                &scene,
-                &LoadArgs::default(),
-                None,
-                &plugins,
-                None,
-                &load::Course::default(),
-            );
+            let loaded =
+                load::load(&scene, &LoadArgs::default(), None, &plugins, &load::Course::default());
             let told = loaded.unwrap().diagnostics;
             let one = matches!(&told[..], [only] if only.message.contains("`my_own`"));
             assert!(one, "{word}: {told:?}");

@@ -28,7 +28,7 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     plugins.notes.tell(args.form(), Stream::Error)?;
     let size = args.render.size;
     let course = load::Course { beat: beat.clone(), line: !args.quiet, ..Default::default() };
-    let loaded = load::load(&args.file, &args.load, size, &plugins, None, &course)?;
+    let loaded = load::load(&args.file, &args.load, size, &plugins, &course)?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, args.form(), Stream::Error)?;
     let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
         return Ok(Exit::Input);
@@ -38,7 +38,7 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let interrupt = guard.on_ctrl_c(move || stop.cancel())?;
     beat.rendering(&control, interrupt);
     let course = Course { control: &control, guard: &guard, beat };
-    round::render(args, (&stage, &Read { files, sources }), &course)?;
+    round::render(args, (&stage, &Read { files, sources }), &course, &mut |_, _| {})?;
     Ok(Exit::Fine)
 }
 

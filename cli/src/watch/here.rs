@@ -1,139 +1,237 @@
-//! Watching and rendering in one process.
+//! Watching and rendering in one process: what is saved is read while the last picture goes on, and
+//! ends it only if it shows something else.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::Scope;
+use std::time::Duration;
 
+use luxel_core::accel::Watch;
 use luxel_core::render::Control;
-use luxel_core::stage::Stage;
 
 use super::Args;
-use super::changes::{Changes, Wake};
+use super::changes::{Changes, Noticed, Wake};
 use super::round::{self, Course, Read};
+use super::shown::{Shown, Subject};
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::files::look;
 use crate::interrupt::Guard;
 use crate::isolate::Beat;
 use crate::libraries::{Plugins, Session, Surroundings};
-use crate::load::{self, Loaded};
-use crate::report::{self, Form, Stream};
+use crate::load::{self, Loaded, Text};
+use crate::report::{self, Stream};
 
-/// The render in flight, so that Ctrl-C and saves can end it.
-type Current = Arc<Mutex<Arc<Control>>>;
+/// Between two looks at whether a scene is ready.
+const TICK: Duration = Duration::from_millis(1);
+
+/// What Ctrl-C ends: the render and the build in hand.
+#[derive(Clone, Default)]
+struct InHand(Arc<Mutex<(Arc<Control>, Arc<Watch>)>>);
+
+impl InHand {
+    fn get(&self) -> MutexGuard<'_, (Arc<Control>, Arc<Watch>)> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What to do after a round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// Wait for a save.
+    Wait,
+    /// There has been one.
+    Read,
+    /// The end is asked for.
+    End,
+}
 
 pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let (mut session, surroundings) = (Session::new(), Surroundings::of_process());
-    let mut plugins = session.refresh(&args.plugins, &surroundings)?;
+    let plugins = session.refresh(&args.plugins, &surroundings)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
     let (mut changes, waker) = Changes::new()?;
-    let current = Current::default();
-    let stopped = current.clone();
-    let course = load::Course { line: !args.quiet, ..load::Course::default() };
-    let loading = course.watch.clone();
+    let in_hand = InHand::default();
+    let stopped = in_hand.clone();
     let guard = Guard::default();
     guard.on_ctrl_c(move || {
         let _ = waker.send(Wake::Stop);
-        loading.cancel();
-        stopped.lock().unwrap_or_else(PoisonError::into_inner).cancel();
+        let (render, build) = &*stopped.get();
+        render.cancel();
+        build.cancel();
     })?;
-    let mut last_good: Option<Stage> = None;
     changes.arm([args.file.as_path()])?;
-    loop {
-        let read = match load::load(
-            &args.file,
-            &args.load,
-            args.render.size,
-            &plugins,
-            last_good.as_ref(),
-            &course,
-        ) {
-            Ok(loaded) => take(loaded, &plugins, &mut last_good, &mut changes, args.form())?,
-            Err(_) if course.watch.is_cancelled() => None,
-            // A panic in a plugin ends this attempt, not the watch.
-            Err(failure) => {
-                report::failure(&failure);
-                let libraries = plugins.watched.keys().map(PathBuf::as_path);
-                changes.expect_news(libraries.chain([args.file.as_path()]))?;
-                None
-            }
-        };
-        let go_on = match (&last_good, &read) {
-            (Some(stage), Some(read)) => one(args, (stage, read), (&current, &guard), &mut changes),
-            _ => changes.wait(),
-        };
-        if !go_on {
-            report::note("watching has ended");
-            return Ok(Exit::Fine);
-        }
-        renew(&mut plugins, &mut session, (&args.plugins, &surroundings), args.form())?;
-    }
-}
-
-/// Opens libraries anew if one has changed, or what is trusted has.
-///
-/// # Errors
-/// If standard error cannot be written.
-fn renew(
-    plugins: &mut Plugins,
-    session: &mut Session,
-    (args, surroundings): (&PluginArgs, &Surroundings),
-    form: Form,
-) -> Result<(), Failure> {
-    if plugins.watched.iter().all(|(path, seen)| look(path) == *seen) {
-        return Ok(());
-    }
-    match session.refresh(args, surroundings) {
-        Ok(renewed) => {
-            *plugins = renewed;
-            plugins.notes.tell(form, Stream::Error)
-        }
-        // A lock or configuration that cannot be understood leaves everything as it was.
-        Err(failure) => {
-            report::failure(&failure);
-            let seen = |path: &PathBuf| (path.clone(), look(path));
-            plugins.watched = plugins.watched.keys().map(seen).collect();
-            Ok(())
-        }
-    }
-}
-
-/// Tells what was found and watches what was asked for. What was read, if there is a new stage.
-fn take(
-    loaded: Loaded,
-    plugins: &Plugins,
-    last_good: &mut Option<Stage>,
-    changes: &mut Changes,
-    form: Form,
-) -> Result<Option<Read>, Failure> {
-    let mut watched = loaded.files.asked();
-    watched.extend(plugins.watched.clone());
-    changes.expect(watched)?;
-    report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
-    let Loaded { stage: Some(stage), files, sources, .. } = loaded else { return Ok(None) };
-    *last_good = Some(stage);
-    Ok(Some(Read { files, sources }))
-}
-
-/// Renders until done, or until a save or Ctrl-C; then waits for the next one. False at the end.
-fn one(
-    args: &Args,
-    scene: (&Stage, &Read),
-    (current, guard): (&Current, &Guard),
-    changes: &mut Changes,
-) -> bool {
-    let control = Arc::new(Control::default());
-    current.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&control);
     std::thread::scope(|scope| {
-        let rendering = scope.spawn(|| {
-            let course = Course { control: &control, guard, beat: &Beat::silent() };
-            if let Err(failure) = round::render(args, scene, &course) {
+        let (shown, impatient) = (None, true);
+        let mut watching =
+            Watching { args, scope, guard: &guard, in_hand, plugins, changes, shown, impatient };
+        loop {
+            let next = match watching.round()? {
+                Next::Wait if watching.changes.wait() => Next::Read,
+                Next::Wait => Next::End,
+                next => next,
+            };
+            if next == Next::End {
+                watching.end();
+                report::note("watching has ended");
+                return Ok(Exit::Fine);
+            }
+            watching.renew(&mut session, (&args.plugins, &surroundings))?;
+        }
+    })
+}
+
+struct Watching<'scope, 'env> {
+    args: &'env Args,
+    scope: &'scope Scope<'scope, 'env>,
+    guard: &'env Guard,
+    in_hand: InHand,
+    plugins: Plugins,
+    changes: Changes,
+    /// The last good scene.
+    shown: Option<Shown<'scope>>,
+    /// Whether a save ends the making ready of a scene. Not twice in a row: however fast saves come,
+    /// pictures follow.
+    impatient: bool,
+}
+
+impl Watching<'_, '_> {
+    /// Reads the scene, and renders it if it shows something else than before.
+    ///
+    /// # Errors
+    /// If standard error cannot be written or the system watches no more files.
+    fn round(&mut self) -> Result<Next, Failure> {
+        match self.load() {
+            // A panic in a plugin ends this attempt, not the watch.
+            Err(failure) if failure.exit == Exit::Ours => {
+                report::failure(&failure);
+                let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
+                self.changes.expect_news(libraries.chain([self.args.file.as_path()]))?;
+                Ok(Next::Wait)
+            }
+            // Ctrl-C has ended it, which the wait is told too.
+            Err(failure) if failure.exit == Exit::Incomplete => Ok(Next::Wait),
+            ended => ended,
+        }
+    }
+
+    fn load(&mut self) -> Result<Next, Failure> {
+        let Args { file, load, render, .. } = self.args;
+        let text = load::read(file, load, render.size, &self.plugins, &Beat::silent())?;
+        if let Some(Shown { subject, .. }) = &mut self.shown
+            && subject.is_of(&text)
+        {
+            subject.files.extend(text.files.asked());
+            self.changes.expect(subject.files.clone())?;
+            return Ok(Next::Wait);
+        }
+        let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
+        if let (Some(_), Some(shown)) = (hash, &self.shown) {
+            shown.supersede();
+        }
+        let texts = text.files.asked().into_keys().collect();
+        let (loaded, noticed) = self.build(text)?;
+        let loaded = match noticed {
+            Noticed::Save => return Ok(Next::Read),
+            Noticed::Stop => return Ok(Next::End),
+            Noticed::Nothing => loaded?,
+        };
+        let mut watched = loaded.files.asked();
+        watched.extend(self.plugins.watched.clone());
+        self.changes.expect(watched.clone())?;
+        let form = self.args.form();
+        report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
+        let Loaded { stage, files, sources, .. } = loaded;
+        if let (Some(stage), Some(hash)) = (stage, hash) {
+            let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
+            self.show(Subject { hash, stage, read, files: watched, texts });
+        } else if let Some(shown) = self.shown.take_if(|shown| shown.control.is_superseded()) {
+            // The last good one was ended for nothing.
+            self.show(shown.ended());
+        }
+        Ok(Next::Wait)
+    }
+
+    /// Makes a scene ready, unless a save comes between.
+    ///
+    /// # Errors
+    /// If the system watches no more files.
+    fn build(&mut self, text: Text) -> Result<(Result<Loaded, Failure>, Noticed), Failure> {
+        let course = load::Course { line: !self.args.quiet, ..load::Course::default() };
+        self.in_hand.get().1 = course.watch.clone();
+        let mut now = text.files.asked();
+        now.extend(self.plugins.watched.clone());
+        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
+        let (file, plugins, changes) = (&self.args.file, &self.plugins, &mut self.changes);
+        let patient = !self.impatient;
+        changes.expect(now)?;
+        let (built, noticed) = std::thread::scope(|scope| {
+            let building = scope.spawn(|| load::build(file, text, plugins, before, &course));
+            let mut noticed = Noticed::Nothing;
+            while !building.is_finished() && noticed == Noticed::Nothing {
+                noticed = match changes.within(TICK) {
+                    Noticed::Save if patient => break,
+                    noticed => noticed,
+                };
+            }
+            if noticed != Noticed::Nothing {
+                course.watch.cancel();
+            }
+            (building.join(), noticed)
+        });
+        self.impatient = noticed == Noticed::Nothing;
+        let lost = |_| Failure::new(Exit::Ours, "the scene could not be made ready");
+        Ok((built.unwrap_or_else(|payload| Err(lost(payload))), noticed))
+    }
+
+    /// Ends the picture before, and begins one.
+    fn show(&mut self, subject: Subject) {
+        let _ = self.shown.take().map(Shown::ended);
+        let control = Arc::new(Control::default());
+        self.in_hand.get().0.clone_from(&control);
+        let (args, guard) = (self.args, self.guard);
+        let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
+        let thread = self.scope.spawn(move || {
+            let course = Course { control: &ends, guard, beat: &Beat::silent() };
+            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut |_, _| {}) {
                 report::failure(&failure);
             }
         });
-        let go_on = changes.wait();
-        control.cancel();
-        // What it has to say it has said; a panic was caught and told inside.
-        let _ = rendering.join();
-        go_on
-    })
+        self.shown = Some(Shown { subject, control, thread });
+    }
+
+    /// Ends the picture in hand.
+    fn end(&mut self) {
+        if let Some(shown) = self.shown.take() {
+            shown.control.cancel();
+            shown.ended();
+        }
+    }
+
+    /// Opens libraries anew if one has changed, or what is trusted has.
+    ///
+    /// # Errors
+    /// If standard error cannot be written.
+    fn renew(
+        &mut self,
+        session: &mut Session,
+        (args, surroundings): (&PluginArgs, &Surroundings),
+    ) -> Result<(), Failure> {
+        if self.plugins.watched.iter().all(|(path, seen)| look(path) == *seen) {
+            return Ok(());
+        }
+        match session.refresh(args, surroundings) {
+            Ok(renewed) => {
+                self.plugins = renewed;
+                self.plugins.notes.tell(self.args.form(), Stream::Error)
+            }
+            // A lock or configuration that cannot be understood leaves everything as it was.
+            Err(failure) => {
+                report::failure(&failure);
+                let seen = |path: &PathBuf| (path.clone(), look(path));
+                self.plugins.watched = self.plugins.watched.keys().map(seen).collect();
+                Ok(())
+            }
+        }
+    }
 }

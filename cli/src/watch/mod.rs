@@ -4,6 +4,7 @@ mod apart;
 mod changes;
 mod here;
 mod round;
+mod shown;
 
 use std::path::PathBuf;
 

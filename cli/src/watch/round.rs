@@ -1,9 +1,10 @@
-//! One picture of a watch, the coarse one before it included.
+//! One picture of a watch, shown as it grows.
 
 use std::sync::Arc;
 
 use luxel_core::diag::Sources;
-use luxel_core::render::{Control, Options, Outcome};
+use luxel_core::film::Film;
+use luxel_core::render::{Control, Look, Outcome, Seen};
 use luxel_core::stage::Stage;
 
 use super::Args;
@@ -33,8 +34,8 @@ pub(super) struct Course<'a> {
 /// With more samples than this, a PNG of one sample per pixel comes first.
 const COARSE: u32 = 4;
 
-/// Renders and writes the picture; one that was cancelled or failed is not written, and the last
-/// stays.
+/// Renders and writes the picture, which `look` sees grow; one that was cancelled or failed is not
+/// written, and the last stays.
 ///
 /// # Errors
 /// What stands in the way; a panic in the renderer.
@@ -42,6 +43,7 @@ pub(super) fn render(
     args: &Args,
     (stage, read): (&Stage, &Read),
     course: &Course<'_>,
+    look: &mut Look<'_>,
 ) -> Result<(), Failure> {
     let Course { control, guard, beat } = course;
     let film_file = stage.film.file.as_deref();
@@ -50,24 +52,20 @@ pub(super) fn render(
     guard.measuring();
     beat.phase(Phase::Rendering);
     let options = args.render.options();
+    let first = options.samples(stage) > COARSE;
+    let mut refused = None;
+    let mut seen = |film: &Film, now: Seen| {
+        look(film, now);
+        if first && now == ONE_SAMPLE && !control.is_cancelled() {
+            refused = coarse((&output, film, stage), course).err();
+        }
+    };
     let of = (args.file.as_path(), stage);
-    if options.samples(stage) > COARSE {
-        let coarse = Options { spp: Some(1), ..options.clone() };
-        let first = measure::measure(of, &coarse, control, false)?;
-        if first.outcome == Outcome::Failed {
-            return failed(args, stage, read);
-        }
-        if first.outcome == Outcome::Complete {
-            let _whole = guard.saving();
-            beat.phase(Phase::Saving);
-            picture::preview(&output, &first.film, &stage.film)?;
-        }
+    let measured = measure::measure(of, &options, control, !args.quiet, &mut seen)?;
+    if let Some(failure) = refused {
+        return Err(failure);
     }
-    // The coarse picture's samples are already counted.
-    guard.measuring();
-    beat.phase(Phase::Rendering);
-    let before = control.samples_done();
-    let Measured { film, outcome, seconds } = measure::measure(of, &options, control, !args.quiet)?;
+    let Measured { film, outcome, seconds } = measured;
     match outcome {
         Outcome::Cancelled => return Ok(()),
         Outcome::Failed => return failed(args, stage, read),
@@ -75,9 +73,9 @@ pub(super) fn render(
     }
     let _whole = guard.saving();
     beat.phase(Phase::Saving);
-    let samples = control.samples_done() - before;
     let of = (stage, &read.files);
-    let summary = Summary::new(of, &options, (&film, outcome), (seconds, samples));
+    let took = (seconds, control.samples_done());
+    let summary = Summary::new(of, &options, (&film, outcome), took);
     picture::write(&output, &film, &stage.film, &summary.notes())?;
     if args.json {
         report::out(&format!("{}\n", summary.json(&output)))
@@ -86,6 +84,23 @@ pub(super) fn render(
     } else {
         report::out(&summary.text(&output))
     }
+}
+
+/// When every pixel has one sample.
+const ONE_SAMPLE: Seen = Seen { step: 1, samples: 1 };
+
+/// Writes the PNG of one sample per pixel; whoever waits for a picture has one.
+fn coarse(
+    (output, film, stage): (&Output, &Film, &Stage),
+    Course { guard, beat, .. }: &Course<'_>,
+) -> Result<(), Failure> {
+    let whole = guard.saving();
+    beat.phase(Phase::Saving);
+    let written = picture::preview(output, film, &stage.film);
+    drop(whole);
+    guard.measuring();
+    beat.phase(Phase::Rendering);
+    written
 }
 
 /// A library's code failed: what was measured may be wrong.

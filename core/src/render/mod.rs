@@ -1,6 +1,7 @@
 //! Passes over the picture's tiles, on several threads, with progress and cancellation.
 
 mod arrival;
+mod lattice;
 mod light;
 mod path;
 mod picture;
@@ -9,12 +10,14 @@ mod tile;
 mod watched;
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use glam::UVec2;
 use luxel_sdk::kind::Wants;
 use rayon::prelude::*;
 
+use self::lattice::Lattice;
 use crate::film::{Film, Rect};
 use crate::stage::Stage;
 
@@ -32,6 +35,9 @@ pub struct Options {
     /// Whether rays of path integrators take turns, which changes no bit; as is sooner for the stage
     /// if absent.
     pub turns: Option<bool>,
+    /// Whether the first sample comes in steps, every eighth pixel of every eighth row first: for
+    /// those who look on. Changes no bit.
+    pub coarse: bool,
 }
 
 impl Options {
@@ -50,6 +56,7 @@ impl Options {
 #[derive(Debug, Default)]
 pub struct Control {
     cancelled: AtomicBool,
+    superseded: AtomicBool,
     samples: AtomicU64,
 }
 
@@ -64,11 +71,34 @@ impl Control {
         self.cancelled.load(Ordering::Relaxed)
     }
 
+    /// Asks for an end as soon as there is something to see: after the first of the coarse steps, if
+    /// the picture begins with such. So pictures follow each other however fast they are asked for.
+    pub fn supersede(&self) {
+        self.superseded.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether an end was asked for in this way.
+    pub fn is_superseded(&self) -> bool {
+        self.superseded.load(Ordering::Relaxed)
+    }
+
     /// Samples that have been added to pixels so far.
     pub fn samples_done(&self) -> u64 {
         self.samples.load(Ordering::Relaxed)
     }
 }
+
+/// How far a picture has come, for those who look on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seen {
+    /// Pixels from one that has a sample to the next; 1 once all have.
+    pub step: u32,
+    /// Samples of those pixels.
+    pub samples: u32,
+}
+
+/// Sees a picture grow: told after each pass, while nothing is measured.
+pub type Look<'a> = dyn FnMut(&Film, Seen) + Send + 'a;
 
 /// How far a render came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +125,19 @@ const FROM_CAMERA: Wants =
 /// # Panics
 /// If the system gives no threads.
 pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Outcome) {
+    render_seen(stage, options, control, &mut |_, _| {})
+}
+
+/// The same, seen as it grows.
+///
+/// # Panics
+/// As `render`.
+pub fn render_seen(
+    stage: &Stage,
+    options: &Options,
+    control: &Control,
+    look: &mut Look<'_>,
+) -> (Film, Outcome) {
     let size = stage.film.resolution;
     let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
     let mut film = Film::new(size, window);
@@ -105,35 +148,48 @@ pub fn render(stage: &Stage, options: &Options, control: &Control) -> (Film, Out
         .expect("the system gives threads");
     // Before anything of the stage is asked: the sampler may fail at once.
     let failures = AtomicU64::new(stage.alarm().count());
-    let stop = Stop { control, stage, failures: &failures };
+    let stop = Stop { control, stage, failures: &failures, first: false };
     let (spp, seed) = (options.samples(stage), options.seed(stage));
     let turns = options.turns.unwrap_or_else(|| stage.is_for_turns());
     pool.install(|| {
         let integrator = stage.integrator.fixed().integrator();
         if let Some(owner) = integrator.as_picture() {
-            return picture::render(owner, stage, (spp, seed), &mut film, stop);
+            return picture::render(owner, stage, (spp, seed), (&mut film, look), stop);
         }
-        let mut from = 0;
-        while from < spp && !stop.is_asked() {
-            // Passes grow: a first picture comes soon, later ones cost little to gather.
-            let to = spp.min(from + from.clamp(1, PASS));
-            film.tiles_mut().par_iter_mut().for_each_init(
-                || {
-                    let output = integrator.output();
-                    let worker = tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output);
-                    worker.in_turns(turns)
-                },
-                |worker, tile| worker.pass(tile, from..to, stop),
-            );
-            from = to;
+        let worker = || {
+            let output = integrator.output();
+            tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output).in_turns(turns)
+        };
+        for (samples, lattice) in passes(spp, options.coarse) {
+            let stop = Stop { first: lattice.step() == lattice::COARSEST, ..stop };
+            film.tiles_mut().par_iter_mut().for_each_init(worker, |worker, tile| {
+                worker.pass(tile, samples.clone(), lattice, stop);
+            });
+            if stop.is_asked() {
+                break;
+            }
+            look(&film, Seen { step: lattice.step(), samples: samples.end });
         }
     });
-    let outcome = match (stop.is_failure(), control.is_cancelled()) {
+    let outcome = match (stop.is_failure(), stop.is_asked()) {
         (true, _) => Outcome::Failed,
         (_, true) => Outcome::Cancelled,
         _ => Outcome::Complete,
     };
     (film, outcome)
+}
+
+/// The samples and the pixels of each pass. Passes grow: a first picture comes soon, later ones cost
+/// little to gather.
+fn passes(spp: u32, coarse: bool) -> impl Iterator<Item = (Range<u32>, Lattice)> {
+    let steps = Lattice::steps(coarse).into_iter().filter(move |_| spp > 0);
+    let first = steps.map(|lattice| (0..1, lattice));
+    let after = move |done: &Range<u32>| {
+        let next = done.end..spp.min(done.end.saturating_add(done.end.min(PASS)));
+        (!next.is_empty()).then_some(next)
+    };
+    let later = std::iter::successors(after(&(0..1)), after).map(|samples| (samples, Lattice::All));
+    first.chain(later)
 }
 
 /// Whether to go on: polled between rounds.
@@ -143,6 +199,8 @@ struct Stop<'a> {
     stage: &'a Stage,
     /// How many objects had failed when it was looked whether one is the stage's own.
     failures: &'a AtomicU64,
+    /// Whether there is nothing to be seen yet that soon will be.
+    first: bool,
 }
 
 impl Stop<'_> {
@@ -160,12 +218,31 @@ impl Stop<'_> {
     }
 
     fn is_asked(self) -> bool {
-        self.control.is_cancelled() || self.is_failure()
+        let superseded = self.control.is_superseded() && !self.first;
+        self.control.is_cancelled() || superseded || self.is_failure()
     }
 }
 
 impl Control {
     fn add(&self, samples: u64) {
         self.samples.fetch_add(samples, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_are_each_sample_of_each_pixel_once() {
+        for spp in [0, 1, 2, 3, 17, 100] {
+            let all: Vec<_> = passes(spp, false).flat_map(|(samples, _)| samples).collect();
+            assert_eq!(all, (0..spp).collect::<Vec<_>>());
+            let coarse = passes(spp, true).filter(|(samples, _)| samples.start == 0);
+            assert_eq!(coarse.count(), if spp == 0 { 0 } else { 4 });
+        }
+        assert!(
+            passes(u32::MAX, false).all(|(samples, _)| samples.len() <= 16 || samples.end < 64)
+        );
     }
 }

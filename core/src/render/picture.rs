@@ -6,16 +6,16 @@ use glam::DVec3;
 use luxel_sdk::kind::{
     Arrival, ArrivalKind, Host, Output, PathsRef, PictureIntegrator, PictureJob, Raster, Wants,
 };
-use luxel_sdk::num::{Ray, offset_origin};
+use luxel_sdk::num::Ray;
 use rayon::prelude::*;
 
+use super::lattice::Lattice;
 use super::light::{Bundle, Splat};
 use super::tile::{StageHost, Worker};
 use super::watched::Watched;
-use super::{FROM_CAMERA, Stop};
-use crate::accel::Processor;
+use super::{FROM_CAMERA, Look, Seen, Stop};
 use crate::film::{Film, Rect};
-use crate::stage::{Emitters, Leaving, Moment, Skin, Stage};
+use crate::stage::{Emitters, First, Moment, Skin, Stage};
 
 /// Light paths that one thread follows at a time.
 const BUNDLE: u32 = 1024;
@@ -29,7 +29,7 @@ pub(super) fn render(
     owner: &dyn PictureIntegrator,
     stage: &Stage,
     (samples, seed): (u32, u32),
-    film: &mut Film,
+    (film, look): (&mut Film, &mut Look<'_>),
     stop: Stop<'_>,
 ) {
     let most = Wants(owner.wants().0 & (FROM_CAMERA.0 | Wants::SIGHT.0));
@@ -45,6 +45,7 @@ pub(super) fn render(
         output,
         window,
         film: RefCell::new(film),
+        look: RefCell::new(look),
         emitters: OnceCell::new(),
         pass: RefCell::new(pass),
         calls: Cell::new(0),
@@ -61,6 +62,7 @@ struct PictureHost<'a> {
     output: Output,
     window: Rect,
     film: RefCell<&'a mut Film>,
+    look: RefCell<&'a mut Look<'a>>,
     emitters: OnceCell<Emitters>,
     pass: RefCell<Pass>,
     /// Runs of light paths so far: each has numbers of its own.
@@ -151,7 +153,7 @@ impl PictureJob for PictureHost<'_> {
             .map_init(
                 || Worker::new(stage, seed, &paths, most, output),
                 |worker, rect| {
-                    let done = worker.samples(*rect, pass..pass + 1, stop);
+                    let done = worker.samples(*rect, pass..pass + 1, Lattice::All, stop);
                     done.then(|| worker.results.clone())
                 },
             )
@@ -217,30 +219,20 @@ impl PictureJob for PictureHost<'_> {
         pass.sum.fill(DVec3::ZERO);
         pass.done += 1;
         self.stop.control.add(self.window.area() as u64);
+        (self.look.borrow_mut())(&self.film.borrow(), Seen { step: 1, samples: pass.done });
     }
 }
 
 /// Where a ray arrives, as `Wants::POSITION` says.
 fn arrival(stage: Moment<'_>, ray: Ray) -> Arrival {
     let mut at = Arrival { t: f64::INFINITY, wo: -ray.d, material: u32::MAX, ..Arrival::default() };
-    let (mut leg, mut flown, mut from) = (ray, 0.0, None);
-    while let Some(hit) = stage.intersect(Processor::ANY, &leg, from, &mut at.steps) {
-        let surface = stage.surface(&leg, &hit);
-        let skin = stage.placements[hit.placement as usize].skin;
-        if skin == Skin::Open {
-            from = Some(Leaving::from(&hit));
-            let o = offset_origin(surface.p, surface.p_err, surface.ng, leg.d);
-            flown += (o - leg.o).dot(leg.d);
-            leg = Ray { o, t_max: ray.t_max - flown, ..leg };
-            continue;
-        }
-        (at.kind, at.t) = (ArrivalKind::Surface, flown + hit.hit.t);
+    if let Some(First { t, hit, surface }) = stage.first(ray, &mut at.steps) {
+        (at.kind, at.t) = (ArrivalKind::Surface, t);
         (at.p, at.p_err, at.uv) = (surface.p, surface.p_err, surface.uv.as_vec2());
         (at.ng, at.ns) = (surface.ng, surface.ns);
-        if let Skin::Material(material) = skin {
+        if let Skin::Material(material) = stage.placements[hit.placement as usize].skin {
             at.material = material;
         }
-        break;
     }
     at
 }

@@ -12,6 +12,7 @@ use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::hash_combine;
 
 use super::arrival::Shader;
+use super::lattice::Lattice;
 use super::light::{Bundle, Splat};
 use super::path::Path;
 use super::{Stop, shadow};
@@ -47,6 +48,8 @@ pub(super) struct Worker<'s> {
     rooms: Rooms,
     arrived: Vec<u32>,
     pub(super) results: Vec<DVec3>,
+    /// The pixels of the running pass, by their numbers in the tile.
+    chosen: Vec<u32>,
     /// Light for other pixels than the path's own.
     pub(super) splats: Vec<Splat>,
     pub(super) scratch: Scratch,
@@ -85,6 +88,7 @@ impl<'s> Worker<'s> {
             rooms: Rooms::default(),
             arrived: vec![],
             results: vec![],
+            chosen: vec![],
             splats: vec![],
             scratch: Scratch::default(),
             medium_scratch: Scratch::default(),
@@ -97,28 +101,49 @@ impl<'s> Worker<'s> {
         Self { in_turns, ..self }
     }
 
-    /// Adds the samples of a range to every pixel of a tile. A pass that is cancelled adds none.
-    pub(super) fn pass(&mut self, tile: &mut Tile, range: Range<u32>, stop: Stop<'_>) {
-        let (n_pixels, n) = (tile.rect.area(), range.len());
-        if !self.samples(tile.rect, range, stop) {
+    /// Adds the samples of a range to the pixels of a tile that a lattice names. A pass that is
+    /// cancelled adds none.
+    pub(super) fn pass(
+        &mut self,
+        tile: &mut Tile,
+        range: Range<u32>,
+        lattice: Lattice,
+        stop: Stop<'_>,
+    ) {
+        let n = range.len();
+        if !self.samples(tile.rect, range, lattice, stop) {
             return;
         }
-        for (pixel, estimate) in tile.pixels.iter_mut().enumerate() {
+        let n_pixels = self.chosen.len();
+        for (i, pixel) in self.chosen.iter().enumerate() {
+            let estimate = &mut tile.pixels[*pixel as usize];
             for sample in 0..n {
-                estimate.push(self.results[sample * n_pixels + pixel]);
+                estimate.push(self.results[sample * n_pixels + i]);
             }
         }
         stop.control.add((n_pixels * n) as u64);
     }
 
-    /// Finds the samples of a range in every pixel of a rectangle: `results`, sample by sample.
-    /// False when cancelled.
-    pub(super) fn samples(&mut self, rect: Rect, range: Range<u32>, stop: Stop<'_>) -> bool {
+    /// Finds the samples of a range in the pixels of a rectangle that a lattice names: `results`,
+    /// sample by sample. False when cancelled.
+    pub(super) fn samples(
+        &mut self,
+        rect: Rect,
+        range: Range<u32>,
+        lattice: Lattice,
+        stop: Stop<'_>,
+    ) -> bool {
+        let mut pixels = std::mem::take(&mut self.chosen);
+        pixels.clear();
+        pixels.extend(lattice.of(rect));
         self.splats.clear();
         self.results.clear();
-        self.results.resize(rect.area() * range.len(), DVec3::ZERO);
-        let (origin, width, n_pixels) = (rect.min, rect.size.x, rect.area());
-        !stop.is_asked() && self.run(&Jobs::Pixels { origin, width, n_pixels, range }, stop)
+        self.results.resize(pixels.len() * range.len(), DVec3::ZERO);
+        let (origin, width) = (rect.min, rect.size.x);
+        let jobs = Jobs::Pixels { origin, width, pixels: &pixels, range };
+        let done = !stop.is_asked() && self.run(&jobs, stop);
+        self.chosen = pixels;
+        done
     }
 
     /// Rounds until every job is done; false when cancelled.
@@ -406,12 +431,13 @@ pub(super) fn moment<'s>(stage: &'s Stage, samples: &mut Samples<'_>) -> Moment<
 
 /// What a worker is to do.
 pub(super) enum Jobs<'a> {
-    /// The samples of one pass over a rectangle: sample by sample, each over all pixels.
+    /// The samples of one pass over pixels of a rectangle: sample by sample, each over all pixels.
     Pixels {
         /// Upper left pixel.
         origin: UVec2,
         width: u32,
-        n_pixels: usize,
+        /// Row by row.
+        pixels: &'a [u32],
         range: Range<u32>,
     },
     /// Paths from lights.
@@ -421,15 +447,15 @@ pub(super) enum Jobs<'a> {
 impl Jobs<'_> {
     fn len(&self) -> usize {
         match self {
-            Self::Pixels { n_pixels, range, .. } => n_pixels * range.len(),
+            Self::Pixels { pixels, range, .. } => pixels.len() * range.len(),
             Self::Lights(bundle) => bundle.paths.len(),
         }
     }
 
     /// The pixel and the index of its sample.
     fn at(&self, job: usize) -> (UVec2, u32) {
-        let Self::Pixels { origin, width, n_pixels, range } = self else { return (UVec2::ZERO, 0) };
-        let (sample, pixel) = (job / n_pixels, cast::index(job % n_pixels));
+        let Self::Pixels { origin, width, pixels, range } = self else { return (UVec2::ZERO, 0) };
+        let (sample, pixel) = (job / pixels.len(), pixels[job % pixels.len()]);
         let offset = UVec2::new(pixel % width, pixel / width);
         (*origin + offset, range.start + cast::index(sample))
     }

@@ -19,6 +19,7 @@ mod moment;
 mod motion;
 mod nesting;
 mod placement;
+mod probe;
 mod settings;
 mod shining;
 mod trace;
@@ -49,6 +50,7 @@ pub use media::{Crossing, MediumStack};
 pub use moment::Moment;
 pub use motion::Motion;
 pub use placement::{Leaving, Moving, Place, Placement, SceneHit, Skin};
+pub use probe::First;
 pub use settings::{ColorChoice, Film};
 
 /// A scene made ready to trace.

@@ -184,10 +184,10 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
         let settings = luxel_core::stage::Film::default();
-        Frame { generation, pixels, ..Frame::of_film(&film, &settings, 1) }
+        Frame { generation, pixels, ..Frame::of_film(&film, 1, &settings, 1) }
     };
-    preview.status("busy");
-    preview.show(&frame(1));
+    preview.screen().status("busy");
+    preview.screen().show(&frame(1));
     let mut page = socket(port, &token);
     let (kind, title) = message(&mut page);
     assert!(kind == 1 && title.starts_with(b"{\"title\""));
@@ -200,8 +200,8 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
     let (kind, picture) = message(&mut page);
     assert_eq!((kind, generation(&picture)), (2, 1));
     // While a picture is being drawn words come, and pictures do not.
-    (2..=9).for_each(|i| preview.show(&frame(i)));
-    preview.status("done");
+    (2..=9).for_each(|i| preview.screen().show(&frame(i)));
+    preview.screen().status("done");
     assert_eq!(message(&mut page), (1, b"{\"status\":\"done\"}".to_vec()));
     tell(&mut page, r#"{"ask":{"pixel":{"at":[0,0],"side":"a"}}}"#);
     let command = preview.commands().recv_timeout(Duration::from_secs(20)).unwrap();

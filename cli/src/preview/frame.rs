@@ -64,10 +64,10 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    #[cfg_attr(not(test), expect(dead_code, reason = "for the watch, which is not connected yet"))]
-    /// What a film holds by now; `complete` if it has all of `of_samples`.
-    pub(crate) fn of_film(film: &Film, settings: &stage::Film, of_samples: u32) -> Self {
-        let pixels = Pixels::of_film(film);
+    /// What a film holds by now; `complete` if it has all of `of_samples`. Of a coarse pass, every
+    /// so many columns and rows: `step`.
+    pub(crate) fn of_film(film: &Film, step: u32, settings: &stage::Film, of_samples: u32) -> Self {
+        let pixels = Pixels::of_film(film, step);
         let samples = pixels.n.iter().copied().max().unwrap_or(0);
         Self {
             side: Side::A,
@@ -80,7 +80,7 @@ impl Frame {
             display: settings.display,
             samples,
             of_samples,
-            complete: samples >= of_samples,
+            complete: step == 1 && samples >= of_samples,
         }
     }
 
@@ -161,16 +161,18 @@ impl Pixels {
         Self { size, rgb: halves(rgb, unit), se: halves(se, unit), n, unit }
     }
 
-    /// The pixels of a film's window.
+    /// The pixels of a film's window in every so many columns and rows.
     #[expect(clippy::cast_possible_truncation, reason = "a screen shows less than 32 bits")]
-    pub(crate) fn of_film(film: &Film) -> Self {
+    pub(crate) fn of_film(film: &Film, step: u32) -> Self {
         let (mut rgb, mut se, mut n) = (vec![], vec![], vec![]);
-        for (_, pixel) in film.pixels() {
+        let size = (film.window.size + (step - 1)) / step;
+        for at in Rect::new(UVec2::ZERO, size).points() {
+            let pixel = film.pixel(film.window.min + at * step);
             rgb.extend(pixel.mean.to_array().map(|v| v as f32));
             se.extend(pixel.standard_error().to_array().map(|v| v as f32));
             n.push(pixel.n);
         }
-        Self::new(film.window.size, &rgb, &se, n)
+        Self::new(size, &rgb, &se, n)
     }
 }
 
@@ -211,7 +213,7 @@ mod tests {
     fn a_film_is_read_back_with_its_head_and_planes() {
         let window = Rect::new(UVec2::new(5, 3), UVec2::new(7, 4));
         let film = Film::new(UVec2::new(32, 16), window);
-        let bytes = Frame::of_film(&film, &stage::Film::default(), 4).encode();
+        let bytes = Frame::of_film(&film, 1, &stage::Film::default(), 4).encode();
         let (head, planes) = read(&bytes);
         assert_eq!((bytes.len() - planes.len()) % 8, 0);
         assert_eq!(head["window"], json!([5, 3, 7, 4]));
@@ -242,7 +244,7 @@ mod tests {
     fn counts_are_sent_where_they_differ() {
         let pixels = Pixels::new(UVec2::new(2, 1), &[1.0; 6], &[], vec![3, 4]);
         let film = Film::new(UVec2::ONE, Rect::new(UVec2::ZERO, UVec2::ONE));
-        let frame = Frame { pixels, ..Frame::of_film(&film, &stage::Film::default(), 4) };
+        let frame = Frame { pixels, ..Frame::of_film(&film, 1, &stage::Film::default(), 4) };
         let bytes = frame.encode();
         let (head, planes) = read(&bytes);
         assert_eq!((&head["n"], &head["planes"]), (&Value::Null, &json!(["n", "rgb"])));

@@ -3,6 +3,7 @@
 //! What is here serves and tells; what exposes, compares and inspects is the page itself (`page/`).
 //! Nobody but the browser of whoever holds the address gets an answer (`guard`).
 
+mod args;
 mod assets;
 #[cfg(test)]
 mod attacks;
@@ -26,6 +27,7 @@ use crate::exit::{Exit, Failure};
 use board::{Board, Topic};
 use guard::Gate;
 
+pub(crate) use args::PageArgs;
 pub(crate) use browser::open;
 pub(crate) use frame::{Frame, Pixels, Side};
 pub(crate) use problem::Problem;
@@ -54,10 +56,14 @@ pub(crate) struct PixelReply {
     pub(crate) facts: Vec<(String, String)>,
 }
 
+/// What is on the page, for whoever has something to show, on any thread.
+#[derive(Clone)]
+pub(crate) struct Screen(Arc<Board>);
+
 /// A page being served from a thread of its own. Dropped, the server ends.
 pub(crate) struct Preview {
     url: String,
-    board: Arc<Board>,
+    screen: Screen,
     commands: Receiver<Command>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -88,7 +94,7 @@ impl Preview {
             .name("preview".into())
             .spawn(move || server::run(listener, state, stopped))
             .map_err(taken)?;
-        Ok(Self { url, board, commands, stop: Some(stop), thread: Some(thread) })
+        Ok(Self { url, screen: Screen(board), commands, stop: Some(stop), thread: Some(thread) })
     }
 
     /// The page's address; whoever knows it sees the picture.
@@ -96,31 +102,38 @@ impl Preview {
         &self.url
     }
 
+    /// Where pictures and words go.
+    pub(crate) fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// What the page asks for. Commands that nobody takes are dropped once a few wait.
+    pub(crate) fn commands(&self) -> &Receiver<Command> {
+        &self.commands
+    }
+}
+
+impl Screen {
     /// Shows a picture in place of the last one of its side. Pages that are slow miss those between.
     pub(crate) fn show(&self, frame: &Frame) {
-        self.board.pin(frame.side.topic(), frame.encode().into());
+        self.0.pin(frame.side.topic(), frame.encode().into());
     }
 
     /// Lays messages over the last good picture; none takes them away.
     pub(crate) fn problems(&self, problems: &[Problem]) {
-        self.board.tell(Topic::Problems, &json!({ "problems": problems }));
+        self.0.tell(Topic::Problems, &json!({ "problems": problems }));
     }
 
     /// One line below the picture: what changed, samples, time left.
     pub(crate) fn status(&self, text: &str) {
-        self.board.tell(Topic::Status, &json!({ "status": text }));
+        self.0.tell(Topic::Status, &json!({ "status": text }));
     }
 
     /// Answers the last question for a pixel.
     pub(crate) fn pixel(&self, reply: &PixelReply) {
         let PixelReply { at, side, facts } = reply;
         let reply = json!({ "pixel": { "at": at.to_array(), "side": side, "facts": facts } });
-        self.board.tell(Topic::Pixel, &reply);
-    }
-
-    /// What the page asks for. Commands that nobody takes are dropped once a few wait.
-    pub(crate) fn commands(&self) -> &Receiver<Command> {
-        &self.commands
+        self.0.tell(Topic::Pixel, &reply);
     }
 }
 

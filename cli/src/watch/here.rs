@@ -11,6 +11,7 @@ use luxel_core::render::Control;
 
 use super::Args;
 use super::changes::{Changes, Noticed, Wake};
+use super::page::{self, Page};
 use super::round::{self, Course, Read};
 use super::shown::{Shown, Subject};
 use crate::args::PluginArgs;
@@ -61,10 +62,19 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         build.cancel();
     })?;
     changes.arm([args.file.as_path()])?;
+    let page = args.preview.then(|| Page::start(&args.file, &args.page)).transpose()?;
     std::thread::scope(|scope| {
-        let (shown, impatient) = (None, true);
-        let mut watching =
-            Watching { args, scope, guard: &guard, in_hand, plugins, changes, shown, impatient };
+        let mut watching = Watching {
+            args,
+            scope,
+            guard: &guard,
+            page: page.as_ref(),
+            in_hand,
+            plugins,
+            changes,
+            shown: None,
+            impatient: true,
+        };
         loop {
             let next = match watching.round()? {
                 Next::Wait if watching.changes.wait() => Next::Read,
@@ -85,6 +95,7 @@ struct Watching<'scope, 'env> {
     args: &'env Args,
     scope: &'scope Scope<'scope, 'env>,
     guard: &'env Guard,
+    page: Option<&'env Page>,
     in_hand: InHand,
     plugins: Plugins,
     changes: Changes,
@@ -105,6 +116,7 @@ impl Watching<'_, '_> {
             // A panic in a plugin ends this attempt, not the watch.
             Err(failure) if failure.exit == Exit::Ours => {
                 report::failure(&failure);
+                self.page.inspect(|page| page.failed(&failure));
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
                 self.changes.expect_news(libraries.chain([self.args.file.as_path()]))?;
                 Ok(Next::Wait)
@@ -122,6 +134,7 @@ impl Watching<'_, '_> {
             && subject.is_of(&text)
         {
             subject.files.extend(text.files.asked());
+            self.page.inspect(|page| page.problems(&[], &subject.read.sources));
             self.changes.expect(subject.files.clone())?;
             return Ok(Next::Wait);
         }
@@ -141,6 +154,7 @@ impl Watching<'_, '_> {
         self.changes.expect(watched.clone())?;
         let form = self.args.form();
         report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
+        self.page.inspect(|page| page.problems(&loaded.diagnostics, &loaded.sources));
         let Loaded { stage, files, sources, .. } = loaded;
         if let (Some(stage), Some(hash)) = (stage, hash) {
             let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
@@ -191,9 +205,13 @@ impl Watching<'_, '_> {
         self.in_hand.get().0.clone_from(&control);
         let (args, guard) = (self.args, self.guard);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
+        let of_samples = args.render.options().samples(&stage);
+        let mut look = self
+            .page
+            .map_or_else(page::unseen, |page| Box::new(page.follow(&stage, &read, of_samples)));
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
-            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut |_, _| {}) {
+            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut *look) {
                 report::failure(&failure);
             }
         });

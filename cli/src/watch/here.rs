@@ -51,7 +51,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let (mut session, surroundings) = (Session::new(), Surroundings::of_process());
     let plugins = session.refresh(&args.plugins, &surroundings)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
-    let (mut changes, waker) = Changes::new()?;
+    let (mut changes, waker) = Changes::new();
     let in_hand = InHand::default();
     let stopped = in_hand.clone();
     let guard = Guard::default();
@@ -61,7 +61,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         render.cancel();
         build.cancel();
     })?;
-    changes.arm([args.file.as_path()])?;
+    changes.arm([args.file.as_path()]);
     let page = args.preview.then(|| Page::start(&args.file, &args.page)).transpose()?;
     std::thread::scope(|scope| {
         let mut watching = Watching {
@@ -110,7 +110,7 @@ impl Watching<'_, '_> {
     /// Reads the scene, and renders it if it shows something else than before.
     ///
     /// # Errors
-    /// If standard error cannot be written or the system watches no more files.
+    /// If standard error cannot be written.
     fn round(&mut self) -> Result<Next, Failure> {
         match self.load() {
             // A panic in a plugin ends this attempt, not the watch.
@@ -118,7 +118,7 @@ impl Watching<'_, '_> {
                 report::failure(&failure);
                 self.page.inspect(|page| page.failed(&failure));
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
-                self.changes.expect_news(libraries.chain([self.args.file.as_path()]))?;
+                self.changes.expect_news(libraries.chain([self.args.file.as_path()]));
                 Ok(Next::Wait)
             }
             // Ctrl-C has ended it, which the wait is told too.
@@ -135,7 +135,7 @@ impl Watching<'_, '_> {
         {
             subject.files.extend(text.files.asked());
             self.page.inspect(|page| page.problems(&[], &subject.read.sources));
-            self.changes.expect(subject.files.clone())?;
+            self.changes.expect(subject.files.clone());
             return Ok(Next::Wait);
         }
         let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
@@ -143,7 +143,7 @@ impl Watching<'_, '_> {
             shown.supersede();
         }
         let texts = text.files.asked().into_keys().collect();
-        let (loaded, noticed) = self.build(text)?;
+        let (loaded, noticed) = self.build(text);
         let loaded = match noticed {
             Noticed::Save => return Ok(Next::Read),
             Noticed::Stop => return Ok(Next::End),
@@ -151,10 +151,13 @@ impl Watching<'_, '_> {
         };
         let mut watched = loaded.files.asked();
         watched.extend(self.plugins.watched.clone());
-        self.changes.expect(watched.clone())?;
+        self.changes.expect(watched.clone());
         let form = self.args.form();
-        report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
-        self.page.inspect(|page| page.problems(&loaded.diagnostics, &loaded.sources));
+        // Half a save looks like a mistake: the wait tells at once of the other half.
+        if loaded.stage.is_some() || !self.changes.more_to_come() {
+            report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
+            self.page.inspect(|page| page.problems(&loaded.diagnostics, &loaded.sources));
+        }
         let Loaded { stage, files, sources, .. } = loaded;
         if let (Some(stage), Some(hash)) = (stage, hash) {
             let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
@@ -167,10 +170,7 @@ impl Watching<'_, '_> {
     }
 
     /// Makes a scene ready, unless a save comes between.
-    ///
-    /// # Errors
-    /// If the system watches no more files.
-    fn build(&mut self, text: Text) -> Result<(Result<Loaded, Failure>, Noticed), Failure> {
+    fn build(&mut self, text: Text) -> (Result<Loaded, Failure>, Noticed) {
         let course = load::Course { line: !self.args.quiet, ..load::Course::default() };
         self.in_hand.get().1 = course.watch.clone();
         let mut now = text.files.asked();
@@ -178,7 +178,7 @@ impl Watching<'_, '_> {
         let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
         let (file, plugins, changes) = (&self.args.file, &self.plugins, &mut self.changes);
         let patient = !self.impatient;
-        changes.expect(now)?;
+        changes.expect(now);
         let (built, noticed) = std::thread::scope(|scope| {
             let building = scope.spawn(|| load::build(file, text, plugins, before, &course));
             let mut noticed = Noticed::Nothing;
@@ -195,7 +195,7 @@ impl Watching<'_, '_> {
         });
         self.impatient = noticed == Noticed::Nothing;
         let lost = |_| Failure::new(Exit::Ours, "the scene could not be made ready");
-        Ok((built.unwrap_or_else(|payload| Err(lost(payload))), noticed))
+        (built.unwrap_or_else(|payload| Err(lost(payload))), noticed)
     }
 
     /// Ends the picture before, and begins one.

@@ -38,8 +38,17 @@ impl<'a> Triangles<'a> {
         indices: &'a [[u32; 3]],
         watch: &Watch,
     ) -> Result<Self, BuildError> {
-        let limit = Child::BLOCK_LIMIT;
-        if indices.len() >= limit {
+        Self::within(Child::BLOCK_LIMIT, points, indices, watch)
+    }
+
+    /// The same with at most `limit` triangles: in the worst tree each has a block of its own.
+    fn within(
+        limit: usize,
+        points: &'a [Vec3],
+        indices: &'a [[u32; 3]],
+        watch: &Watch,
+    ) -> Result<Self, BuildError> {
+        if indices.len() > limit {
             return Err(BuildError::TooManyTriangles { n_triangles: indices.len(), limit });
         }
         let largest = reach(points, watch)?;
@@ -201,4 +210,28 @@ fn reach(points: &[Vec3], watch: &Watch) -> Result<f32, BuildError> {
 fn power_of_two_below(x: f32) -> f32 {
     let power = f32::from_bits(x.to_bits() & 0x7f80_0000);
     if x > 0.0 { power.clamp(f32::from_bits(27 << 23), f32::from_bits(227 << 23)) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_triangle_more_than_the_limit_is_told_before_anything_else_is_looked_at() {
+        // Neither the index past the points nor the point that is no number is reached.
+        let points = [Vec3::ZERO, Vec3::X, Vec3::NAN];
+        let told = |limit, n| {
+            Triangles::within(limit, &points, &vec![[0, 1, 9]; n], &Watch::default()).err()
+        };
+        assert_eq!(told(3, 4), Some(BuildError::TooManyTriangles { n_triangles: 4, limit: 3 }));
+        assert_eq!(told(3, 4).unwrap().to_string(), "4 triangles in one mesh, the limit is 3");
+        assert_eq!(told(3, 3), Some(BuildError::NonFinitePoint { point: 2 }));
+    }
+
+    #[test]
+    fn as_many_triangles_as_the_limit_are_taken() {
+        let points = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let triangles = Triangles::within(3, &points, &[[0, 1, 2]; 3], &Watch::default()).unwrap();
+        assert_eq!(triangles.prims(&Watch::default()).len(), 3);
+    }
 }

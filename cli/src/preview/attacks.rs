@@ -184,7 +184,8 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
         let settings = luxel_core::stage::Film::default();
-        Frame { generation, pixels, ..Frame::of_film(&film, &settings, 1) }
+        let seen = luxel_core::render::Seen { step: 1, samples: 1 };
+        Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
     };
     preview.status("busy");
     preview.show(&frame(1));

@@ -45,7 +45,7 @@ pub(crate) fn run(document: Option<&Path>) -> Result<(), String> {
 }
 
 fn tables() -> Result<String, String> {
-    let mut out = String::new();
+    let mut out = vec![];
     let powers = |exponents: &[i32]| exponents.iter().map(|e| 10f64.powi(*e)).collect::<Vec<_>>();
     let at = |size, away, distance| Case { size, centre: DVec3::new(away, -away, away), distance };
     let distances = powers(&[0, 1, 2, 3, 4, 5, 6, 7]).into_iter();
@@ -62,18 +62,18 @@ fn tables() -> Result<String, String> {
         "radius, metres, 3 radii from the world's origin",
         sizes.map(|s| (s, at(s, 3.0 * s, 4.0))),
     )?;
-    Ok(out)
+    Ok(out.concat())
 }
 
 fn table(
-    out: &mut String,
+    out: &mut Vec<String>,
     title: &str,
     cases: impl Iterator<Item = (f64, Case)>,
 ) -> Result<(), String> {
     let cases: Vec<(f64, Case)> = cases.collect();
     let heads: Vec<String> = cases.iter().map(|(x, _)| format!("{x:.0e}")).collect();
     let line = "---|".repeat(cases.len());
-    *out += &format!("\n| {title} | {} |\n|---|{line}\n", heads.join(" | "));
+    out.push(format!("\n| {title} | {} |\n|---|{line}\n", heads.join(" | ")));
     let shapes = [
         ("sphere", None),
         ("mesh, fast", Some(Precision::Fast)),
@@ -87,7 +87,7 @@ fn table(
         let mut row = |what: &str, of: &dyn Fn(&Worst) -> f64| {
             let cells: Vec<String> =
                 found.iter().map(|worst| format!("{:.0e}", of(worst))).collect();
-            *out += &format!("| {name}: {what} | {} |\n", cells.join(" | "));
+            out.push(format!("| {name}: {what} | {} |\n", cells.join(" | ")));
         };
         row("t", &|worst| worst.t);
         row("off the surface", &|worst| worst.off);

@@ -62,12 +62,14 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pressed = interrupt::pressed()?;
     let title = shown.values().map(|shown| name(&shown.path)).collect::<Vec<_>>().join(" · ");
-    let preview = Preview::start(Options {
+    let preview = Preview::start(&Options {
         port: args.page.port,
         allow_hosts: args.page.allow_host.clone(),
         title,
     })?;
-    shown.values().for_each(|shown| show(&preview, shown));
+    for shown in shown.values() {
+        show(&preview, shown);
+    }
     report::out(&format!("{}\n", preview.url()))?;
     let opens = !args.page.no_open && std::io::stdout().is_terminal();
     let _leading = opens.then(|| preview::open(preview.url()));

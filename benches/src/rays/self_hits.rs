@@ -96,7 +96,7 @@ fn ply(soup: &Soup) -> Vec<u8> {
         soup.indices.len()
     );
     let mut bytes = header.into_bytes();
-    bytes.extend(soup.points.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+    bytes.extend(soup.points.iter().flat_map(glam::Vec3::to_array).flat_map(f32::to_le_bytes));
     for triangle in &soup.indices {
         bytes.push(3);
         bytes.extend(triangle.iter().flat_map(|i| i.to_le_bytes()));

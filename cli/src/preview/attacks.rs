@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::*;
 
 fn preview() -> Preview {
-    Preview::start(Options::default()).unwrap()
+    Preview::start(&Options::default()).unwrap()
 }
 
 /// Port and token.
@@ -163,7 +163,9 @@ fn a_giant_head_and_a_half_open_connection_keep_nobody_waiting() {
     let preview = preview();
     let (port, token) = place(&preview);
     let mut half_open: Vec<_> = (0..8).map(|_| connect(port)).collect();
-    half_open.iter_mut().for_each(|stream| stream.write_all(b"GET / HTTP/1.1\r\nhost:").unwrap());
+    for stream in &mut half_open {
+        stream.write_all(b"GET / HTTP/1.1\r\nhost:").unwrap();
+    }
     let giant = format!("x: {}\r\n", "a".repeat(1 << 20));
     let answer = ask(port, &format!("/?token={token}"), &giant);
     assert!([0, 431].contains(&code(&answer)), "{answer}");
@@ -184,7 +186,8 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
         let settings = luxel_core::stage::Film::default();
-        Frame { generation, pixels, ..Frame::of_film(&film, 1, &settings, 1) }
+        let seen = luxel_core::render::Seen { step: 1, samples: 1 };
+        Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
     };
     preview.screen().status("busy");
     preview.screen().show(&frame(1));
@@ -219,8 +222,8 @@ fn a_port_that_is_taken_is_told_and_a_dropped_preview_frees_it() {
     let first = preview();
     let (port, _) = place(&first);
     let again = Options { port, ..Options::default() };
-    let wrong = Preview::start(again.clone()).err().unwrap();
+    let wrong = Preview::start(&again).err().unwrap();
     assert!(wrong.message.contains(&port.to_string()), "{}", wrong.message);
     drop(first);
-    assert!(Preview::start(again).is_ok());
+    assert!(Preview::start(&again).is_ok());
 }

@@ -9,6 +9,7 @@ use half::f16;
 use half::slice::HalfFloatSliceExt;
 use luxel_core::film::{Film, Rect};
 use luxel_core::registry::Display;
+use luxel_core::render::Seen;
 use luxel_core::stage;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -49,7 +50,7 @@ pub(crate) struct Frame {
     pub(crate) size: UVec2,
     /// The part of it that `pixels` holds.
     pub(crate) window: Rect,
-    /// The pixels of the window. They may be fewer, of a coarse pass: see `Pixels::size`.
+    /// The pixels of the window; fewer in a coarse pass.
     pub(crate) pixels: Pixels,
     /// The film's exposure value at ISO 100.
     pub(crate) exposure: Option<f64>,
@@ -64,11 +65,13 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// What a film holds by now; `complete` if it has all of `of_samples`. Of a coarse pass, every
-    /// so many columns and rows: `step`.
-    pub(crate) fn of_film(film: &Film, step: u32, settings: &stage::Film, of_samples: u32) -> Self {
-        let pixels = Pixels::of_film(film, step);
-        let samples = pixels.n.iter().copied().max().unwrap_or(0);
+    /// What a film holds by now, seen so far; `complete` if it has all of `of_samples`.
+    pub(crate) fn of_film(
+        film: &Film,
+        settings: &stage::Film,
+        (seen, of_samples): (Seen, u32),
+    ) -> Self {
+        let pixels = Pixels::of_film(film, seen.step);
         Self {
             side: Side::A,
             name: String::new(),
@@ -78,9 +81,9 @@ impl Frame {
             pixels,
             exposure: settings.exposure,
             display: settings.display,
-            samples,
+            samples: seen.samples,
             of_samples,
-            complete: step == 1 && samples >= of_samples,
+            complete: seen.step == 1 && seen.samples >= of_samples,
         }
     }
 
@@ -101,6 +104,7 @@ impl Frame {
             "size": self.size.to_array(),
             "window": [window.min.x, window.min.y, window.size.x, window.size.y],
             "pixels": pixels.size.to_array(),
+            "step": pixels.step,
             "planes": planes,
             "n": n,
             "unit": pixels.unit,
@@ -131,8 +135,10 @@ impl Frame {
 /// Radiance in halves, row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct Pixels {
-    /// Columns and rows. Where they are fewer than the window's, each stands for several.
+    /// Columns and rows.
     size: UVec2,
+    /// Pixels of the window from one of these to the next; each stands for a square of that side.
+    step: u32,
     /// Three for each pixel, times `unit`.
     rgb: Vec<f16>,
     /// Standard error likewise, or empty.
@@ -158,21 +164,22 @@ impl Pixels {
         let largest = finite.fold(0.0, f32::max);
         let exponent = if largest > 0.0 { f64::from(largest).log2().floor() - 14.0 } else { 0.0 };
         let unit = exponent.exp2();
-        Self { size, rgb: halves(rgb, unit), se: halves(se, unit), n, unit }
+        Self { size, step: 1, rgb: halves(rgb, unit), se: halves(se, unit), n, unit }
     }
 
-    /// The pixels of a film's window in every so many columns and rows.
+    /// The pixels of a film's window in every `step`th column and row.
     #[expect(clippy::cast_possible_truncation, reason = "a screen shows less than 32 bits")]
-    pub(crate) fn of_film(film: &Film, step: u32) -> Self {
+    fn of_film(film: &Film, step: u32) -> Self {
         let (mut rgb, mut se, mut n) = (vec![], vec![], vec![]);
-        let size = (film.window.size + (step - 1)) / step;
-        for at in Rect::new(UVec2::ZERO, size).points() {
-            let pixel = film.pixel(film.window.min + at * step);
+        let corner = film.window.min;
+        let on = |at: UVec2| (at - corner) % step == UVec2::ZERO;
+        for (_, pixel) in film.pixels().filter(|(at, _)| on(*at)) {
             rgb.extend(pixel.mean.to_array().map(|v| v as f32));
             se.extend(pixel.standard_error().to_array().map(|v| v as f32));
             n.push(pixel.n);
         }
-        Self::new(size, &rgb, &se, n)
+        let size = (film.window.size + step - 1) / step;
+        Self { step, ..Self::new(size, &rgb, &se, n) }
     }
 }
 
@@ -198,6 +205,8 @@ mod tests {
 
     use super::*;
 
+    const ONE: Seen = Seen { step: 1, samples: 1 };
+
     fn read(bytes: &[u8]) -> (Value, &[u8]) {
         assert_eq!(&bytes[..4], b"LXL1");
         let length = u32::from_le_bytes(bytes[4..8].try_into().unwrap()) as usize;
@@ -213,7 +222,7 @@ mod tests {
     fn a_film_is_read_back_with_its_head_and_planes() {
         let window = Rect::new(UVec2::new(5, 3), UVec2::new(7, 4));
         let film = Film::new(UVec2::new(32, 16), window);
-        let bytes = Frame::of_film(&film, 1, &stage::Film::default(), 4).encode();
+        let bytes = Frame::of_film(&film, &stage::Film::default(), (ONE, 4)).encode();
         let (head, planes) = read(&bytes);
         assert_eq!((bytes.len() - planes.len()) % 8, 0);
         assert_eq!(head["window"], json!([5, 3, 7, 4]));
@@ -221,6 +230,17 @@ mod tests {
         assert_eq!((&head["complete"], &head["planes"]), (&json!(false), &json!(["rgb", "se"])));
         assert_eq!(planes.len(), 7 * 4 * 3 * 2 * 2);
         assert!(half(planes, 7 * 4 * 3).is_infinite());
+    }
+
+    #[test]
+    fn a_coarse_pass_sends_the_pixels_that_it_measured() {
+        let film = Film::new(UVec2::new(32, 16), Rect::new(UVec2::new(5, 3), UVec2::new(17, 8)));
+        let seen = Seen { step: 8, samples: 1 };
+        let frame = Frame::of_film(&film, &stage::Film::default(), (seen, 1));
+        let bytes = frame.encode();
+        let (head, planes) = read(&bytes);
+        assert_eq!((&head["pixels"], &head["step"]), (&json!([3, 1]), &json!(8)));
+        assert_eq!((planes.len(), frame.complete), (3 * 3 * 2 * 2, false));
     }
 
     #[test]
@@ -244,11 +264,12 @@ mod tests {
     fn counts_are_sent_where_they_differ() {
         let pixels = Pixels::new(UVec2::new(2, 1), &[1.0; 6], &[], vec![3, 4]);
         let film = Film::new(UVec2::ONE, Rect::new(UVec2::ZERO, UVec2::ONE));
-        let frame = Frame { pixels, ..Frame::of_film(&film, 1, &stage::Film::default(), 4) };
+        let frame = Frame { pixels, ..Frame::of_film(&film, &stage::Film::default(), (ONE, 4)) };
         let bytes = frame.encode();
         let (head, planes) = read(&bytes);
         assert_eq!((&head["n"], &head["planes"]), (&Value::Null, &json!(["n", "rgb"])));
         assert_eq!(planes[..8], [3, 0, 0, 0, 4, 0, 0, 0]);
-        assert_eq!(half(&planes[8..], 0).to_f64() * head["unit"].as_f64().unwrap(), 1.0);
+        let back = half(&planes[8..], 0).to_f64() * head["unit"].as_f64().unwrap();
+        assert!((back - 1.0).abs() <= 0.0, "{back}");
     }
 }

@@ -48,7 +48,7 @@ impl Page {
     pub(super) fn start(file: &Path, args: &PageArgs) -> Result<Self, Failure> {
         let title = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
         let (port, allow_hosts) = (args.port, args.allow_host.clone());
-        let preview = Preview::start(Options { port, allow_hosts, title })?;
+        let preview = Preview::start(&Options { port, allow_hosts, title })?;
         report::note(&format!("preview: {}", preview.url()));
         if !args.no_open && std::io::stderr().is_terminal() {
             preview::open(preview.url());
@@ -89,7 +89,7 @@ impl Page {
                 return;
             }
             last = Some(Instant::now());
-            let frame = Frame::of_film(film, now.step, &settings, of_samples);
+            let frame = Frame::of_film(film, &settings, (now, of_samples));
             screen.show(&Frame { generation, ..frame });
             screen.status(&status(now, of_samples));
         }
@@ -194,7 +194,8 @@ mod tests {
             registry.add("builtin", classes).unwrap();
         }
         let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-        let read = luxel_lang::load(Path::new("a.scene"), &files, &registry, &Default::default());
+        let settings = luxel_lang::Settings::default();
+        let read = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
         let scene = read.scene.unwrap();
         let stage = luxel_core::stage::build(&scene, &registry, &files, None).unwrap().stage;
         let told = facts(&stage, &read.sources, UVec2::splat(4));

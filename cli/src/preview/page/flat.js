@@ -8,10 +8,10 @@ export function flat(canvas) {
 
   function shaded(state, picture, other) {
     const { width, height } = picture, image = new ImageData(width, height), scale = state.scaleOf();
-    const [wx, wy, w, h] = picture.window;
+    const [wx, wy] = picture.window;
     const pixel = (of, i) => [of.radiance(i), of.error(i)];
     for (let i = 0; i < width * height; i++) {
-      const x = wx + ((i % width) * w) / width, y = wy + (Math.floor(i / width) * h) / height;
+      const x = wx + (i % width) * picture.step, y = wy + Math.floor(i / width) * picture.step;
       const j = state.view === "difference" && other ? other.index(x, y) : -1;
       image.data.set(shade(state.view, state.tone, scale, pixel(picture, i), j < 0 ? null : pixel(other, j)), i * 4);
       image.data[i * 4 + 3] = 255;
@@ -39,7 +39,10 @@ export function flat(canvas) {
         context.rect(from, 0, to - from, canvas.height);
         context.clip();
         context.setTransform(zoom * ratio, 0, 0, zoom * ratio, x * ratio, y * ratio);
-        context.drawImage(image, wx, wy, w, h);
+        context.beginPath();
+        context.rect(wx, wy, w, h);
+        context.clip();
+        context.drawImage(image, wx, wy, image.width * picture.step, image.height * picture.step);
         context.restore();
       };
       const split = !other || view === "difference" ? canvas.width : state.flipped ? 0 : state.wipe * canvas.width;

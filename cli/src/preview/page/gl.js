@@ -74,7 +74,7 @@ export function withGl(canvas) {
       for (const [picture, letter] of [[a, "A"], [other ?? a, "B"]]) {
         const scale = picture.unit * state.scaleOf();
         gl.uniform4fv(at(`window${letter}`), picture.window);
-        gl.uniform3f(at(`unit${letter}`), scale, scale, picture.hasError ? 1 : 0);
+        gl.uniform3f(at(`unit${letter}`), scale, picture.hasError ? 1 : 0, picture.step);
       }
       gl.uniform2fv(at("size"), a.size);
       gl.uniform2f(at("corner"), x * ratio, y * ratio);

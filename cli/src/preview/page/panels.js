@@ -9,7 +9,8 @@ export const $ = (id) => document.getElementById(id);
 export function number(v, digits = 4) {
   if (!Number.isFinite(v)) return Number.isNaN(v) ? "nan" : v > 0 ? "∞" : "−∞";
   const size = Math.abs(v);
-  const text = size !== 0 && (size < 1e-3 || size >= 1e6) ? v.toExponential(digits - 1) : v.toPrecision(digits);
+  const odd = size !== 0 && (size < 1e-3 || size >= 1e6);
+  const text = odd ? v.toExponential(digits - 1) : size >= 10 ** digits ? v.toFixed(0) : v.toPrecision(digits);
   return text.replace("-", "−").replace("e+", "e");
 }
 
@@ -120,7 +121,7 @@ export function legend(state) {
 }
 
 const stops = () => [0, 0.25, 0.5, 0.75, 1].map((t) => LUMINANCE[0] + t * (LUMINANCE[1] - LUMINANCE[0]));
-const decades = () => [-3, -2, -1, 0].slice(0, ERROR[1] - ERROR[0] + 1).map((d) => `${number(100 * 10 ** d, 1)} %`);
+const decades = () => [-3, -2, -1, 0].slice(0, ERROR[1] - ERROR[0] + 1).map((d) => `${Number((100 * 10 ** d).toPrecision(1))} %`);
 const ends = (sigmas) => (sigmas ? [`−${SIGMAS} σ`, "0", `+${SIGMAS} σ`] : [`−${SHARE * 100} %`, "0", `+${SHARE * 100} %`]);
 
 // The first line of a message is its head.

@@ -36,8 +36,7 @@ export class Picture {
   index(x, y) {
     const [wx, wy, w, h] = this.window;
     if (!(x >= wx && y >= wy && x < wx + w && y < wy + h)) return -1;
-    const i = Math.floor(((x - wx) * this.width) / w), j = Math.floor(((y - wy) * this.height) / h);
-    return j * this.width + i;
+    return Math.floor((y - wy) / this.step) * this.width + Math.floor((x - wx) / this.step);
   }
 
   three(plane, i) {

@@ -8,7 +8,7 @@ precision highp float;
 precision highp sampler2D;
 uniform sampler2D rgbA, seA, rgbB, seB, maps;
 uniform vec4 windowA, windowB;   // in pixels of the whole picture
-uniform vec3 unitA, unitB;       // of colour with exposure, of error with exposure, whether there is an error
+uniform vec3 unitA, unitB;       // of radiance with exposure; whether there is an error; step of a coarse picture
 uniform vec2 size, corner;       // of the whole picture; of its upper left on the canvas
 uniform float zoom, wipe, height;
 uniform int view, tone, sides;   // sides: 0 A alone, 1 wipe, 2 B alone
@@ -40,19 +40,20 @@ vec3 map(int row, float t) {
 }
 
 // The mean over one pixel of the screen of what lies below it.
-vec3 look(sampler2D plane, vec4 window, vec2 p) {
-  vec2 grain = vec2(textureSize(plane, 0)) / window.zw;
+vec3 look(sampler2D plane, vec4 window, float coarse, vec2 p) {
+  vec2 size = vec2(textureSize(plane, 0));
   float step = 1. / zoom;
-  if (step * grain.x <= 1.) {
-    vec2 q = (p - window.xy) * grain, f = fract(q), px = zoom / grain;
+  if (step <= coarse) {
+    vec2 q = (p - window.xy) / coarse, f = fract(q);
+    float px = zoom * coarse;
     q = floor(q) + clamp(f * px, 0., .5) + clamp((f - 1.) * px + .5, 0., .5);
-    return texture(plane, q / vec2(textureSize(plane, 0))).rgb;
+    return texture(plane, q / size).rgb;
   }
-  int taps = int(min(ceil(step * grain.x), 8.));
+  int taps = int(min(ceil(step / coarse), 8.));
   vec3 sum = vec3(0.);
   for (int j = 0; j < taps; j++) for (int i = 0; i < taps; i++) {
     vec2 q = p + (vec2(i, j) + .5) / float(taps) * step - .5 * step - window.xy;
-    sum += texture(plane, q / window.zw).rgb;
+    sum += texture(plane, q / coarse / size).rgb;
   }
   return sum / float(taps * taps);
 }
@@ -65,20 +66,20 @@ void main() {
   bool other = sides == 2 || (sides == 1 && at.x > wipe && view != 3);
   vec4 w = other ? windowB : windowA;
   if (!inside(p, w)) { colour = surround; return; }
-  vec3 rgb = other ? look(rgbB, windowB, p) : look(rgbA, windowA, p);
+  vec3 rgb = other ? look(rgbB, windowB, unitB.z, p) : look(rgbA, windowA, unitA.z, p);
   vec3 unit = other ? unitB : unitA;
   vec3 shown;
   if (view == 1) {
     shown = map(0, (log2(luminance(rgb) * unit.x) - scales.x) / (scales.y - scales.x));
   } else if (view == 2) {
-    vec3 se = other ? look(seB, windowB, p) : look(seA, windowA, p);
+    vec3 se = other ? look(seB, windowB, unitB.z, p) : look(seA, windowA, unitA.z, p);
     float r = luminance(se) / abs(luminance(rgb));
-    shown = unit.z > 0. ? map(1, (log2(r) / 3.321928094887362 - scales.z) / (scales.w - scales.z)) : vec3(1., 0., 1.);
+    shown = unit.y > 0. ? map(1, (log2(r) / 3.321928094887362 - scales.z) / (scales.w - scales.z)) : vec3(1., 0., 1.);
   } else if (view == 3) {
-    float a = luminance(rgb) * unit.x, b = luminance(look(rgbB, windowB, p)) * unitB.x;
-    float sa = luminance(look(seA, windowA, p)) * unitA.y, sb = luminance(look(seB, windowB, p)) * unitB.y;
+    float a = luminance(rgb) * unit.x, b = luminance(look(rgbB, windowB, unitB.z, p)) * unitB.x;
+    float sa = luminance(look(seA, windowA, unitA.z, p)) * unitA.x, sb = luminance(look(seB, windowB, unitB.z, p)) * unitB.x;
     float sigma = length(vec2(sa, sb));
-    float d = unitA.z * unitB.z > 0. && !isinf(sigma) ? (a - b) / (sigma * spread.x) : (a - b) / (max(abs(a), abs(b)) * spread.y);
+    float d = unitA.y * unitB.y > 0. && !isinf(sigma) ? (a - b) / (sigma * spread.x) : (a - b) / (max(abs(a), abs(b)) * spread.y);
     shown = map(2, a == b ? .5 : d * .5 + .5);
   } else {
     vec3 exposed = rgb * unit.x;

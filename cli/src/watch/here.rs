@@ -203,7 +203,7 @@ impl Watching<'_, '_> {
         let _ = self.shown.take().map(Shown::ended);
         let control = Arc::new(Control::default());
         self.in_hand.get().0.clone_from(&control);
-        let (args, guard) = (self.args, self.guard);
+        let (args, guard, page) = (self.args, self.guard, self.page);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
         let of_samples = args.render.options().samples(&stage);
         let mut look = self
@@ -213,6 +213,9 @@ impl Watching<'_, '_> {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
             if let Err(failure) = round::render(args, (&stage, &read), &course, &mut *look) {
                 report::failure(&failure);
+                page.inspect(|page| page.failed(&failure));
+            } else if stage.has_failed() {
+                page.inspect(|page| page.problems(&stage.failures(), &read.sources));
             }
         });
         self.shown = Some(Shown { subject, control, thread });

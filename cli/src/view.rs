@@ -71,7 +71,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let title = shown.values().map(|shown| name(&shown.path)).collect::<Vec<_>>().join(" · ");
     let preview =
         Preview::start(Options { port: args.port, allow_hosts: args.allow_host.clone(), title })?;
-    shown.values().for_each(|shown| show(&preview, shown));
+    for file in shown.values() {
+        show(&preview, file);
+    }
+    preview.status(&about(&shown));
     report::out(&format!("{}\n", preview.url()))?;
     let opens = !args.no_open && std::io::stdout().is_terminal();
     let _leading = opens.then(|| preview::open(preview.url()));
@@ -93,6 +96,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Fine)
 }
 
+/// A line about the pictures.
+fn about(shown: &BTreeMap<u8, Shown>) -> String {
+    let pictures = shown.values().filter_map(|shown| shown.picture.as_ref());
+    pictures.map(Picture::about).collect::<Vec<_>>().join(" | ")
+}
+
 fn name(path: &std::path::Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
@@ -103,7 +112,6 @@ fn show(preview: &Preview, shown: &Shown) {
         (frame.side, frame.name) = (shown.side, name(&shown.path));
         frame.generation = shown.generation;
         preview.show(&frame);
-        preview.status(&picture.about());
     }
 }
 
@@ -129,6 +137,7 @@ fn look_again(preview: &Preview, shown: &mut BTreeMap<u8, Shown>) {
     if changed {
         let problems: Vec<_> = shown.values().filter_map(|shown| shown.problem.clone()).collect();
         preview.problems(&problems);
+        preview.status(&about(shown));
     }
 }
 

@@ -163,7 +163,9 @@ fn a_giant_head_and_a_half_open_connection_keep_nobody_waiting() {
     let preview = preview();
     let (port, token) = place(&preview);
     let mut half_open: Vec<_> = (0..8).map(|_| connect(port)).collect();
-    half_open.iter_mut().for_each(|stream| stream.write_all(b"GET / HTTP/1.1\r\nhost:").unwrap());
+    for stream in &mut half_open {
+        stream.write_all(b"GET / HTTP/1.1\r\nhost:").unwrap();
+    }
     let giant = format!("x: {}\r\n", "a".repeat(1 << 20));
     let answer = ask(port, &format!("/?token={token}"), &giant);
     assert!([0, 431].contains(&code(&answer)), "{answer}");

@@ -37,7 +37,7 @@ impl Gate {
             }
             hosts.push(host.to_ascii_lowercase());
         }
-        let token = bits.iter().map(|byte| format!("{byte:02x}")).collect();
+        let token = format!("{:032x}", u128::from_be_bytes(bits));
         Ok(Self { hosts, token })
     }
 

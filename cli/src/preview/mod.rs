@@ -87,7 +87,8 @@ impl Preview {
     /// # Errors
     /// A port that is taken; a system without threads or random numbers.
     pub(crate) fn start(options: Options) -> Result<Self, Failure> {
-        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, options.port));
+        let Options { port, allow_hosts, title } = options;
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
         let taken = |error: std::io::Error| {
             let message = format!("cannot serve the preview on {address}: {error}");
             Failure::new(Exit::Input, message).help("another port: --port N, or 0 for any")
@@ -95,10 +96,10 @@ impl Preview {
         let listener = TcpListener::bind(address).map_err(taken)?;
         listener.set_nonblocking(true).map_err(taken)?;
         let port = listener.local_addr().map_err(taken)?.port();
-        let gate = Gate::new(port, &options.allow_hosts)?;
+        let gate = Gate::new(port, &allow_hosts)?;
         let url = format!("http://127.0.0.1:{port}/?token={}", gate.token());
         let board = Arc::new(Board::new());
-        board.tell(Topic::Title, &json!({ "title": options.title }));
+        board.tell(Topic::Title, &json!({ "title": title }));
         let (sender, commands) = mpsc::sync_channel(session::WAITING_COMMANDS);
         let (stop, stopped) = oneshot::channel();
         let state = server::State::new(gate, board.clone(), sender);

@@ -20,6 +20,10 @@ mod disk;
 #[cfg(test)]
 mod extremes;
 #[cfg(test)]
+mod generated;
+#[cfg(test)]
+mod generated_tests;
+#[cfg(test)]
 mod house;
 #[cfg(test)]
 mod lamps;

@@ -1,5 +1,7 @@
 //! How far hits are from where they should be: against double-double arithmetic on the same rays.
-//! Prints the tables of docs/accuracy.md, "Hits".
+//! Prints the tables of docs/accuracy.md, "Hits", and writes them there if asked to.
+
+use std::path::Path;
 
 use glam::{DQuat, DVec3, EulerRot};
 use luxel_core::accel::{Precision, Processor};
@@ -8,7 +10,7 @@ use luxel_sdk::num::Ray;
 use luxel_sdk::sampling::{sobol_owen_2d, uniform_sphere};
 use twofloat::TwoFloat;
 
-use crate::scene;
+use crate::{generated, scene};
 
 /// Rays of each case.
 const RAYS: u32 = 20_000;
@@ -32,28 +34,46 @@ struct Worst {
     missed: u32,
 }
 
-/// Prints the curves: each column one case.
+/// Prints the curves: each column one case; and writes them into a document.
 ///
 /// # Errors
-/// If a scene of this program does not build.
-pub(crate) fn run() -> Result<(), String> {
+/// If a scene of this program does not build; if the document has no place for them.
+pub(crate) fn run(document: Option<&Path>) -> Result<(), String> {
+    let tables = tables()?;
+    println!("{tables}");
+    document.map_or(Ok(()), |path| generated::write(path, "errors", &tables))
+}
+
+fn tables() -> Result<String, String> {
+    let mut out = vec![];
     let powers = |exponents: &[i32]| exponents.iter().map(|e| 10f64.powi(*e)).collect::<Vec<_>>();
     let at = |size, away, distance| Case { size, centre: DVec3::new(away, -away, away), distance };
     let distances = powers(&[0, 1, 2, 3, 4, 5, 6, 7]).into_iter();
-    table("distance of the origin, radii", distances.map(|d| (d, at(1.0, 0.0, d + 1.0))))?;
+    table(
+        &mut out,
+        "distance of the origin, radii",
+        distances.map(|d| (d, at(1.0, 0.0, d + 1.0))),
+    )?;
     let away = powers(&[0, 1, 2, 3, 4, 5, 6, 7]).into_iter();
-    table("distance from the world's origin, radii", away.map(|a| (a, at(1.0, a, 4.0))))?;
+    table(&mut out, "distance from the world's origin, radii", away.map(|a| (a, at(1.0, a, 4.0))))?;
     let sizes = powers(&[-9, -6, -3, 0, 3, 6, 9]).into_iter();
     table(
+        &mut out,
         "radius, metres, 3 radii from the world's origin",
         sizes.map(|s| (s, at(s, 3.0 * s, 4.0))),
-    )
+    )?;
+    Ok(out.concat())
 }
 
-fn table(title: &str, cases: impl Iterator<Item = (f64, Case)>) -> Result<(), String> {
+fn table(
+    out: &mut Vec<String>,
+    title: &str,
+    cases: impl Iterator<Item = (f64, Case)>,
+) -> Result<(), String> {
     let cases: Vec<(f64, Case)> = cases.collect();
     let heads: Vec<String> = cases.iter().map(|(x, _)| format!("{x:.0e}")).collect();
-    println!("\n| {title} | {} |\n|---|{}", heads.join(" | "), "---|".repeat(cases.len()));
+    let line = "---|".repeat(cases.len());
+    out.push(format!("\n| {title} | {} |\n|---|{line}\n", heads.join(" | ")));
     let shapes = [
         ("sphere", None),
         ("mesh, fast", Some(Precision::Fast)),
@@ -64,10 +84,10 @@ fn table(title: &str, cases: impl Iterator<Item = (f64, Case)>) -> Result<(), St
         let found: Result<Vec<Worst>, String> =
             cases.iter().map(|(_, case)| worst(case, precision)).collect();
         let found = found?;
-        let row = |what: &str, of: &dyn Fn(&Worst) -> f64| {
+        let mut row = |what: &str, of: &dyn Fn(&Worst) -> f64| {
             let cells: Vec<String> =
                 found.iter().map(|worst| format!("{:.0e}", of(worst))).collect();
-            println!("| {name}: {what} | {} |", cells.join(" | "));
+            out.push(format!("| {name}: {what} | {} |\n", cells.join(" | ")));
         };
         row("t", &|worst| worst.t);
         row("off the surface", &|worst| worst.off);
@@ -75,7 +95,7 @@ fn table(title: &str, cases: impl Iterator<Item = (f64, Case)>) -> Result<(), St
         row("normal", &|worst| worst.normal);
         let missed: u32 = found.iter().map(|worst| worst.missed).sum();
         if missed > 0 {
-            println!("\n{missed} rays at the {name} missed it");
+            return Err(format!("{title}: {missed} rays at the {name} missed it"));
         }
     }
     Ok(())
@@ -97,7 +117,10 @@ fn worst(case: &Case, precision: Option<Precision>) -> Result<Worst, String> {
         };
         let surface = stage.opening().surface(&ray, &hit);
         let truth = if precision.is_some() {
-            of_plane(&stage, &ray, hit.hit.face, surface.p)
+            let stage::Geometry::Mesh(mesh) = &*stage.geometries[0] else {
+                unreachable!("the scene holds a mesh alone")
+            };
+            of_plane(mesh, &ray, hit.hit.face, surface.p)
         } else {
             of_sphere(case, &ray, surface.p)
         };
@@ -194,10 +217,12 @@ fn of_sphere(case: &Case, ray: &Ray, p: DVec3) -> Truth {
     Truth { t, off: at.dot(at).sqrt() - r, normal: scaled.narrow().normalize() }
 }
 
-fn of_plane(stage: &Stage, ray: &Ray, face: u32, p: DVec3) -> Truth {
-    let stage::Geometry::Mesh(mesh) = &*stage.geometries[0] else {
-        unreachable!("the scene holds a mesh alone")
-    };
+/// Where a ray meets the plane of a triangle, behind its origin as well.
+pub(crate) fn true_t(mesh: &stage::Mesh, ray: &Ray, face: u32) -> f64 {
+    of_plane(mesh, ray, face, ray.o).t.into()
+}
+
+fn of_plane(mesh: &stage::Mesh, ray: &Ray, face: u32, p: DVec3) -> Truth {
     let triangles = mesh.triangles();
     let corner = |i: usize| {
         let about = triangles.points[triangles.indices[face as usize][i] as usize].as_dvec3();

@@ -1,7 +1,7 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
-//! `cargo run --release -p luxel-bench -- [WHAT] [--luxel PATH] [--python PATH] [--embree LIBRARY]`; a
-//! word that it does not know makes it tell what it measures. The program under test is
+//! `cargo run --release -p luxel-bench -- [WHAT] [--luxel PATH] [--python PATH] [--embree LIBRARY]
+//! [--write DOCUMENT]`; a word that it does not know makes it tell what it measures. The program under test is
 //! `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
@@ -9,6 +9,8 @@
 
 mod boundary;
 mod errors;
+#[path = "../../tests/generated.rs"]
+mod generated;
 mod parse;
 mod peer;
 mod pictures;
@@ -30,6 +32,8 @@ struct Plan {
     luxel: Luxel,
     python: Option<PathBuf>,
     embree: Option<PathBuf>,
+    /// The document that `errors` writes its tables into.
+    document: Option<PathBuf>,
 }
 
 /// Something that can be measured.
@@ -67,7 +71,7 @@ const BENCHES: [Bench; 14] = [
         rays::builds(plan.embree.as_deref(), plan.python.as_deref());
         Ok(())
     }),
-    of_crates("errors", |_| errors::run()),
+    of_crates("errors", |plan| errors::run(plan.document.as_deref())),
     of_crates("strands", |_| strands::run()),
     of_crates("leaks", |plan| {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 40_000);
@@ -84,7 +88,10 @@ const BENCHES: [Bench; 14] = [
 fn usage() -> String {
     let names: Vec<&str> = BENCHES.iter().map(|bench| bench.name).collect();
     let names = names.join("|");
-    format!("usage: luxel-bench [all|{names}] [--luxel PATH] [--python PATH] [--embree LIBRARY]")
+    format!(
+        "usage: luxel-bench [all|{names}] [--luxel PATH] [--python PATH] [--embree LIBRARY] \
+         [--write DOCUMENT]"
+    )
 }
 
 /// What is to be measured, and with which programs.
@@ -92,13 +99,14 @@ fn plan() -> Result<(&'static [Bench], Plan), String> {
     const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 1).0;
     let mut benches = ALL;
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
-    let (mut python, mut embree) = (None, None);
+    let (mut python, mut embree, mut document) = (None, None, None);
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         match word.as_str() {
             "all" => benches = ALL,
             "--luxel" => luxel = words.next().map(PathBuf::from),
             "--embree" => embree = words.next().map(PathBuf::from),
+            "--write" => document = Some(words.next().ok_or_else(usage)?.into()),
             "--python" => python = words.next().map(PathBuf::from),
             name => match BENCHES.iter().position(|bench| bench.name == name) {
                 Some(i) => benches = &BENCHES[i..=i],
@@ -110,7 +118,11 @@ fn plan() -> Result<(&'static [Bench], Plan), String> {
     if program.is_none() && benches.iter().any(|bench| bench.runs_program) {
         return Err("no `luxel`: run `cargo build --release -p luxel`, or give --luxel".to_owned());
     }
-    Ok((benches, Plan { luxel: Luxel { program: program.unwrap_or_default() }, python, embree }))
+    if document.is_some() && !benches.iter().any(|bench| bench.name == "errors") {
+        return Err("--write: only `errors` writes into a document".to_owned());
+    }
+    let luxel = Luxel { program: program.unwrap_or_default() };
+    Ok((benches, Plan { luxel, python, embree, document }))
 }
 
 fn main() -> ExitCode {

@@ -72,7 +72,11 @@ impl DiskFiles {
 impl Files for DiskFiles {
     fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
         let found = self.fetch(path);
-        let seen = found.as_ref().ok().map(|bytes| blake3::hash(bytes));
+        let seen = match &found {
+            Ok(bytes) => Some(blake3::hash(bytes)),
+            // A folder, or a file that may not be read, is no news if it stays as it is.
+            Err(_) => look(path).filter(|_| self.fetch(path).is_err()),
+        };
         self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_path_buf(), seen);
         found
     }
@@ -157,6 +161,8 @@ mod tests {
         assert_eq!(files.read(&missing), Err(FileError::NotFound));
         assert_eq!(files.asked().get(&missing), Some(&None));
         assert_eq!(files.asked().len(), 4);
+        assert!(files.read(&folder.path("scenes/sub")).is_err());
+        assert!(files.asked().iter().all(|(path, seen)| look(path) == *seen), "nothing is news");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime};
 
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
-use crate::preview::{self, Command, Options, PixelReply, Preview, Problem, Side};
+use crate::preview::{self, Command, Options, PageArgs, PixelReply, Preview, Problem, Side};
 use crate::report;
 use picture::Picture;
 
@@ -31,15 +31,8 @@ pub(crate) struct Args {
     a: PathBuf,
     /// A picture to compare it with
     b: Option<PathBuf>,
-    /// The page's port; 0 takes any that is free
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    port: u16,
-    /// Do not open the browser
-    #[arg(long)]
-    no_open: bool,
-    /// Answer under this name too, as at the near end of a tunnel
-    #[arg(long, value_name = "HOST[:PORT]")]
-    allow_host: Vec<String>,
+    #[command(flatten)]
+    page: PageArgs,
 }
 
 /// Between two looks at the files.
@@ -69,14 +62,17 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pressed = interrupt::pressed()?;
     let title = shown.values().map(|shown| name(&shown.path)).collect::<Vec<_>>().join(" · ");
-    let preview =
-        Preview::start(Options { port: args.port, allow_hosts: args.allow_host.clone(), title })?;
+    let preview = Preview::start(&Options {
+        port: args.page.port,
+        allow_hosts: args.page.allow_host.clone(),
+        title,
+    })?;
     for file in shown.values() {
         show(&preview, file);
     }
-    preview.status(&about(&shown));
+    preview.screen().status(&about(&shown));
     report::out(&format!("{}\n", preview.url()))?;
-    let opens = !args.no_open && std::io::stdout().is_terminal();
+    let opens = !args.page.no_open && std::io::stdout().is_terminal();
     let _leading = opens.then(|| preview::open(preview.url()));
     while !pressed.load(Ordering::Relaxed) {
         match preview.commands().recv_timeout(LOOK) {
@@ -84,7 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let at = glam::UVec2::from(at);
                 let picture = shown.get(&(side as u8)).and_then(|shown| shown.picture.as_ref());
                 let facts = picture.map_or(vec![], |picture| picture.facts(at));
-                preview.pixel(&PixelReply { at, side, facts });
+                preview.screen().pixel(&PixelReply { at, side, facts });
             }
             Ok(Command::Param { .. }) => {}
             Err(RecvTimeoutError::Timeout) => look_again(&preview, &mut shown),
@@ -111,7 +107,7 @@ fn show(preview: &Preview, shown: &Shown) {
         let mut frame = picture.frame();
         (frame.side, frame.name) = (shown.side, name(&shown.path));
         frame.generation = shown.generation;
-        preview.show(&frame);
+        preview.screen().show(&frame);
     }
 }
 
@@ -136,8 +132,8 @@ fn look_again(preview: &Preview, shown: &mut BTreeMap<u8, Shown>) {
     }
     if changed {
         let problems: Vec<_> = shown.values().filter_map(|shown| shown.problem.clone()).collect();
-        preview.problems(&problems);
-        preview.status(&about(shown));
+        preview.screen().problems(&problems);
+        preview.screen().status(&about(shown));
     }
 }
 

@@ -7,9 +7,11 @@ mod colour;
 mod scene;
 mod unit;
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use crate::disk::{root, text};
+use crate::generated;
 
 /// Share of the expected value that four standard errors may reach, so that noise cannot buy a pass.
 const RESOLUTION: f64 = 0.02;
@@ -88,6 +90,17 @@ fn truths_hold() {
     let wrong: Vec<_> = rows.iter().filter(|row| row.verdict() != "ok").cloned().collect();
     assert!(rows.len() > 100, "only {} truths were tried", rows.len());
     assert!(wrong.is_empty(), "truths that do not hold:\n{}", table(&wrong));
+    if is_asked_to_write() {
+        generated::write(&root().join(PUBLISHED), "truths", &table(&rows)).unwrap();
+    }
+}
+
+/// Where the table stands.
+const PUBLISHED: &str = "docs/accuracy.md";
+
+#[expect(clippy::disallowed_methods, reason = "whoever runs the test says so")]
+fn is_asked_to_write() -> bool {
+    std::env::var("LUXEL_WRITE_DOCS").is_ok_and(|value| value == "1")
 }
 
 #[test]
@@ -101,12 +114,21 @@ fn a_wrong_value_and_a_noisy_one_are_told() {
 }
 
 #[test]
-fn every_truth_is_published() {
-    let published = text(&root().join("docs/accuracy.md"));
+fn every_truth_is_published_and_no_other() {
+    let document = text(&root().join(PUBLISHED));
+    let rows = generated::part(&document, "truths").unwrap().trim().lines().skip(2);
+    let id = |row: &str| row.split('|').nth(1).map(|id| id.trim().to_owned());
+    let published: BTreeSet<String> = rows.filter_map(id).collect();
     let ids = scene::cases().into_iter().map(|case| case.id);
-    let mut ids: Vec<_> = ids.chain(colour::IDS.map(str::to_owned)).collect();
-    ids.extend(unit::rows().into_iter().map(|row| row.id));
-    let missing: Vec<_> =
-        ids.iter().filter(|id| !published.contains(&format!("| {id} |"))).collect();
-    assert!(missing.is_empty(), "not in docs/accuracy.md: {missing:?}");
+    let ids = ids.chain(colour::IDS.map(str::to_owned));
+    let ids: BTreeSet<String> = ids.chain(unit::rows().into_iter().map(|row| row.id)).collect();
+    assert_eq!(published, ids, "LUXEL_WRITE_DOCS=1 cargo test -p luxel-tests truths");
+}
+
+#[test]
+fn curves_of_errors_stand_where_the_bench_writes_them() {
+    let document = text(&root().join(PUBLISHED));
+    let curves = generated::part(&document, "errors").unwrap();
+    // Of each of three tables a head, a line, and four rows of each of four shapes.
+    assert_eq!(curves.lines().filter(|line| line.starts_with('|')).count(), 3 * (2 + 4 * 4));
 }

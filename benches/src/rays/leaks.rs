@@ -1,4 +1,5 @@
-//! Rays that get out of a closed mesh: aimed from inside at its corners and edges.
+//! Rays that get out of a closed mesh: aimed from inside at its corners and edges; and rays from the
+//! mesh itself that meet it where they leave it.
 
 use std::f32::consts::{PI, TAU};
 
@@ -9,6 +10,7 @@ use luxel_core::accel::{MeshBvh, Precision, Processor};
 use super::embree::{Embree, Flags};
 use super::knot::Soup;
 use super::peers::{Single, Tracer, Turns};
+use super::self_hits;
 use super::shots::{Landing, Random, Shot};
 
 /// Scale and translation of the mesh, written into its single-precision points.
@@ -30,15 +32,21 @@ const CASES: [(f64, f64); 11] = [
 const RINGS: u32 = 200;
 const SEGMENTS: u32 = 205;
 
-/// Prints how many of `n` rays for each case get out.
+/// Prints how many of `n` rays for each case meet the triangle that they leave, and how many of as many
+/// others get out.
 pub(crate) fn run(library: Option<&Library>, n: usize) {
-    println!("\n== leaks: rays of {n} aimed at corners and edges of a closed mesh that get out");
     let cases = CASES.map(|(scale, by)| case(scale, by, n));
-    print!("{:<24}", "scale / translation");
-    for (scale, by) in CASES {
-        print!("{:>11}", format!("{scale:.0e}/{by:.0e}"));
+    println!("\n== self-hits: rays of {n} from a closed mesh that meet it where they leave it");
+    heads();
+    for precision in [Precision::Standard, Precision::Exact] {
+        for processor in Processor::all() {
+            let name = format!("{}, {}", precision.word(), processor.name());
+            let with = (precision, processor);
+            row(&name, &cases, |soup, _| self_hits::count(soup, with, n).ok());
+        }
     }
-    println!();
+    println!("\n== leaks: rays of {n} aimed at corners and edges of a closed mesh that get out");
+    heads();
     let build = |soup: &Soup| MeshBvh::build(&soup.points, &soup.indices).expect("it is finite");
     for precision in Precision::ALL {
         for processor in Processor::all() {
@@ -54,6 +62,14 @@ pub(crate) fn run(library: Option<&Library>, n: usize) {
     for (name, flags) in [("Embree", Flags::Default), ("Embree, robust", Flags::Robust)] {
         row(name, &cases, |soup, shots| Some(count(&Embree::new(library, soup, flags)?, shots)));
     }
+}
+
+fn heads() {
+    print!("{:<24}", "scale / translation");
+    for (scale, by) in CASES {
+        print!("{:>11}", format!("{scale:.0e}/{by:.0e}"));
+    }
+    println!();
 }
 
 fn row(name: &str, cases: &[(Soup, Vec<Shot>)], leaks: impl Fn(&Soup, &[Shot]) -> Option<usize>) {

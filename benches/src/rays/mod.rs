@@ -5,6 +5,7 @@ mod embree;
 mod knot;
 mod leaks;
 mod peers;
+mod self_hits;
 mod shots;
 
 use std::path::{Path, PathBuf};
@@ -74,7 +75,8 @@ fn embree_path(given: Option<&Path>, python: Option<&Path>) -> PathBuf {
     found.unwrap_or_else(|| PathBuf::from("libembree4.so.4"))
 }
 
-/// Prints how many rays get out of a closed mesh; `n` for each of eleven cases.
+/// Prints how many rays meet a closed mesh where they leave it, and how many get out of it; `n` for
+/// each of eleven cases.
 pub(crate) fn leaks(given: Option<&Path>, python: Option<&Path>, n: usize) {
     leaks::run(embree::load(&embree_path(given, python)).as_ref(), n);
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::*;
 
 fn preview() -> Preview {
-    Preview::start(Options::default()).unwrap()
+    Preview::start(&Options::default()).unwrap()
 }
 
 /// Port and token.
@@ -189,8 +189,8 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let seen = luxel_core::render::Seen { step: 1, samples: 1 };
         Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
     };
-    preview.status("busy");
-    preview.show(&frame(1));
+    preview.screen().status("busy");
+    preview.screen().show(&frame(1));
     let mut page = socket(port, &token);
     let (kind, title) = message(&mut page);
     assert!(kind == 1 && title.starts_with(b"{\"title\""));
@@ -203,8 +203,8 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
     let (kind, picture) = message(&mut page);
     assert_eq!((kind, generation(&picture)), (2, 1));
     // While a picture is being drawn words come, and pictures do not.
-    (2..=9).for_each(|i| preview.show(&frame(i)));
-    preview.status("done");
+    (2..=9).for_each(|i| preview.screen().show(&frame(i)));
+    preview.screen().status("done");
     assert_eq!(message(&mut page), (1, b"{\"status\":\"done\"}".to_vec()));
     tell(&mut page, r#"{"ask":{"pixel":{"at":[0,0],"side":"a"}}}"#);
     let command = preview.commands().recv_timeout(Duration::from_secs(20)).unwrap();
@@ -222,8 +222,8 @@ fn a_port_that_is_taken_is_told_and_a_dropped_preview_frees_it() {
     let first = preview();
     let (port, _) = place(&first);
     let again = Options { port, ..Options::default() };
-    let wrong = Preview::start(again.clone()).err().unwrap();
+    let wrong = Preview::start(&again).err().unwrap();
     assert!(wrong.message.contains(&port.to_string()), "{}", wrong.message);
     drop(first);
-    assert!(Preview::start(again).is_ok());
+    assert!(Preview::start(&again).is_ok());
 }

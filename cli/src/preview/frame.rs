@@ -65,7 +65,6 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    #[cfg_attr(not(test), expect(dead_code, reason = "for the watch, which is not connected yet"))]
     /// What a film holds by now, seen so far; `complete` if it has all of `of_samples`.
     pub(crate) fn of_film(
         film: &Film,
@@ -270,7 +269,7 @@ mod tests {
         let (head, planes) = read(&bytes);
         assert_eq!((&head["n"], &head["planes"]), (&Value::Null, &json!(["n", "rgb"])));
         assert_eq!(planes[..8], [3, 0, 0, 0, 4, 0, 0, 0]);
-        let value = half(&planes[8..], 0).to_f64() * head["unit"].as_f64().unwrap();
-        assert!((value - 1.0).abs() <= 0.0, "{value}");
+        let back = half(&planes[8..], 0).to_f64() * head["unit"].as_f64().unwrap();
+        assert!((back - 1.0).abs() <= 0.0, "{back}");
     }
 }

@@ -3,6 +3,7 @@
 //! What is here serves and tells; what exposes, compares and inspects is the page itself (`page/`).
 //! Nobody but the browser of whoever holds the address gets an answer (`guard`).
 
+mod args;
 mod assets;
 #[cfg(test)]
 mod attacks;
@@ -27,6 +28,7 @@ use crate::exit::{Exit, Failure};
 use board::{Board, Topic};
 use guard::Gate;
 
+pub(crate) use args::PageArgs;
 pub(crate) use browser::open;
 pub(crate) use frame::{Frame, Pixels, Side};
 pub(crate) use problem::Problem;
@@ -72,10 +74,14 @@ pub(crate) struct PixelReply {
     pub(crate) facts: Vec<(String, String)>,
 }
 
+/// What is on the page, for whoever has something to show, on any thread.
+#[derive(Clone)]
+pub(crate) struct Screen(Arc<Board>);
+
 /// A page being served from a thread of its own. Dropped, the server ends.
 pub(crate) struct Preview {
     url: String,
-    board: Arc<Board>,
+    screen: Screen,
     commands: Receiver<Command>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -86,9 +92,8 @@ impl Preview {
     ///
     /// # Errors
     /// A port that is taken; a system without threads or random numbers.
-    pub(crate) fn start(options: Options) -> Result<Self, Failure> {
-        let Options { port, allow_hosts, title } = options;
-        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+    pub(crate) fn start(options: &Options) -> Result<Self, Failure> {
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, options.port));
         let taken = |error: std::io::Error| {
             let message = format!("cannot serve the preview on {address}: {error}");
             Failure::new(Exit::Input, message).help("another port: --port N, or 0 for any")
@@ -96,10 +101,10 @@ impl Preview {
         let listener = TcpListener::bind(address).map_err(taken)?;
         listener.set_nonblocking(true).map_err(taken)?;
         let port = listener.local_addr().map_err(taken)?.port();
-        let gate = Gate::new(port, &allow_hosts)?;
+        let gate = Gate::new(port, &options.allow_hosts)?;
         let url = format!("http://127.0.0.1:{port}/?token={}", gate.token());
         let board = Arc::new(Board::new());
-        board.tell(Topic::Title, &json!({ "title": title }));
+        board.tell(Topic::Title, &json!({ "title": options.title }));
         let (sender, commands) = mpsc::sync_channel(session::WAITING_COMMANDS);
         let (stop, stopped) = oneshot::channel();
         let state = server::State::new(gate, board.clone(), sender);
@@ -107,7 +112,7 @@ impl Preview {
             .name("preview".into())
             .spawn(move || server::run(listener, state, stopped))
             .map_err(taken)?;
-        Ok(Self { url, board, commands, stop: Some(stop), thread: Some(thread) })
+        Ok(Self { url, screen: Screen(board), commands, stop: Some(stop), thread: Some(thread) })
     }
 
     /// The page's address; whoever knows it sees the picture.
@@ -115,37 +120,44 @@ impl Preview {
         &self.url
     }
 
+    /// Where pictures and words go.
+    pub(crate) fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// What the page asks for. Commands that nobody takes are dropped once a few wait.
+    pub(crate) fn commands(&self) -> &Receiver<Command> {
+        &self.commands
+    }
+}
+
+impl Screen {
     /// Shows a picture in place of the last one of its side. Pages that are slow miss those between.
     pub(crate) fn show(&self, frame: &Frame) {
-        self.board.pin(frame.side.topic(), frame.encode().into());
+        self.0.pin(frame.side.topic(), frame.encode().into());
     }
 
     /// Lays messages over the last good picture; none takes them away.
     pub(crate) fn problems(&self, problems: &[Problem]) {
-        self.board.tell(Topic::Problems, &json!({ "problems": problems }));
+        self.0.tell(Topic::Problems, &json!({ "problems": problems }));
     }
 
     /// One line below the picture: what changed, samples, time left.
     pub(crate) fn status(&self, text: &str) {
-        self.board.tell(Topic::Status, &json!({ "status": text }));
+        self.0.tell(Topic::Status, &json!({ "status": text }));
     }
 
     /// Offers what may be moved; `Command::Param` tells that something was.
     #[expect(dead_code, reason = "for the watch, which is not connected yet")]
     pub(crate) fn params(&self, params: &[Param]) {
-        self.board.tell(Topic::Params, &json!({ "params": params }));
+        self.0.tell(Topic::Params, &json!({ "params": params }));
     }
 
     /// Answers the last question for a pixel.
     pub(crate) fn pixel(&self, reply: &PixelReply) {
         let PixelReply { at, side, facts } = reply;
         let reply = json!({ "pixel": { "at": at.to_array(), "side": side, "facts": facts } });
-        self.board.tell(Topic::Pixel, &reply);
-    }
-
-    /// What the page asks for. Commands that nobody takes are dropped once a few wait.
-    pub(crate) fn commands(&self) -> &Receiver<Command> {
-        &self.commands
+        self.0.tell(Topic::Pixel, &reply);
     }
 }
 

@@ -15,7 +15,6 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    #[cfg_attr(not(test), expect(dead_code, reason = "for the watch, which is not connected yet"))]
     /// A diagnostic with the lines at fault.
     pub(crate) fn of_diagnostic(diagnostic: &Diagnostic, sources: &Sources) -> Self {
         let severity = match diagnostic.severity {

@@ -1,5 +1,6 @@
 //! Watching here, and each picture in a process of its own.
 
+use std::path::PathBuf;
 use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,7 +8,7 @@ use std::time::Duration;
 use luxel_core::render::Control;
 
 use super::Args;
-use super::changes::{Changes, Noticed, Wake};
+use super::changes::{self, Changes, Noticed, Wake};
 use super::round::{self, Course, Read};
 use crate::exit::{Exit, Failure};
 use crate::files::Watched;
@@ -29,6 +30,10 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let size = args.render.size;
     let course = load::Course { beat: beat.clone(), line: !args.quiet, ..Default::default() };
     let loaded = load::load(&args.file, &args.load, size, &plugins, &course)?;
+    // Half a save looks like a mistake; who watches comes to know of the other half.
+    if loaded.stage.is_none() && changes::change_soon(&loaded.files.asked()) {
+        return Ok(Exit::Fine);
+    }
     report::diagnostics(&loaded.diagnostics, &loaded.sources, args.form(), Stream::Error)?;
     let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
         return Ok(Exit::Input);
@@ -44,13 +49,13 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
 
 /// The parent's part.
 pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
-    let (mut changes, waker) = Changes::new()?;
+    let (mut changes, waker) = Changes::new();
     interrupt::on_each(move || {
         let _ = waker.send(Wake::Stop);
     })?;
     loop {
-        // Armed before anything is read, so that no save is missed.
-        changes.arm([args.file.as_path()])?;
+        // Watched before anything is read, so that no save is missed.
+        expect_more_than(Watched::new(), args, &mut changes);
         if !round(args, &mut changes)? {
             report::note("watching has ended");
             return Ok(Exit::Fine);
@@ -68,7 +73,7 @@ fn round(args: &Args, changes: &mut Changes) -> Result<bool, Failure> {
         if let Some(ending) = child.poll() {
             break ending;
         }
-        expect(&child, &mut expected, changes)?;
+        expect(&child, &mut expected, changes);
         match changes.within(TICK) {
             Noticed::Nothing => {}
             noticed => {
@@ -78,7 +83,7 @@ fn round(args: &Args, changes: &mut Changes) -> Result<bool, Failure> {
             }
         }
     };
-    expect(&child, &mut expected, changes)?;
+    expect(&child, &mut expected, changes);
     match next {
         // It was asked to end, and how it did so is of no interest.
         Some(noticed) => return Ok(noticed == Noticed::Save),
@@ -86,26 +91,26 @@ fn round(args: &Args, changes: &mut Changes) -> Result<bool, Failure> {
         None => {
             isolate::tell(&ending, &args.file, args.form())?;
             // What it did not come to ask for may be what has to change.
-            let plugins = load::look_at_libraries(&args.plugins);
-            let libraries = plugins.map_or_else(|_| Watched::new(), |plugins| plugins.watched);
-            let scene = (args.file.clone(), crate::files::look(&args.file));
-            let seen = expected.unwrap_or_default();
-            changes.expect(libraries.into_iter().chain([scene]).chain(seen).collect())?;
+            expect_more_than(expected.unwrap_or_default(), args, changes);
         }
     }
     Ok(changes.wait())
 }
 
+/// Watches what was told of, the scene, and what decides which libraries are opened.
+fn expect_more_than(told: Watched, args: &Args, changes: &mut Changes) {
+    let plugins = load::look_at_libraries(&args.plugins);
+    let libraries = plugins.map_or_else(|_| Watched::new(), |plugins| plugins.watched);
+    let also = libraries.keys().map(PathBuf::as_path).chain([args.file.as_path()]);
+    changes.expect_more_than(told, also);
+}
+
 /// Watches what the child has asked for so far.
-fn expect(
-    child: &Child,
-    expected: &mut Option<Watched>,
-    changes: &mut Changes,
-) -> Result<(), Failure> {
+fn expect(child: &Child, expected: &mut Option<Watched>, changes: &mut Changes) {
     let files = child.files();
     if files.is_empty() || expected.as_ref() == Some(&files) {
-        return Ok(());
+        return;
     }
     *expected = Some(files.clone());
-    changes.expect(files)
+    changes.expect(files);
 }

@@ -11,6 +11,7 @@ use luxel_core::render::Control;
 
 use super::Args;
 use super::changes::{Changes, Noticed, Wake};
+use super::page::{self, Page};
 use super::round::{self, Course, Read};
 use super::shown::{Shown, Subject};
 use crate::args::PluginArgs;
@@ -50,7 +51,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let (mut session, surroundings) = (Session::new(), Surroundings::of_process());
     let plugins = session.refresh(&args.plugins, &surroundings)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
-    let (mut changes, waker) = Changes::new()?;
+    let (mut changes, waker) = Changes::new();
     let in_hand = InHand::default();
     let stopped = in_hand.clone();
     let guard = Guard::default();
@@ -60,11 +61,20 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         render.cancel();
         build.cancel();
     })?;
-    changes.arm([args.file.as_path()])?;
+    changes.arm([args.file.as_path()]);
+    let page = args.preview.then(|| Page::start(&args.file, &args.page)).transpose()?;
     std::thread::scope(|scope| {
-        let (shown, impatient) = (None, true);
-        let mut watching =
-            Watching { args, scope, guard: &guard, in_hand, plugins, changes, shown, impatient };
+        let mut watching = Watching {
+            args,
+            scope,
+            guard: &guard,
+            page: page.as_ref(),
+            in_hand,
+            plugins,
+            changes,
+            shown: None,
+            impatient: true,
+        };
         loop {
             let next = match watching.round()? {
                 Next::Wait if watching.changes.wait() => Next::Read,
@@ -85,6 +95,7 @@ struct Watching<'scope, 'env> {
     args: &'env Args,
     scope: &'scope Scope<'scope, 'env>,
     guard: &'env Guard,
+    page: Option<&'env Page>,
     in_hand: InHand,
     plugins: Plugins,
     changes: Changes,
@@ -99,14 +110,15 @@ impl Watching<'_, '_> {
     /// Reads the scene, and renders it if it shows something else than before.
     ///
     /// # Errors
-    /// If standard error cannot be written or the system watches no more files.
+    /// If standard error cannot be written.
     fn round(&mut self) -> Result<Next, Failure> {
         match self.load() {
             // A panic in a plugin ends this attempt, not the watch.
             Err(failure) if failure.exit == Exit::Ours => {
                 report::failure(&failure);
+                self.page.inspect(|page| page.failed(&failure));
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
-                self.changes.expect_news(libraries.chain([self.args.file.as_path()]))?;
+                self.changes.expect_news(libraries.chain([self.args.file.as_path()]));
                 Ok(Next::Wait)
             }
             // Ctrl-C has ended it, which the wait is told too.
@@ -122,7 +134,8 @@ impl Watching<'_, '_> {
             && subject.is_of(&text)
         {
             subject.files.extend(text.files.asked());
-            self.changes.expect(subject.files.clone())?;
+            self.page.inspect(|page| page.problems(&[], &subject.read.sources));
+            self.changes.expect(subject.files.clone());
             return Ok(Next::Wait);
         }
         let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
@@ -130,7 +143,7 @@ impl Watching<'_, '_> {
             shown.supersede();
         }
         let texts = text.files.asked().into_keys().collect();
-        let (loaded, noticed) = self.build(text)?;
+        let (loaded, noticed) = self.build(text);
         let loaded = match noticed {
             Noticed::Save => return Ok(Next::Read),
             Noticed::Stop => return Ok(Next::End),
@@ -138,9 +151,13 @@ impl Watching<'_, '_> {
         };
         let mut watched = loaded.files.asked();
         watched.extend(self.plugins.watched.clone());
-        self.changes.expect(watched.clone())?;
+        self.changes.expect(watched.clone());
         let form = self.args.form();
-        report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
+        // Half a save looks like a mistake: the wait tells at once of the other half.
+        if loaded.stage.is_some() || !self.changes.more_to_come() {
+            report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
+            self.page.inspect(|page| page.problems(&loaded.diagnostics, &loaded.sources));
+        }
         let Loaded { stage, files, sources, .. } = loaded;
         if let (Some(stage), Some(hash)) = (stage, hash) {
             let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
@@ -153,10 +170,7 @@ impl Watching<'_, '_> {
     }
 
     /// Makes a scene ready, unless a save comes between.
-    ///
-    /// # Errors
-    /// If the system watches no more files.
-    fn build(&mut self, text: Text) -> Result<(Result<Loaded, Failure>, Noticed), Failure> {
+    fn build(&mut self, text: Text) -> (Result<Loaded, Failure>, Noticed) {
         let course = load::Course { line: !self.args.quiet, ..load::Course::default() };
         self.in_hand.get().1 = course.watch.clone();
         let mut now = text.files.asked();
@@ -164,7 +178,7 @@ impl Watching<'_, '_> {
         let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
         let (file, plugins, changes) = (&self.args.file, &self.plugins, &mut self.changes);
         let patient = !self.impatient;
-        changes.expect(now)?;
+        changes.expect(now);
         let (built, noticed) = std::thread::scope(|scope| {
             let building = scope.spawn(|| load::build(file, text, plugins, before, &course));
             let mut noticed = Noticed::Nothing;
@@ -181,7 +195,7 @@ impl Watching<'_, '_> {
         });
         self.impatient = noticed == Noticed::Nothing;
         let lost = |_| Failure::new(Exit::Ours, "the scene could not be made ready");
-        Ok((built.unwrap_or_else(|payload| Err(lost(payload))), noticed))
+        (built.unwrap_or_else(|payload| Err(lost(payload))), noticed)
     }
 
     /// Ends the picture before, and begins one.
@@ -191,9 +205,13 @@ impl Watching<'_, '_> {
         self.in_hand.get().0.clone_from(&control);
         let (args, guard) = (self.args, self.guard);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
+        let of_samples = args.render.options().samples(&stage);
+        let mut look = self
+            .page
+            .map_or_else(page::unseen, |page| Box::new(page.follow(&stage, &read, of_samples)));
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
-            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut |_, _| {}) {
+            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut *look) {
                 report::failure(&failure);
             }
         });

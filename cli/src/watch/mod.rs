@@ -3,6 +3,7 @@
 mod apart;
 mod changes;
 mod here;
+mod page;
 mod round;
 mod shown;
 
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
 use crate::exit::{Exit, Failure};
 use crate::isolate::IsolateArgs;
+use crate::preview::PageArgs;
 use crate::report::Form;
 
 /// Render a scene again whenever it, or a file that it reads, is saved
@@ -21,6 +23,7 @@ use crate::report::Form;
 #[command(after_help = "\
 Examples:
   luxel watch scenes/cornell.scene
+  luxel watch scenes/cornell.scene --preview
   luxel watch scenes/cornell.scene -o small --size 320x320 --spp 16
   luxel watch scenes/cornell.scene --plugin-dir target/release --isolate")]
 pub(crate) struct Args {
@@ -34,6 +37,11 @@ pub(crate) struct Args {
     plugins: PluginArgs,
     #[command(flatten)]
     isolate: IsolateArgs,
+    /// Serve a page that shows the picture as it grows, and print its address
+    #[arg(long, conflicts_with = "isolate")]
+    preview: bool,
+    #[command(flatten)]
+    page: PageArgs,
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use luxel_core::diag::Sources;
 use luxel_core::film::Film;
-use luxel_core::render::{Control, Look, Outcome, Seen};
+use luxel_core::render::{Control, Look, Options, Outcome, Seen};
 use luxel_core::stage::Stage;
 
 use super::Args;
@@ -51,7 +51,7 @@ pub(super) fn render(
     output.check(&read.files)?;
     guard.measuring();
     beat.phase(Phase::Rendering);
-    let options = args.render.options();
+    let options = Options { coarse: args.preview, ..args.render.options() };
     let first = options.samples(stage) > COARSE;
     let mut refused = None;
     let mut seen = |film: &Film, now: Seen| {

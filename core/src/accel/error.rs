@@ -27,6 +27,13 @@ pub enum BuildError {
         /// How many there may be.
         limit: usize,
     },
+    /// More points than indices can name.
+    TooManyPoints {
+        /// How many were given.
+        n_points: usize,
+        /// How many there may be.
+        limit: usize,
+    },
     /// The [`Watch`](super::Watch) was cancelled.
     Cancelled,
 }
@@ -40,6 +47,9 @@ impl fmt::Display for BuildError {
             }
             Self::TooManyTriangles { n_triangles, limit } => {
                 write!(f, "{n_triangles} triangles in one mesh, the limit is {limit}")
+            }
+            Self::TooManyPoints { n_points, limit } => {
+                write!(f, "{n_points} points in one mesh, the limit is {limit}")
             }
             Self::Cancelled => f.write_str("cancelled"),
         }

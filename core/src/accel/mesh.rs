@@ -60,8 +60,8 @@ impl MeshBvh {
     /// `points` are about the mesh's own centre, in any length unit; they are read, not kept.
     ///
     /// # Errors
-    /// A point that is not finite (used or not), an index past the points, or more than 2²⁹
-    /// triangles.
+    /// A point that is not finite (used or not), an index past the points, more than 2²⁹
+    /// triangles, or 2³² points or more.
     pub fn build(points: &[Vec3], indices: &[[u32; 3]]) -> Result<Self, BuildError> {
         Self::build_watched(points, indices, &Watch::default())
     }

@@ -19,7 +19,7 @@ impl Child {
     const LEAF: u32 = 1 << 31;
     /// Blocks that one leaf may hold.
     pub(super) const MAX_BLOCKS: usize = 4;
-    /// What numbers a block: 29 bits.
+    /// How many blocks 29 bits number.
     pub(super) const BLOCK_LIMIT: usize = 1 << 29;
 
     pub(super) fn node(index: usize) -> Self {
@@ -212,5 +212,22 @@ impl Block {
     pub(super) fn at(&self, shift: &Shift, share: f32) -> Self {
         let axes = |v: usize| [0, 1, 2].map(|a| self.points[v][a] + shift.0[v][a] * share);
         Self { points: [0, 1, 2].map(axes), ids: self.ids }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_leaf_numbers_as_many_blocks_as_the_limit_and_not_one_more() {
+        let last = Child::BLOCK_LIMIT - 1;
+        for (first, n) in [(0, 1), (last, 1), (last - 3, 4)] {
+            let leaf = Child::leaf(first, n);
+            assert!(leaf.is_leaf());
+            assert_eq!(leaf.blocks(), first..first + n);
+        }
+        // The number behind the last one would reach the bit that tells a leaf.
+        assert_eq!(narrow(Child::BLOCK_LIMIT << 2), Child::LEAF);
     }
 }

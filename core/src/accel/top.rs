@@ -31,10 +31,14 @@ pub(super) type TopNode = Boxes<f64>;
 pub type Box64 = (DVec3, DVec3);
 
 impl TopBvh {
+    /// How many boxes a tree may hold.
+    pub const MOST: usize = Child::BLOCK_LIMIT;
+
     /// Builds the tree over boxes given as their corners (minimum, maximum), in metres.
     ///
     /// Corners may be infinite. A box that is empty (minimum above maximum) or has a NaN is never
-    /// visited. At most 2²⁹ boxes.
+    /// visited. At most [`TopBvh::MOST`] boxes: a scene may hold far fewer placements, and a shape far
+    /// fewer parts.
     ///
     /// # Panics
     /// With more boxes than that.
@@ -47,7 +51,7 @@ impl TopBvh {
     /// # Panics
     /// As `build`.
     pub fn build_watched(boxes: &[Box64], watch: &Watch) -> Option<Self> {
-        assert!(boxes.len() < Child::BLOCK_LIMIT, "at most 2^29 placements");
+        assert!(boxes.len() <= Self::MOST, "callers bound what they place");
         watch.begin(boxes.len(), "parts");
         let prims = prims(boxes, watch);
         let ignored = boxes.len() - prims.len();

@@ -24,6 +24,19 @@ pub(super) struct Triangles<'a> {
     moves: Option<Moves<'a>>,
 }
 
+/// How many of each a mesh may have.
+#[derive(Clone, Copy)]
+struct Limits {
+    triangles: usize,
+    points: usize,
+}
+
+impl Limits {
+    /// In the worst tree each triangle has a block of its own; and 32 bits tell places and the number
+    /// of points apart.
+    const OF_TREE: Self = Self { triangles: Child::BLOCK_LIMIT, points: u32::MAX as usize };
+}
+
 /// Where points move to, and the shares of the way between which they are met.
 #[derive(Clone, Copy)]
 struct Moves<'a> {
@@ -38,12 +51,24 @@ impl<'a> Triangles<'a> {
         indices: &'a [[u32; 3]],
         watch: &Watch,
     ) -> Result<Self, BuildError> {
-        let limit = Child::BLOCK_LIMIT;
-        if indices.len() >= limit {
-            return Err(BuildError::TooManyTriangles { n_triangles: indices.len(), limit });
+        Self::within(Limits::OF_TREE, points, indices, watch)
+    }
+
+    /// The same within other limits.
+    fn within(
+        limits: Limits,
+        points: &'a [Vec3],
+        indices: &'a [[u32; 3]],
+        watch: &Watch,
+    ) -> Result<Self, BuildError> {
+        let (n_triangles, n_points) = (indices.len(), points.len());
+        if n_triangles > limits.triangles {
+            return Err(BuildError::TooManyTriangles { n_triangles, limit: limits.triangles });
+        }
+        if n_points > limits.points {
+            return Err(BuildError::TooManyPoints { n_points, limit: limits.points });
         }
         let largest = reach(points, watch)?;
-        let n_points = points.len();
         let most = |all: u32, indices: &[[u32; 3]]| {
             indices.iter().fold(all, |all, t| all.max(t[0]).max(t[1]).max(t[2]))
         };
@@ -201,4 +226,35 @@ fn reach(points: &[Vec3], watch: &Watch) -> Result<f32, BuildError> {
 fn power_of_two_below(x: f32) -> f32 {
     let power = f32::from_bits(x.to_bits() & 0x7f80_0000);
     if x > 0.0 { power.clamp(f32::from_bits(27 << 23), f32::from_bits(227 << 23)) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(limits: (usize, usize), points: &[Vec3], n: usize) -> Option<BuildError> {
+        let limits = Limits { triangles: limits.0, points: limits.1 };
+        Triangles::within(limits, points, &vec![[0, 1, 9]; n], &Watch::default()).err()
+    }
+
+    #[test]
+    fn one_triangle_or_point_more_than_the_limit_is_told_before_any_is_looked_at() {
+        // Neither the index past the points nor the point that is no number is reached.
+        let points = [Vec3::ZERO, Vec3::X, Vec3::NAN];
+        let many = told((3, 3), &points, 4);
+        assert_eq!(many, Some(BuildError::TooManyTriangles { n_triangles: 4, limit: 3 }));
+        assert_eq!(many.unwrap().to_string(), "4 triangles in one mesh, the limit is 3");
+        let many = told((3, 2), &points, 3);
+        assert_eq!(many, Some(BuildError::TooManyPoints { n_points: 3, limit: 2 }));
+        assert_eq!(many.unwrap().to_string(), "3 points in one mesh, the limit is 2");
+        assert_eq!(told((3, 3), &points, 3), Some(BuildError::NonFinitePoint { point: 2 }));
+    }
+
+    #[test]
+    fn as_many_triangles_as_the_limit_are_taken() {
+        let (points, watch) = ([Vec3::ZERO, Vec3::X, Vec3::Y], Watch::default());
+        let limits = Limits { triangles: 3, points: 3 };
+        let triangles = Triangles::within(limits, &points, &[[0, 1, 2]; 3], &watch).unwrap();
+        assert_eq!(triangles.prims(&watch).len(), 3);
+    }
 }

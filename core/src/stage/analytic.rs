@@ -19,6 +19,8 @@ pub struct Analytic {
 /// Most parts that a tree holds.
 const MOST: u32 = 1 << 24;
 
+const _: () = assert!(MOST as usize <= TopBvh::MOST, "a tree numbers every part");
+
 impl Analytic {
     /// Takes over a shape, and builds the tree over its parts. One of more than 2²⁴ parts is asked
     /// for all of them at once, and so is one of a single part.

@@ -2,6 +2,7 @@
 
 use luxel_sdk::kind::Kind;
 
+use crate::accel::TopBvh;
 use crate::diag::Diagnostic;
 use crate::scene::{Group, NodeId, Pose, Scene, Target};
 
@@ -22,43 +23,91 @@ const MOST_STEPS: usize = 256;
 /// Most placements that a stage holds.
 const LIMIT: usize = 100_000_000;
 
+const _: () = assert!(LIMIT <= TopBvh::MOST, "a tree numbers every placement");
+
 /// Every shape and light of the scene in the world.
 ///
 /// # Errors
 /// E0501 when there are too many.
 pub(super) fn flatten(scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
-    let mut out = vec![];
-    walk(scene, &scene.root, &Pose::IDENTITY, None, &mut out)?;
-    Ok(out)
+    within(LIMIT, scene)
 }
 
-fn walk(
-    scene: &Scene,
-    group: &Group,
-    pose: &Pose,
-    material: Option<NodeId>,
-    out: &mut Vec<Flat>,
-) -> Result<(), Box<Diagnostic>> {
-    for item in &group.items {
-        let pose = item.pose.then(pose);
-        if matches!(&pose, Pose::Moving(steps) if steps.len() > MOST_STEPS) {
-            let message =
-                format!("more than {MOST_STEPS} steps of the poses of groups in each other move");
-            return Err(Box::new(Diagnostic::error("E0501", item.span, message)));
-        }
-        let material = item.material.or(material);
-        match item.target {
-            Target::Group(id) => walk(scene, scene.group(id), &pose, material, out)?,
-            Target::Node(node) => {
-                if matches!(scene.node(node).kind, Kind::Shape | Kind::Light) {
-                    out.push(Flat { node, pose, material, span: item.span });
+/// The same with at most `limit`.
+fn within(limit: usize, scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
+    let mut walk = Walk { scene, limit, out: vec![] };
+    walk.over(&scene.root, &Pose::IDENTITY, None)?;
+    Ok(walk.out)
+}
+
+/// On the way through groups.
+struct Walk<'a> {
+    scene: &'a Scene,
+    limit: usize,
+    out: Vec<Flat>,
+}
+
+impl Walk<'_> {
+    fn over(
+        &mut self,
+        group: &Group,
+        pose: &Pose,
+        material: Option<NodeId>,
+    ) -> Result<(), Box<Diagnostic>> {
+        for item in &group.items {
+            let pose = item.pose.then(pose);
+            if matches!(&pose, Pose::Moving(steps) if steps.len() > MOST_STEPS) {
+                let message = format!(
+                    "more than {MOST_STEPS} steps of the poses of groups in each other move"
+                );
+                return Err(Box::new(Diagnostic::error("E0501", item.span, message)));
+            }
+            let material = item.material.or(material);
+            match item.target {
+                Target::Group(id) => self.over(self.scene.group(id), &pose, material)?,
+                Target::Node(node) => {
+                    if matches!(self.scene.node(node).kind, Kind::Shape | Kind::Light) {
+                        self.out.push(Flat { node, pose, material, span: item.span });
+                    }
                 }
             }
+            if self.out.len() > self.limit {
+                let message = format!("more than {} instances", self.limit);
+                return Err(Box::new(Diagnostic::error("E0501", item.span, message)));
+            }
         }
-        if out.len() > LIMIT {
-            let message = format!("more than {LIMIT} instances");
-            return Err(Box::new(Diagnostic::error("E0501", item.span, message)));
-        }
+        Ok(())
     }
-    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::{SourceId, Span};
+    use crate::scene::{GroupId, Node, Placed};
+
+    #[test]
+    fn one_instance_more_than_the_limit_is_told_where_it_stands() {
+        let at = |place| Span::new(SourceId(0), place, place + 1);
+        let mut scene = Scene::default();
+        let node = scene.add(Node {
+            kind: Kind::Shape,
+            class: "any".into(),
+            label: None,
+            params: vec![],
+            overrides: vec![],
+            span: at(0),
+            hash: [0; 32],
+        });
+        let pose = Pose::IDENTITY;
+        let placed =
+            |target, span| Placed { target, pose: pose.clone(), material: None, span: at(span) };
+        let pair = [1, 2].map(|place| placed(Target::Node(node), place)).to_vec();
+        scene.groups.push(Group { label: None, items: pair });
+        let group = Target::Group(GroupId(0));
+        scene.root.items = [7, 8].map(|place| placed(group, place)).to_vec();
+        assert_eq!(within(4, &scene).unwrap().len(), 4);
+        let told = within(3, &scene).unwrap_err();
+        assert_eq!((told.code, &*told.message), ("E0501", "more than 3 instances"));
+    }
 }

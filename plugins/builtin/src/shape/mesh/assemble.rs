@@ -9,6 +9,18 @@ use luxel_sdk::num::Bounds3;
 
 use super::Shading;
 
+/// Most points of a mesh: more than the corners of as many triangles as a mesh may have, and every
+/// place among them fits 32 bits.
+pub(super) const MOST_POINTS: u32 = 1 << 31;
+
+/// Refuses more points than a mesh may have; from a header, before any is read.
+pub(super) fn check_n_points(n: usize) -> Result<(), String> {
+    if n <= MOST_POINTS as usize {
+        return Ok(());
+    }
+    Err(format!("{n} points in one mesh, at most {MOST_POINTS} may be"))
+}
+
 /// How points of a file become points of the shape: turned, and scaled to metres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
@@ -161,7 +173,7 @@ fn vertex_normals(mesh: &TriangleMesh) -> Vec<Vec3> {
             *sums.entry(key(triangle[k])).or_default() += n * angle(a, b);
         }
     }
-    let n_points = u32::try_from(mesh.points.len()).expect("indices are u32");
+    let n_points = u32::try_from(mesh.points.len()).expect("readers check the number of points");
     let of = |i| sums.get(&key(i)).and_then(|n| n.try_normalize()).unwrap_or(DVec3::Y).as_vec3();
     (0..n_points).map(of).collect()
 }

@@ -5,7 +5,7 @@ use luxel_sdk::kind::TriangleMesh;
 use luxel_sdk::params::Fault;
 
 use super::Mesh;
-use super::assemble::{Axes, fan};
+use super::assemble::{Axes, check_n_points, fan};
 use super::polygons::Polygons;
 
 /// Takes the tables apart; all that is wrong with them at once.
@@ -56,6 +56,9 @@ impl<'a> Tables<'a> {
     fn read(mesh: &Mesh<'a>) -> Result<Self, Vec<Fault>> {
         let mut faults = vec![];
         let points = groups::<3>("points", mesh.points.get(), &mut faults);
+        if let Err(message) = check_n_points(points.len()) {
+            faults.push(Fault::mesh("points", message));
+        }
         let normals = groups::<3>("normals", mesh.normals.get(), &mut faults);
         let uvs = groups::<2>("uvs", mesh.uvs.get(), &mut faults);
         let colors = groups::<3>("colors", mesh.colors.get(), &mut faults);

@@ -7,7 +7,7 @@ use luxel_sdk::color::srgb_decode;
 use luxel_sdk::kind::TriangleMesh;
 use tobj::LoadOptions;
 
-use super::assemble::Axes;
+use super::assemble::{Axes, MOST_POINTS};
 use super::inline::unit_color;
 
 const OPTIONS: LoadOptions =
@@ -20,7 +20,7 @@ const OPTIONS: LoadOptions =
 pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
     // Names and comments may be in any old encoding; numbers are not.
     let text = String::from_utf8_lossy(bytes);
-    check_indices(&text)?;
+    check(&text, Most::OF_MESH)?;
     let text: Cow<'_, [u8]> = match text {
         Cow::Borrowed(text) => Cow::Borrowed(text.as_bytes()),
         Cow::Owned(text) => Cow::Owned(text.into_bytes()),
@@ -69,7 +69,7 @@ fn triangles(meshes: &[tobj::Mesh]) -> Result<Vec<[u32; 3]>, String> {
         out.extend(corners.iter().map(|t| t.map(|i| i + start)));
         let n = u32::try_from(mesh.positions.len() / 3).ok();
         let next = n.and_then(|n| start.checked_add(n));
-        start = next.ok_or("more than 4,294,967,295 corners")?;
+        start = next.ok_or(TOO_MANY)?;
     }
     if out.is_empty() {
         return Err("an OBJ file without a face (no line `f 1 2 3`)".to_owned());
@@ -99,35 +99,59 @@ fn alike(a: f64, b: f64) -> bool {
     a.total_cmp(&b).is_eq() || a.is_nan() && b.is_nan()
 }
 
-/// Finds the first face that names a corner which does not exist.
-pub(super) fn check_indices(text: &str) -> Result<(), String> {
+pub(super) const TOO_MANY: &str = "more than 4,294,967,295 corners";
+
+/// How many numbers of 32 bits tell apart, in `tobj` and here.
+#[derive(Clone, Copy)]
+pub(super) struct Most {
+    /// Points, texture coordinates and normals each.
+    lines: i64,
+    /// Corners of all faces.
+    corners: u64,
+}
+
+impl Most {
+    /// What a mesh may have.
+    pub(super) const OF_MESH: Self = Self { lines: MOST_POINTS as i64, corners: u32::MAX as u64 };
+}
+
+/// Finds the first face that names a corner which does not exist, and more lines or corners than can
+/// be told apart.
+pub(super) fn check(text: &str, most: Most) -> Result<(), String> {
     const NAMES: [&str; 3] = ["v", "vt", "vn"];
     let mut counts = [0i64; 3];
+    let mut n_corners = 0u64;
     // For each list the greatest index, and the line that has it.
     let mut greatest = [(0i64, 0usize); 3];
     for (i, line) in text.lines().enumerate() {
         let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("v") => counts[0] += 1,
-            Some("vt") => counts[1] += 1,
-            Some("vn") => counts[2] += 1,
-            Some("f" | "l") => {
-                for (part, k) in words.flat_map(|word| word.split('/').zip(0..3)) {
-                    if part.is_empty() {
-                        continue;
-                    }
-                    let index = part.parse::<i64>().ok();
-                    let legal = index.filter(|x| *x > 0 || (*x < 0 && *x >= -counts[k]));
-                    let Some(index) = legal else {
-                        let name = NAMES[k];
-                        return Err(format!("line {}: `{part}` is no index of a {name}", i + 1));
-                    };
-                    if index > greatest[k].0 {
-                        greatest[k] = (index, i + 1);
-                    }
+        let word = words.next();
+        if let Some(k) = NAMES.iter().position(|name| word == Some(name)) {
+            counts[k] += 1;
+            if counts[k] > most.lines {
+                let (name, most) = (NAMES[k], most.lines);
+                return Err(format!("line {}: more than {most} lines `{name}`", i + 1));
+            }
+        } else if let Some("f" | "l") = word {
+            let parts = words.flat_map(|word| word.split('/').zip(0..3));
+            for (part, k) in parts {
+                n_corners += u64::from(k == 0);
+                if part.is_empty() {
+                    continue;
+                }
+                let index = part.parse::<i64>().ok();
+                let legal = index.filter(|x| *x > 0 || (*x < 0 && *x >= -counts[k]));
+                let Some(index) = legal else {
+                    let name = NAMES[k];
+                    return Err(format!("line {}: `{part}` is no index of a {name}", i + 1));
+                };
+                if index > greatest[k].0 {
+                    greatest[k] = (index, i + 1);
                 }
             }
-            _ => {}
+            if n_corners > most.corners {
+                return Err(format!("line {}: more than {} corners", i + 1, most.corners));
+            }
         }
     }
     for ((count, (index, line)), name) in counts.into_iter().zip(greatest).zip(NAMES) {
@@ -136,4 +160,30 @@ pub(super) fn check_indices(text: &str) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_lines_or_corners_than_can_be_told_apart_are_refused_with_their_line() {
+        let most = Most { lines: 3, corners: 6 };
+        let points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+        let face = "f 1 2 3\n";
+        assert_eq!(check(&format!("{points}{face}{face}"), most), Ok(()));
+        for (text, expected) in [
+            (format!("{points}v 0 0 1\n{face}"), "line 4: more than 3 lines `v`"),
+            (format!("{points}{}", "vt 0 0\n".repeat(4)), "line 7: more than 3 lines `vt`"),
+            (format!("{points}{}", face.repeat(3)), "line 6: more than 6 corners"),
+        ] {
+            assert_eq!(check(&text, most), Err(expected.to_owned()));
+        }
+    }
+
+    #[test]
+    fn what_a_mesh_may_have_fits_thirty_two_bits() {
+        assert!(u32::try_from(Most::OF_MESH.lines).is_ok());
+        assert!(u32::try_from(Most::OF_MESH.corners).is_ok());
+    }
 }

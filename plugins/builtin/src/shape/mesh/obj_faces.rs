@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::assemble::Axes;
 use super::inline::finite_uv;
-use super::obj::{check_indices, color_of};
+use super::obj::{Most, TOO_MANY, check, color_of};
 use super::polygons::Polygons;
 
 /// All groups of the file as one mesh.
@@ -15,7 +15,7 @@ use super::polygons::Polygons;
 pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<Polygons, String> {
     // Names and comments may be in any old encoding; numbers are not.
     let text = String::from_utf8_lossy(bytes);
-    check_indices(&text)?;
+    check(&text, Most::OF_MESH)?;
     let mut file = Lists { axes, ..Lists::default() };
     for (i, line) in text.lines().enumerate() {
         file.line(line).map_err(|message| format!("line {}: {message}", i + 1))?;
@@ -109,8 +109,6 @@ impl Lists {
         Ok(())
     }
 }
-
-const TOO_MANY: &str = "more than 4,294,967,295 corners";
 
 /// The place, from 0, that a word of a face names among those that the file has given before it.
 fn of_word(word: &str, n: usize) -> Option<usize> {

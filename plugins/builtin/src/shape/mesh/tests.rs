@@ -286,13 +286,38 @@ fn damaged_plys_are_refused() {
     let lie = HEADER.replace("vertex 4", "vertex 1000000000000000000");
     for format in ["ascii", "binary_little_endian"] {
         let text = format!("ply\nformat {format} 1.0\n{lie}");
-        assert!(fault(ply_file(text.as_bytes())).2.contains("do not fit"), "{format}");
+        let told = fault(ply_file(text.as_bytes())).2;
+        assert!(told.contains("000 points in one mesh, at most"), "{format}: {told}");
     }
     let nan = text_ply("0 0 0\n1 0 nan\n1 1 0\n0 1 0\n3 0 1 2");
     assert!(
         fault(ply_file(&nan)).2.starts_with("a.ply: point 1 at (1e0, 0e0, NaN) has a coordinate")
     );
     assert!(fault(ply_file(b"o hello")).2.contains("not a PLY file"));
+}
+
+#[test]
+fn headers_that_claim_five_thousand_million_are_refused_before_room_is_made() {
+    // Room for so many would end the process: 60 GB of points, and as much of triangles.
+    for (claim, expected) in [
+        (("vertex 4", "vertex 5000000000"), "5000000000 points in one mesh, at most 2147483648"),
+        (("vertex 4", "vertex 2147483649"), "2147483649 points in one mesh, at most 2147483648"),
+        (("vertex 4", "vertex 2147483648"), "2147483648 of element `vertex` do not fit into"),
+        (("face 1", "face 5000000000"), "5000000000 of element `face` do not fit into"),
+        (("face 1", "face 536870913"), "536870913 of element `face` do not fit into"),
+    ] {
+        for file in [binary_ply(false), text_ply("0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3")] {
+            let at = file.windows(11).position(|w| w == b"end_header\n").unwrap();
+            let header = String::from_utf8_lossy(&file[..at]).replace(claim.0, claim.1);
+            let file = [header.as_bytes(), &file[at..]].concat();
+            let faces = Mesh { subdivide: 1, ..params("a.ply") };
+            for found in [load(params("a.ply"), &file), load(faces, &file)] {
+                let (field, code, message) = fault(found);
+                assert_eq!((field, code), ("file", "E0413"));
+                assert!(message.starts_with(&format!("a.ply: {expected}")), "{message}");
+            }
+        }
+    }
 }
 
 #[test]

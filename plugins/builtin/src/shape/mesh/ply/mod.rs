@@ -11,7 +11,7 @@ use luxel_sdk::kind::TriangleMesh;
 
 use self::header::{Element, Header};
 use self::value::{Encoding, Reader, Scalar};
-use super::assemble::{Axes, fan};
+use super::assemble::{Axes, check_n_points, fan};
 use super::inline::{finite_uv, unit_color};
 use super::polygons::Polygons;
 
@@ -90,7 +90,7 @@ fn parse(
     let header = Header::parse(bytes)?;
     let mut reader = Reader::new(&bytes[header.length..], header.encoding);
     let n_points = header.elements.iter().find(|e| e.name == "vertex").map_or(0, |e| e.count);
-    let n_points = u32::try_from(n_points).unwrap_or(u32::MAX);
+    check_n_points(n_points)?;
     let mut mesh = None;
     for element in &header.elements {
         element.check_count(&reader)?;
@@ -231,7 +231,7 @@ fn linear(color: DVec3, depth: Scalar) -> Vec3 {
 fn faces(
     element: &Element,
     reader: &mut Reader<'_>,
-    n_points: u32,
+    n_points: usize,
     out: &mut impl Faces,
 ) -> Result<(), String> {
     let names = ["vertex_indices", "vertex_index"];

@@ -151,12 +151,12 @@ impl<'a> Reader<'a> {
         &mut self,
         count: Scalar,
         value: Scalar,
-        n: u32,
+        n: usize,
         out: &mut Vec<u32>,
     ) -> Result<(), String> {
         for _ in 0..self.length(count, value)? {
             let x = self.next(value)?;
-            let place = index(x, n as usize);
+            let place = index(x, n);
             out.push(place.ok_or_else(|| format!("index {x} names no vertex: there are {n}"))?);
         }
         Ok(())

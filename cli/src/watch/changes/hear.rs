@@ -1,0 +1,217 @@
+//! Listening to the system: which folders, and what was heard of which names.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use notify::event::{AccessKind, AccessMode, ModifyKind};
+use notify::{Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
+
+use super::Wake;
+use super::file::{Identity, identity, name};
+use super::hops::Hops;
+
+/// What was heard since the last time, by the files that it may concern.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Heard {
+    files: BTreeSet<PathBuf>,
+    /// Files that are written and not yet closed.
+    open: BTreeSet<PathBuf>,
+    /// Files that were closed or put in their place as a whole.
+    done: BTreeSet<PathBuf>,
+    /// Everything may have changed.
+    all: bool,
+    /// A path may lead elsewhere.
+    pub(super) moved: bool,
+    /// There is no reason to wait for more.
+    decided: bool,
+}
+
+impl Heard {
+    /// Whether something happened that may have changed this file.
+    pub(super) fn concerns(&self, file: &Path) -> bool {
+        self.all || self.files.contains(file) || file.is_dir()
+    }
+
+    /// Whether somebody may still be writing it.
+    pub(super) fn may_go_on(&self, file: &Path) -> bool {
+        let done = self.all || self.done.contains(file);
+        self.open.contains(file) || !done
+    }
+
+    fn note(&mut self, kind: EventKind, files: Option<&BTreeSet<PathBuf>>, is_way: bool) {
+        let files = || files.into_iter().flatten().cloned();
+        self.files.extend(files());
+        let is_done = match kind {
+            EventKind::Modify(ModifyKind::Data(_) | ModifyKind::Any) => {
+                self.open.extend(files());
+                false
+            }
+            // Its bytes come next, or it is a link and done; who watches looks a little later.
+            EventKind::Create(_) => {
+                self.moved = true;
+                false
+            }
+            EventKind::Modify(ModifyKind::Name(_)) => {
+                self.moved = true;
+                true
+            }
+            EventKind::Access(_) => true,
+            _ => {
+                self.decided = true;
+                false
+            }
+        };
+        if is_done {
+            files().for_each(|file| _ = self.open.remove(&file));
+            self.done.extend(files());
+        }
+        // A link or a folder was replaced, and whatever it leads to is another and whole.
+        self.all |= is_way;
+        self.moved |= is_way;
+        self.decided |= is_way || is_done;
+    }
+}
+
+#[derive(Default)]
+struct Shared {
+    heard: Heard,
+    /// Whether whoever waits has been woken.
+    woken: bool,
+    hops: Hops,
+}
+
+impl Shared {
+    /// Whether an event is a reason to look.
+    fn hear(&mut self, event: notify::Result<Event>) -> bool {
+        let Some(event) = event.ok().filter(|event| !event.need_rescan()) else {
+            (self.heard.all, self.heard.moved, self.heard.decided) = (true, true, true);
+            return true;
+        };
+        match event.kind {
+            EventKind::Access(AccessKind::Close(AccessMode::Write)) => {}
+            // Reading a file makes events too.
+            EventKind::Access(_) => return false,
+            _ => {}
+        }
+        let mut matters = false;
+        for path in &event.paths {
+            let name = name(path);
+            let is_way = self.hops.ways.contains(&name);
+            let files = self.hops.files.get(&name);
+            // Elsewhere events name less, or in other letters.
+            let known = cfg!(target_os = "linux") && !is_library_name(path);
+            if is_way || files.is_some() || !known {
+                self.heard.note(event.kind, files, is_way);
+                matters = true;
+            }
+        }
+        matters
+    }
+}
+
+/// Folders of libraries are watched for names that are not known.
+fn is_library_name(path: &Path) -> bool {
+    path.to_string_lossy().ends_with(std::env::consts::DLL_SUFFIX)
+}
+
+/// The folders that are listened in.
+pub(super) struct Ears {
+    watcher: Option<RecommendedWatcher>,
+    folders: BTreeMap<PathBuf, Identity>,
+    shared: Arc<Mutex<Shared>>,
+    /// Whether the system refused to tell of a folder.
+    refused: bool,
+}
+
+impl Ears {
+    /// Wakes through `wake`, at most twice until what was heard is taken.
+    pub(super) fn new(wake: Sender<Wake>) -> Self {
+        let mut ears = Self::deaf();
+        let shared = ears.shared.clone();
+        let watcher = notify::recommended_watcher(move |event| {
+            let mut shared = lock(&shared);
+            let waits = shared.woken && !shared.heard.decided;
+            // Once, and once more when there is nothing left to wait for.
+            if shared.hear(event) && (!shared.woken || waits && shared.heard.decided) {
+                shared.woken = true;
+                let _ = wake.send(Wake::Look);
+            }
+        });
+        ears.watcher = watcher.ok();
+        ears
+    }
+
+    /// Hears nothing.
+    pub(super) fn deaf() -> Self {
+        let (folders, shared) = Default::default();
+        Self { watcher: None, folders, shared, refused: false }
+    }
+
+    /// Whether there are folders of which nothing is heard.
+    pub(super) fn is_deaf(&self) -> bool {
+        self.refused || self.watcher.is_none()
+    }
+
+    pub(super) fn folders(&self) -> impl Iterator<Item = &Path> {
+        self.folders.keys().map(PathBuf::as_path)
+    }
+
+    /// Listens in these folders too; one that was replaced is listened in anew.
+    pub(super) fn listen(&mut self, hops: &Hops) {
+        {
+            let mut shared = lock(&self.shared);
+            shared.hops.ways.clone_from(&hops.ways);
+            shared.hops.files.clone_from(&hops.files);
+        }
+        self.refused = false;
+        for folder in &hops.folders {
+            let Ok(about) = fs::metadata(folder) else { continue };
+            let identity = identity(&about);
+            if self.folders.get(folder) == Some(&identity) {
+                continue;
+            }
+            if let Some(watcher) = &mut self.watcher {
+                // The old folder may be gone, and its watch with it.
+                let _ = watcher.unwatch(folder);
+                if watcher.watch(folder, RecursiveMode::NonRecursive).is_err() {
+                    self.refused = true;
+                    self.folders.remove(folder);
+                    continue;
+                }
+            }
+            self.folders.insert(folder.clone(), identity);
+        }
+    }
+
+    /// Stops listening in all other folders.
+    pub(super) fn forget_all_but(&mut self, hops: &Hops) {
+        let watcher = &mut self.watcher;
+        self.folders.retain(|folder, _| {
+            let wanted = hops.folders.contains(folder);
+            if let Some(watcher) = watcher.as_mut().filter(|_| !wanted) {
+                let _ = watcher.unwatch(folder);
+            }
+            wanted
+        });
+    }
+
+    /// Whether there is no reason to wait for more before looking.
+    pub(super) fn is_decided(&self) -> bool {
+        lock(&self.shared).heard.decided
+    }
+
+    /// What was heard since the last time.
+    pub(super) fn take(&self) -> Heard {
+        let mut shared = lock(&self.shared);
+        shared.woken = false;
+        let open = shared.heard.open.clone();
+        std::mem::replace(&mut shared.heard, Heard { open, ..Heard::default() })
+    }
+}
+
+fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}

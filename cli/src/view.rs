@@ -67,9 +67,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         allow_hosts: args.page.allow_host.clone(),
         title,
     })?;
-    for shown in shown.values() {
-        show(&preview, shown);
+    for file in shown.values() {
+        show(&preview, file);
     }
+    preview.screen().status(&about(&shown));
     report::out(&format!("{}\n", preview.url()))?;
     let opens = !args.page.no_open && std::io::stdout().is_terminal();
     let _leading = opens.then(|| preview::open(preview.url()));
@@ -91,6 +92,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Fine)
 }
 
+/// A line about the pictures.
+fn about(shown: &BTreeMap<u8, Shown>) -> String {
+    let pictures = shown.values().filter_map(|shown| shown.picture.as_ref());
+    pictures.map(Picture::about).collect::<Vec<_>>().join(" | ")
+}
+
 fn name(path: &std::path::Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
@@ -101,7 +108,6 @@ fn show(preview: &Preview, shown: &Shown) {
         (frame.side, frame.name) = (shown.side, name(&shown.path));
         frame.generation = shown.generation;
         preview.screen().show(&frame);
-        preview.screen().status(&picture.about());
     }
 }
 
@@ -127,6 +133,7 @@ fn look_again(preview: &Preview, shown: &mut BTreeMap<u8, Shown>) {
     if changed {
         let problems: Vec<_> = shown.values().filter_map(|shown| shown.problem.clone()).collect();
         preview.screen().problems(&problems);
+        preview.screen().status(&about(shown));
     }
 }
 

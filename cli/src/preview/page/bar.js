@@ -27,7 +27,7 @@ export function bar(state, pan, act) {
   });
 
   let told = "", away = "";
-  const say = () => ($("status").textContent = away || told);
+  const say = () => ($("status").textContent = $("about").title = away || told);
   const press = (id, on) => $(id).setAttribute("aria-pressed", Boolean(on));
 
   return {

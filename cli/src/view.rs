@@ -82,7 +82,6 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let facts = picture.map_or(vec![], |picture| picture.facts(at));
                 preview.screen().pixel(&PixelReply { at, side, facts });
             }
-            Ok(Command::Param { .. }) => {}
             Err(RecvTimeoutError::Timeout) => look_again(&preview, &mut shown),
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(Failure::new(Exit::Ours, "the preview's server has ended"));

@@ -14,7 +14,7 @@ macro_rules! script {
 }
 
 /// Path, type and text of each file.
-const FILES: [(&str, &str, &str); 15] = [
+const FILES: [(&str, &str, &str); 14] = [
     ("/", HTML, include_str!("page/index.html")),
     ("/page.css", CSS, include_str!("page/page.css")),
     script!("bar"),
@@ -25,7 +25,6 @@ const FILES: [(&str, &str, &str); 15] = [
     script!("maps"),
     script!("pan"),
     script!("panels"),
-    script!("params"),
     script!("picture"),
     script!("shade"),
     script!("shader"),

@@ -20,7 +20,6 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
 
-use serde::Serialize;
 use serde_json::json;
 use tokio::sync::oneshot;
 
@@ -44,23 +43,6 @@ pub(crate) struct Options {
     pub(crate) allow_hosts: Vec<String>,
     /// What the page is about: a file's name.
     pub(crate) title: String,
-}
-
-/// A `param` of the scene with a range, as a slider.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct Param {
-    /// Its name.
-    pub(crate) name: String,
-    /// Its value, in `unit`.
-    pub(crate) value: f64,
-    /// The least that it may be, in `unit`.
-    pub(crate) low: f64,
-    /// The most that it may be, in `unit`.
-    pub(crate) high: f64,
-    /// As the scene writes it, or empty.
-    pub(crate) unit: String,
-    /// Whether only whole numbers are legal.
-    pub(crate) whole: bool,
 }
 
 /// What is known of one pixel beyond the picture: the answer to `Command::Pixel`.
@@ -145,12 +127,6 @@ impl Screen {
     /// One line below the picture: what changed, samples, time left.
     pub(crate) fn status(&self, text: &str) {
         self.0.tell(Topic::Status, &json!({ "status": text }));
-    }
-
-    /// Offers what may be moved; `Command::Param` tells that something was.
-    #[expect(dead_code, reason = "for the watch, which is not connected yet")]
-    pub(crate) fn params(&self, params: &[Param]) {
-        self.0.tell(Topic::Params, &json!({ "params": params }));
     }
 
     /// Answers the last question for a pixel.

@@ -22,13 +22,6 @@ pub(crate) enum Command {
         /// In which picture.
         side: Side,
     },
-    /// A `param` of the scene was moved.
-    Param {
-        /// Its name.
-        name: String,
-        /// Its value, as the scene language writes it.
-        value: String,
-    },
 }
 
 /// What a page says.
@@ -106,9 +99,6 @@ mod tests {
         let expected = Command::Pixel { at: [3, 4], side: Side::B };
         let Ok(Said::Ask(command)) = serde_json::from_str(pixel) else { panic!("refused") };
         assert_eq!(command, expected);
-        let param = r#"{"ask":{"param":{"name":"a","value":"1 m"}}}"#;
-        let Ok(Said::Ask(command)) = serde_json::from_str(param) else { panic!("refused") };
-        assert_eq!(command, Command::Param { name: "a".into(), value: "1 m".into() });
         assert!(matches!(serde_json::from_str(r#""drawn""#), Ok(Said::Drawn)));
         for wrong in ["", "drawn", r#"{"ask":{"pixel":{"at":[-1,4],"side":"a"}}}"#, "[]"] {
             assert!(serde_json::from_str::<Said>(wrong).is_err(), "{wrong}");

@@ -125,7 +125,7 @@ fn answer(preview: &Preview, subject: &Subject, ended: &AtomicBool) {
     while !ended.load(Ordering::Relaxed) {
         let (at, side) = match preview.commands().recv_timeout(LOOK) {
             Ok(Command::Pixel { at, side }) => (UVec2::from(at), side),
-            Ok(Command::Param { .. }) | Err(RecvTimeoutError::Timeout) => continue,
+            Err(RecvTimeoutError::Timeout) => continue,
             Err(RecvTimeoutError::Disconnected) => return,
         };
         let about = lock(subject).clone();

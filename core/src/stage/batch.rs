@@ -235,7 +235,7 @@ impl<'s> Flight<'s> {
             match mesh.land(ray, &approach, visit.taken, hit) {
                 Landed::At(hit) => Some(hit),
                 Landed::Nowhere => None,
-                Landed::Behind(_) => mesh.intersect(ray, approach, &mut steps),
+                Landed::Behind(..) => mesh.intersect(ray, approach, &mut steps),
             }
         };
         self.steps += steps;

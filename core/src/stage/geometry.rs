@@ -56,7 +56,7 @@ pub(super) enum Landed {
     Nowhere,
     At(Hit),
     /// A triangle that double precision finds behind the ray's origin: the ray is taken up there.
-    Behind(Taken),
+    Behind(Taken, u32),
 }
 
 /// Where a ray is taken up, and how many triangles behind its origin it may still pass.
@@ -205,12 +205,13 @@ impl Mesh {
     }
 
     /// The nearest hit. A ray that leaves this mesh may seem to meet a sliver beside the triangle
-    /// that it leaves, by rounding: what double precision finds behind the origin is passed.
+    /// that it leaves, by rounding: what double precision finds behind the origin is passed, and what
+    /// else lies there is left to double precision.
     #[inline(always)]
     pub(super) fn intersect(
         &self,
         ray: &Ray,
-        approach: Approach<'_>,
+        mut approach: Approach<'_>,
         steps: &mut u32,
     ) -> Option<Hit> {
         let direction = approach.direction?;
@@ -220,7 +221,10 @@ impl Mesh {
             let (hit, n) = self.bvh.intersect(approach.processor, &query);
             *steps += n;
             match self.land(ray, &approach, taken, hit) {
-                Landed::Behind(next) => taken = next,
+                Landed::Behind(next, triangle) if approach.precision == Precision::Exact => {
+                    (taken, approach.from) = (next, Some(triangle));
+                }
+                Landed::Behind(..) => approach.precision = Precision::Exact,
                 Landed::Nowhere => return None,
                 Landed::At(hit) => return Some(hit),
             }
@@ -242,7 +246,7 @@ impl Mesh {
         let t = taken.start + hit.t * direction.per_scale();
         let near = approach.from.is_some() || t <= self.near * direction.per_scale();
         if near && taken.left > 0 && self.is_behind(hit.triangle, ray, approach.time) {
-            return Landed::Behind(Taken { start: t, left: taken.left - 1 });
+            return Landed::Behind(Taken { start: t, left: taken.left - 1 }, hit.triangle);
         }
         let at = DVec2::new(hit.b1, hit.b2);
         if t <= ray.t_max { Landed::At(Hit { t, at, face: hit.triangle }) } else { Landed::Nowhere }

@@ -10,7 +10,6 @@ export function keys(act) {
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const inField = event.target.closest?.("select, input");
-    if (event.target.closest?.("#params") && event.key.startsWith("Arrow")) return;
     const step = event.shiftKey ? 1 : 1 / 3;
     if (event.key === "ArrowUp" || event.key === "ArrowDown") {
       if (event.target.closest?.("select")) return;

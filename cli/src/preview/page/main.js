@@ -6,7 +6,6 @@ import { withGl } from "./gl.js";
 import { keys } from "./keys.js";
 import { Pan } from "./pan.js";
 import { $, histogram, inspect, legend, problems } from "./panels.js";
-import { params } from "./params.js";
 import { luminance } from "./picture.js";
 import { connect } from "./wire.js";
 
@@ -184,7 +183,6 @@ const wire = connect({
     if (message.title !== undefined) controls.title(message.title);
     if (message.status !== undefined) controls.status(message.status);
     if (message.problems) problems(message.problems);
-    if (message.params) params(message.params, (name, value) => wire.ask({ param: { name, value } }));
     if (message.pixel) {
       state.reply = { ...message.pixel, key: `${message.pixel.at} ${message.pixel.side}` };
       redraw();

@@ -88,8 +88,10 @@ pub(crate) fn load(
 pub(crate) struct Text {
     /// The scene, if it has no error.
     pub(crate) scene: Option<Scene>,
-    diagnostics: Vec<Diagnostic>,
-    sources: Sources,
+    /// What was found.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+    /// The texts that were read.
+    pub(crate) sources: Sources,
     /// The files that were asked for: so far, texts alone.
     pub(crate) files: DiskFiles,
 }

@@ -63,6 +63,11 @@ impl Board {
         (*number > than).then(|| (*number, bytes.clone()))
     }
 
+    /// Whether anybody is told of changes.
+    pub(super) fn is_watched(&self) -> bool {
+        self.changed.receiver_count() > 0
+    }
+
     /// Tells of every change from now on.
     pub(super) fn subscribe(&self) -> watch::Receiver<u64> {
         self.changed.subscribe()

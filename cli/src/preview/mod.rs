@@ -114,6 +114,11 @@ impl Preview {
 }
 
 impl Screen {
+    /// Whether a page looks on.
+    pub(crate) fn is_watched(&self) -> bool {
+        self.0.is_watched()
+    }
+
     /// Shows a picture in place of the last one of its side. Pages that are slow miss those between.
     pub(crate) fn show(&self, frame: &Frame) {
         self.0.pin(frame.side.topic(), frame.encode().into());

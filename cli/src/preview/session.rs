@@ -49,8 +49,9 @@ pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSen
     let (mut drawing, mut next) = (false, Instant::now());
     loop {
         let _ = changes.borrow_and_update();
+        let early = Instant::now() < next;
         for topic in Topic::ALL {
-            if topic.is_picture() && (drawing || Instant::now() < next) {
+            if topic.is_picture() && (drawing || early) {
                 continue;
             }
             let Some((number, bytes)) = board.later(topic, told[topic as usize]) else { continue };
@@ -64,7 +65,7 @@ pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSen
         }
         tokio::select! {
             changed = changes.changed() => if changed.is_err() { return },
-            () = sleep_until(next), if !drawing && Instant::now() < next => {}
+            () = sleep_until(next), if !drawing && early => {}
             said = socket.recv() => match said {
                 Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
                     Ok(Said::Drawn) => drawing = false,

@@ -15,8 +15,8 @@ use serde_json::Value;
 use crate::exit::{Exit, Failure};
 use crate::preview::{Frame, Pixels, Side};
 
-/// Pixels of the largest picture: 4 GiB of planes.
-const MOST_PIXELS: usize = 1 << 27;
+/// Values of the largest picture, all channels together: 4 GiB of them.
+const MOST_VALUES: usize = 1 << 30;
 
 /// What a file holds.
 pub(super) struct Picture {
@@ -138,10 +138,11 @@ fn decode(from: impl Read + Seek) -> Result<Decoded, String> {
     let told = |error: exr::error::Error| error.to_string();
     let reader = exr::block::read(from, false).map_err(told)?;
     for header in reader.headers() {
-        let area = header.layer_size.0.checked_mul(header.layer_size.1);
-        if area.is_none_or(|area| area > MOST_PIXELS) {
-            let size = header.layer_size;
-            return Err(format!("{} × {} pixels are more than 2^27", size.0, size.1));
+        let (size, n) = (header.layer_size, header.channels.list.len());
+        let values = size.0.checked_mul(size.1).and_then(|area| area.checked_mul(n));
+        if values.is_none_or(|values| values > MOST_VALUES) {
+            let pixels = format!("{} × {} pixels of {n} channels", size.0, size.1);
+            return Err(format!("{pixels} are more than 2^30 values"));
         }
     }
     let image = read()

@@ -16,7 +16,7 @@ use super::round::{self, Course, Read};
 use super::shown::{Shown, Subject};
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
-use crate::files::look;
+use crate::files::{Asked, look};
 use crate::interrupt::Guard;
 use crate::isolate::Beat;
 use crate::libraries::{Plugins, Session, Surroundings};
@@ -72,23 +72,16 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
             in_hand,
             plugins,
             changes,
+            asked: Asked::default(),
             shown: None,
             impatient: true,
         };
-        loop {
-            let next = match watching.round()? {
-                Next::Wait if watching.changes.wait() => Next::Read,
-                Next::Wait => Next::End,
-                next => next,
-            };
-            if next == Next::End {
-                watching.end();
-                report::note("watching has ended");
-                return Ok(Exit::Fine);
-            }
-            watching.renew(&mut session, (&args.plugins, &surroundings))?;
-        }
-    })
+        let ended = watching.rounds(&mut session, &surroundings);
+        watching.end();
+        ended
+    })?;
+    report::note("watching has ended");
+    Ok(Exit::Fine)
 }
 
 struct Watching<'scope, 'env> {
@@ -99,6 +92,8 @@ struct Watching<'scope, 'env> {
     in_hand: InHand,
     plugins: Plugins,
     changes: Changes,
+    /// What the last load has asked for so far.
+    asked: Asked,
     /// The last good scene.
     shown: Option<Shown<'scope>>,
     /// Whether a save ends the making ready of a scene. Not twice in a row: however fast saves come,
@@ -107,6 +102,24 @@ struct Watching<'scope, 'env> {
 }
 
 impl Watching<'_, '_> {
+    /// Reads and renders at every save, until the end is asked for.
+    ///
+    /// # Errors
+    /// If standard error cannot be written.
+    fn rounds(&mut self, session: &mut Session, around: &Surroundings) -> Result<(), Failure> {
+        loop {
+            let next = match self.round()? {
+                Next::Wait if self.changes.wait() => Next::Read,
+                Next::Wait => Next::End,
+                next => next,
+            };
+            if next == Next::End {
+                return Ok(());
+            }
+            self.renew(session, (&self.args.plugins, around))?;
+        }
+    }
+
     /// Reads the scene, and renders it if it shows something else than before.
     ///
     /// # Errors
@@ -118,7 +131,9 @@ impl Watching<'_, '_> {
                 report::failure(&failure);
                 self.page.inspect(|page| page.failed(&failure));
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
-                self.changes.expect_news(libraries.chain([self.args.file.as_path()]));
+                let told = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                let also = libraries.chain([self.args.file.as_path()]);
+                self.changes.expect_more_than(told, also);
                 Ok(Next::Wait)
             }
             // Ctrl-C has ended it, which the wait is told too.
@@ -129,20 +144,22 @@ impl Watching<'_, '_> {
 
     fn load(&mut self) -> Result<Next, Failure> {
         let Args { file, load, render, .. } = self.args;
+        let form = self.args.form();
         let text = load::read(file, load, render.size, &self.plugins, &Beat::silent())?;
+        self.asked = text.files.shared().clone();
         if let Some(Shown { subject, .. }) = &mut self.shown
             && subject.is_of(&text)
         {
-            subject.files.extend(text.files.asked());
-            self.page.inspect(|page| page.problems(&[], &subject.read.sources));
+            subject.read_again(&text);
             self.changes.expect(subject.files.clone());
+            report::diagnostics(&text.diagnostics, &text.sources, form, Stream::Error)?;
+            let Subject { warnings, read, .. } = &*subject;
+            let told = [(&text.diagnostics, &text.sources), (warnings, &read.sources)];
+            self.page.inspect(|page| page.problems(&told));
             return Ok(Next::Wait);
         }
         let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
-        if let (Some(_), Some(shown)) = (hash, &self.shown) {
-            shown.supersede();
-        }
-        let texts = text.files.asked().into_keys().collect();
+        let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
         let (loaded, noticed) = self.build(text);
         let loaded = match noticed {
             Noticed::Save => return Ok(Next::Read),
@@ -152,19 +169,17 @@ impl Watching<'_, '_> {
         let mut watched = loaded.files.asked();
         watched.extend(self.plugins.watched.clone());
         self.changes.expect(watched.clone());
-        let form = self.args.form();
         // Half a save looks like a mistake: the wait tells at once of the other half.
         if loaded.stage.is_some() || !self.changes.more_to_come() {
             report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
-            self.page.inspect(|page| page.problems(&loaded.diagnostics, &loaded.sources));
+            let told = [(&loaded.diagnostics, &loaded.sources)];
+            self.page.inspect(|page| page.problems(&told));
         }
-        let Loaded { stage, files, sources, .. } = loaded;
+        let Loaded { stage, files, sources, mut diagnostics, .. } = loaded;
         if let (Some(stage), Some(hash)) = (stage, hash) {
             let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
-            self.show(Subject { hash, stage, read, files: watched, texts });
-        } else if let Some(shown) = self.shown.take_if(|shown| shown.control.is_superseded()) {
-            // The last good one was ended for nothing.
-            self.show(shown.ended());
+            let warnings = diagnostics.split_off(n_told.min(diagnostics.len()));
+            self.show(Subject { hash, stage, read, files: watched, texts, warnings });
         }
         Ok(Next::Wait)
     }
@@ -200,7 +215,10 @@ impl Watching<'_, '_> {
 
     /// Ends the picture before, and begins one.
     fn show(&mut self, subject: Subject) {
-        let _ = self.shown.take().map(Shown::ended);
+        if let Some(before) = self.shown.take() {
+            before.control.supersede();
+            before.ended();
+        }
         let control = Arc::new(Control::default());
         self.in_hand.get().0.clone_from(&control);
         let (args, guard, page) = (self.args, self.guard, self.page);
@@ -213,9 +231,9 @@ impl Watching<'_, '_> {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
             if let Err(failure) = round::render(args, (&stage, &read), &course, &mut *look) {
                 report::failure(&failure);
-                page.inspect(|page| page.failed(&failure));
+                page.inspect(|page| page.lost(&failure));
             } else if stage.has_failed() {
-                page.inspect(|page| page.problems(&stage.failures(), &read.sources));
+                page.inspect(|page| page.broke(&stage.failures(), &read.sources));
             }
         });
         self.shown = Some(Shown { subject, control, thread });
@@ -249,6 +267,7 @@ impl Watching<'_, '_> {
             // A lock or configuration that cannot be understood leaves everything as it was.
             Err(failure) => {
                 report::failure(&failure);
+                self.page.inspect(|page| page.failed(&failure));
                 let seen = |path: &PathBuf| (path.clone(), look(path));
                 self.plugins.watched = self.plugins.watched.keys().map(seen).collect();
                 Ok(())

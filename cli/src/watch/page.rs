@@ -14,6 +14,7 @@ use luxel_core::film::Film;
 use luxel_core::render::{Look, Seen};
 use luxel_core::scene::{Node, NodeId};
 use luxel_core::stage::{Skin, Stage};
+use tempfile::NamedTempFile;
 
 use super::round::Read;
 use crate::exit::Failure;
@@ -36,6 +37,11 @@ pub(super) struct Page {
     screen: Screen,
     subject: Subject,
     generation: AtomicU64,
+    /// Why the picture of the scene is not what it should be.
+    broken: Mutex<Vec<Problem>>,
+    /// Leads the browser here, while it stands.
+    #[expect(dead_code, reason = "what it leads to is read by others")]
+    leading: Option<NamedTempFile>,
     ended: Arc<AtomicBool>,
     answering: Option<JoinHandle<()>>,
 }
@@ -50,26 +56,43 @@ impl Page {
         let (port, allow_hosts) = (args.port, args.allow_host.clone());
         let preview = Preview::start(&Options { port, allow_hosts, title })?;
         report::note(&format!("preview: {}", preview.url()));
-        if !args.no_open && std::io::stderr().is_terminal() {
-            preview::open(preview.url());
-        }
+        let opens = !args.no_open && std::io::stderr().is_terminal();
+        let leading = opens.then(|| preview::open(preview.url())).flatten();
         let (screen, subject) = (preview.screen().clone(), Subject::default());
         let ended = Arc::new(AtomicBool::new(false));
         let (about, over) = (subject.clone(), ended.clone());
         let answering = std::thread::spawn(move || answer(&preview, &about, &over));
-        let (generation, answering) = (AtomicU64::new(0), Some(answering));
-        Ok(Self { screen, subject, generation, ended, answering })
+        let (generation, broken, answering) =
+            (AtomicU64::new(0), Mutex::default(), Some(answering));
+        Ok(Self { screen, subject, generation, broken, leading, ended, answering })
     }
 
-    /// Lays messages over the last good picture; none takes them away.
-    pub(super) fn problems(&self, found: &[Diagnostic], sources: &Sources) {
-        let told = found.iter().map(|found| Problem::of_diagnostic(found, sources));
-        self.screen.problems(&told.collect::<Vec<_>>());
+    /// Lays messages over the last good picture, each list with the texts that it is about; none
+    /// takes them away, but not what is told of the picture itself.
+    pub(super) fn problems(&self, found: &[(&Vec<Diagnostic>, &Sources)]) {
+        let told = found.iter().flat_map(|(found, sources)| problems(found, sources));
+        let broken = self.broken.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        self.screen.problems(&told.chain(broken).collect::<Vec<_>>());
     }
 
     /// Why something could not be done, over the last good picture.
     pub(super) fn failed(&self, failure: &Failure) {
         self.screen.problems(&[Problem::of_failure(failure)]);
+    }
+
+    /// Why there is no picture of the scene, until there is another scene.
+    pub(super) fn lost(&self, failure: &Failure) {
+        self.stands(vec![Problem::of_failure(failure)]);
+    }
+
+    /// What broke while the picture was made, until there is another scene.
+    pub(super) fn broke(&self, found: &[Diagnostic], sources: &Sources) {
+        self.stands(problems(found, sources).collect());
+    }
+
+    fn stands(&self, told: Vec<Problem>) {
+        self.screen.problems(&told);
+        *self.broken.lock().unwrap_or_else(PoisonError::into_inner) = told;
     }
 
     /// Shows pictures of a scene from now on, of so many samples in the end.
@@ -80,18 +103,20 @@ impl Page {
         of_samples: u32,
     ) -> impl FnMut(&Film, Seen) + Send + use<> {
         *lock(&self.subject) = Some((stage.clone(), read.clone()));
+        self.broken.lock().unwrap_or_else(PoisonError::into_inner).clear();
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
         let (screen, settings) = (self.screen.clone(), stage.film.clone());
         let mut last = None;
         move |film: &Film, now: Seen| {
             let is_last = now.step == 1 && now.samples >= of_samples;
-            if now.samples > 1 && !is_last && last.is_some_and(|at: Instant| at.elapsed() < PACE) {
+            let is_soon = now.samples > 1 && last.is_some_and(|at: Instant| at.elapsed() < PACE);
+            if !is_last && (is_soon || !screen.is_watched()) {
                 return;
             }
-            last = Some(Instant::now());
             let frame = Frame::of_film(film, &settings, (now, of_samples));
             screen.show(&Frame { generation, ..frame });
             screen.status(&status(now, of_samples));
+            last = Some(Instant::now());
         }
     }
 }
@@ -101,6 +126,10 @@ impl Drop for Page {
         self.ended.store(true, Ordering::Relaxed);
         let _ = self.answering.take().map(JoinHandle::join);
     }
+}
+
+fn problems(found: &[Diagnostic], sources: &Sources) -> impl Iterator<Item = Problem> {
+    found.iter().map(move |found| Problem::of_diagnostic(found, sources))
 }
 
 /// Nobody looks on.

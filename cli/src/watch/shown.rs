@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::ScopedJoinHandle;
 
+use luxel_core::diag::Diagnostic;
 use luxel_core::render::Control;
 use luxel_core::scene::Hash;
 use luxel_core::stage::Stage;
@@ -23,6 +24,8 @@ pub(super) struct Subject {
     pub(super) files: Watched,
     /// Those of them that are text, for which the hash speaks.
     pub(super) texts: BTreeSet<PathBuf>,
+    /// What was found while it was made ready.
+    pub(super) warnings: Vec<Diagnostic>,
 }
 
 impl Subject {
@@ -34,6 +37,14 @@ impl Subject {
             && !self.stage.has_failed()
             && self.files.iter().all(same)
     }
+
+    /// Other texts say the same now.
+    pub(super) fn read_again(&mut self, text: &Text) {
+        self.files.retain(|path, _| !self.texts.contains(path));
+        let asked = text.files.asked();
+        self.texts = asked.keys().cloned().collect();
+        self.files.extend(asked);
+    }
 }
 
 /// A render that runs, or has ended.
@@ -44,17 +55,9 @@ pub(super) struct Shown<'scope> {
 }
 
 impl Shown<'_> {
-    /// Ends the render, if it still runs, once there is something to see.
-    pub(super) fn supersede(&self) {
-        if !self.thread.is_finished() {
-            self.control.supersede();
-        }
-    }
-
     /// Waits for the end of the render. What it had to say it has said; a panic was caught and told
     /// inside.
-    pub(super) fn ended(self) -> Subject {
+    pub(super) fn ended(self) {
         let _ = self.thread.join();
-        self.subject
     }
 }

@@ -135,13 +135,8 @@ impl Changes {
         self.fresh = true;
     }
 
-    /// Waits for a change of what was there before the last load, these files included: that load
-    /// told nothing.
-    pub(super) fn expect_news<'a>(&mut self, files: impl IntoIterator<Item = &'a Path>) {
-        self.expect_more_than(Watched::new(), files);
-    }
-
-    /// The same of a load that told only of some.
+    /// Waits for a change of what was there before the last load, of these files, and of those that
+    /// the load told of before it came to no good end.
     pub(super) fn expect_more_than<'a>(
         &mut self,
         told: Watched,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec3, UVec2};
 use luxel_core::files::MemoryFiles;
 use luxel_core::film::{Film, Rect};
-use luxel_core::render::{Control, Options, Outcome, Seen, render, render_seen};
+use luxel_core::render::{Control, Options, Outcome, Reached, render, render_seen};
 use luxel_core::stage::{Geometry, Stage};
 
 use crate::load::stage_of;
@@ -71,7 +71,7 @@ fn a_picture_that_is_looked_at_has_the_bits_of_one_that_is_not() {
     let whole = picture(&stage, &Options::default());
     let options = Options { coarse: true, ..Options::default() };
     let mut seen = vec![];
-    let mut look = |film: &Film, now: Seen| {
+    let mut look = |film: &Film, now: Reached| {
         // What is there is what the finished picture began with, and what is told is there.
         for (at, pixel) in film.pixels() {
             let on = (at % now.step).cmpeq(UVec2::ZERO).all();
@@ -92,7 +92,7 @@ fn a_picture_that_is_superseded_shows_its_first_step_and_one_that_is_cancelled_n
     let options = Options { coarse: true, ..Options::default() };
     let steps = |control: &Control| {
         let mut steps = vec![];
-        let look = &mut |_: &Film, now: Seen| steps.push(now.step);
+        let look = &mut |_: &Film, now: Reached| steps.push(now.step);
         let (film, outcome) = render_seen(&stage, &options, control, look);
         assert_eq!(outcome, Outcome::Cancelled);
         let n = film.pixels().filter(|(_, pixel)| pixel.n > 0).count();

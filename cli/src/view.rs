@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime};
 
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
-use crate::preview::{self, Command, Options, PageArgs, PixelReply, Preview, Problem, Side};
+use crate::preview::{Command, PageArgs, PixelReply, Preview, Problem, Side};
 use crate::report;
 use picture::Picture;
 
@@ -62,18 +62,15 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pressed = interrupt::pressed()?;
     let title = shown.values().map(|shown| name(&shown.path)).collect::<Vec<_>>().join(" · ");
-    let preview = Preview::start(&Options {
-        port: args.page.port,
-        allow_hosts: args.page.allow_host.clone(),
-        title,
-    })?;
+    let mut preview = Preview::start(&args.page, &title)?;
     for file in shown.values() {
         show(&preview, file);
     }
     preview.screen().status(&about(&shown));
     report::out(&format!("{}\n", preview.url()))?;
-    let opens = !args.page.no_open && std::io::stdout().is_terminal();
-    let _leading = opens.then(|| preview::open(preview.url()));
+    if !args.page.no_open && std::io::stdout().is_terminal() {
+        preview.open();
+    }
     while !pressed.load(Ordering::Relaxed) {
         match preview.commands().recv_timeout(LOOK) {
             Ok(Command::Pixel { at, side }) => {

@@ -42,7 +42,9 @@ pub(crate) fn run(library: Option<&Library>, n: usize) {
         for processor in Processor::all() {
             let name = format!("{}, {}", precision.word(), processor.name());
             let with = (precision, processor);
-            row(&name, &cases, |soup, _| self_hits::count(soup, with, n).ok());
+            row(&name, &cases, |soup, _| {
+                Some(self_hits::count(soup, with, n).expect("a ball of triangles is a scene"))
+            });
         }
     }
     println!("\n== leaks: rays of {n} aimed at corners and edges of a closed mesh that get out");

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::*;
 
 fn preview() -> Preview {
-    Preview::start(&Options::default()).unwrap()
+    Preview::start(&PageArgs::default(), "a.exr").unwrap()
 }
 
 /// Port and token.
@@ -186,7 +186,7 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
         let settings = luxel_core::stage::Film::default();
-        let seen = luxel_core::render::Seen { step: 1, samples: 1 };
+        let seen = luxel_core::render::Reached { step: 1, samples: 1 };
         Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
     };
     preview.screen().status("busy");
@@ -221,9 +221,9 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
 fn a_port_that_is_taken_is_told_and_a_dropped_preview_frees_it() {
     let first = preview();
     let (port, _) = place(&first);
-    let again = Options { port, ..Options::default() };
-    let wrong = Preview::start(&again).err().unwrap();
+    let again = PageArgs { port, ..PageArgs::default() };
+    let wrong = Preview::start(&again, "").err().unwrap();
     assert!(wrong.message.contains(&port.to_string()), "{}", wrong.message);
     drop(first);
-    assert!(Preview::start(&again).is_ok());
+    assert!(Preview::start(&again, "").is_ok());
 }

@@ -8,7 +8,7 @@ use tempfile::NamedTempFile;
 
 /// Asks the desktop to show the address. What it gives has to live until the browser has read it;
 /// nothing, where there is no desktop.
-pub(crate) fn open(url: &str) -> Option<NamedTempFile> {
+pub(super) fn open(url: &str) -> Option<NamedTempFile> {
     let (opener, before): (_, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])
     } else if cfg!(windows) {

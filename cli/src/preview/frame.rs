@@ -9,7 +9,7 @@ use half::f16;
 use half::slice::HalfFloatSliceExt;
 use luxel_core::film::{Film, Rect};
 use luxel_core::registry::Display;
-use luxel_core::render::Seen;
+use luxel_core::render::Reached;
 use luxel_core::stage;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -69,7 +69,7 @@ impl Frame {
     pub(crate) fn of_film(
         film: &Film,
         settings: &stage::Film,
-        (seen, of_samples): (Seen, u32),
+        (seen, of_samples): (Reached, u32),
     ) -> Self {
         let pixels = Pixels::of_film(film, seen.step);
         Self {
@@ -205,7 +205,7 @@ mod tests {
 
     use super::*;
 
-    const ONE: Seen = Seen { step: 1, samples: 1 };
+    const ONE: Reached = Reached { step: 1, samples: 1 };
 
     fn read(bytes: &[u8]) -> (Value, &[u8]) {
         assert_eq!(&bytes[..4], b"LXL1");
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn a_coarse_pass_sends_the_pixels_that_it_measured() {
         let film = Film::new(UVec2::new(32, 16), Rect::new(UVec2::new(5, 3), UVec2::new(17, 8)));
-        let seen = Seen { step: 8, samples: 1 };
+        let seen = Reached { step: 8, samples: 1 };
         let frame = Frame::of_film(&film, &stage::Film::default(), (seen, 1));
         let bytes = frame.encode();
         let (head, planes) = read(&bytes);

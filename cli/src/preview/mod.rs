@@ -21,6 +21,7 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
 
 use serde_json::json;
+use tempfile::NamedTempFile;
 use tokio::sync::oneshot;
 
 use crate::exit::{Exit, Failure};
@@ -28,22 +29,9 @@ use board::{Board, Topic};
 use guard::Gate;
 
 pub(crate) use args::PageArgs;
-pub(crate) use browser::open;
 pub(crate) use frame::{Frame, Pixels, Side};
 pub(crate) use problem::Problem;
-pub(crate) use session::Command;
-
-/// How the page is served.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Options {
-    /// The port; 0 takes any that is free.
-    pub(crate) port: u16,
-    /// Names by which the page may be asked for besides 127.0.0.1 and localhost, as `name` or
-    /// `name:port`: the near end of a tunnel.
-    pub(crate) allow_hosts: Vec<String>,
-    /// What the page is about: a file's name.
-    pub(crate) title: String,
-}
+pub(crate) use session::{Command, PACE};
 
 /// What is known of one pixel beyond the picture: the answer to `Command::Pixel`.
 #[derive(Clone, Debug, Default)]
@@ -67,15 +55,17 @@ pub(crate) struct Preview {
     commands: Receiver<Command>,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
+    /// Leads the browser to the page.
+    leading: Option<NamedTempFile>,
 }
 
 impl Preview {
-    /// Serves the page on the loopback address from now on.
+    /// Serves the page about a file on the loopback address from now on.
     ///
     /// # Errors
     /// A port that is taken; a system without threads or random numbers.
-    pub(crate) fn start(options: &Options) -> Result<Self, Failure> {
-        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, options.port));
+    pub(crate) fn start(args: &PageArgs, title: &str) -> Result<Self, Failure> {
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, args.port));
         let taken = |error: std::io::Error| {
             let message = format!("cannot serve the preview on {address}: {error}");
             Failure::new(Exit::Input, message).help("another port: --port N, or 0 for any")
@@ -83,10 +73,10 @@ impl Preview {
         let listener = TcpListener::bind(address).map_err(taken)?;
         listener.set_nonblocking(true).map_err(taken)?;
         let port = listener.local_addr().map_err(taken)?.port();
-        let gate = Gate::new(port, &options.allow_hosts)?;
+        let gate = Gate::new(port, &args.allow_host)?;
         let url = format!("http://127.0.0.1:{port}/?token={}", gate.token());
         let board = Arc::new(Board::new());
-        board.tell(Topic::Title, &json!({ "title": options.title }));
+        board.tell(Topic::Title, &json!({ "title": title }));
         let (sender, commands) = mpsc::sync_channel(session::WAITING_COMMANDS);
         let (stop, stopped) = oneshot::channel();
         let state = server::State::new(gate, board.clone(), sender);
@@ -94,7 +84,13 @@ impl Preview {
             .name("preview".into())
             .spawn(move || server::run(listener, state, stopped))
             .map_err(taken)?;
-        Ok(Self { url, screen: Screen(board), commands, stop: Some(stop), thread: Some(thread) })
+        let (screen, stop, thread) = (Screen(board), Some(stop), Some(thread));
+        Ok(Self { url, screen, commands, stop, thread, leading: None })
+    }
+
+    /// Asks the desktop to show the page, where there is one.
+    pub(crate) fn open(&mut self) {
+        self.leading = browser::open(&self.url);
     }
 
     /// The page's address; whoever knows it sees the picture.
@@ -144,7 +140,7 @@ impl Screen {
 
 impl Drop for Preview {
     fn drop(&mut self) {
-        drop(self.stop.take());
+        drop((self.stop.take(), self.leading.take()));
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

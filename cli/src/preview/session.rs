@@ -38,7 +38,7 @@ pub(super) const ASKED_BYTES: usize = 4 << 10;
 /// Commands that wait for the program; further ones are dropped.
 pub(super) const WAITING_COMMANDS: usize = 64;
 /// At most ten pictures a second.
-const PACE: Duration = Duration::from_millis(100);
+pub(crate) const PACE: Duration = Duration::from_millis(100);
 /// A page that takes nothing for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(30);
 

@@ -7,7 +7,7 @@ use std::thread::Scope;
 use std::time::Duration;
 
 use luxel_core::accel::Watch;
-use luxel_core::render::Control;
+use luxel_core::render::{Control, Look};
 
 use super::Args;
 use super::changes::{Changes, Noticed, Wake};
@@ -224,9 +224,9 @@ impl Watching<'_, '_> {
         let (args, guard, page) = (self.args, self.guard, self.page);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
         let of_samples = args.render.options().samples(&stage);
-        let mut look = self
-            .page
-            .map_or_else(page::unseen, |page| Box::new(page.follow(&stage, &read, of_samples)));
+        let follow =
+            |page: &Page| -> Box<Look<'_>> { Box::new(page.follow(&stage, &read, of_samples)) };
+        let mut look = page.map_or_else(page::unseen, follow);
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
             if let Err(failure) = round::render(args, (&stage, &read), &course, &mut *look) {

@@ -4,44 +4,35 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::RecvTimeoutError;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_core::film::Film;
-use luxel_core::render::{Look, Seen};
+use luxel_core::render::{Look, Reached};
 use luxel_core::scene::{Node, NodeId};
 use luxel_core::stage::{Skin, Stage};
-use tempfile::NamedTempFile;
 
 use super::round::Read;
 use crate::exit::Failure;
-use crate::preview::{
-    self, Command, Frame, Options, PageArgs, PixelReply, Preview, Problem, Screen,
-};
+use crate::preview::{Command, Frame, PACE, PageArgs, PixelReply, Preview, Problem, Screen};
 use crate::report;
-
-/// Between two pictures once the first samples have been shown.
-const PACE: Duration = Duration::from_millis(100);
 
 /// Between two looks at whether the watch has ended.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// What is asked about: the scene on the page.
-type Subject = Arc<Mutex<Option<(Arc<Stage>, Arc<Read>)>>>;
+type About = Arc<Mutex<Option<(Arc<Stage>, Arc<Read>)>>>;
 
 /// A page that shows what is watched. Dropped, it is served no more.
 pub(super) struct Page {
     screen: Screen,
-    subject: Subject,
+    about: About,
     generation: AtomicU64,
     /// Why the picture of the scene is not what it should be.
     broken: Mutex<Vec<Problem>>,
-    /// Leads the browser here, while it stands.
-    #[expect(dead_code, reason = "what it leads to is read by others")]
-    leading: Option<NamedTempFile>,
     ended: Arc<AtomicBool>,
     answering: Option<JoinHandle<()>>,
 }
@@ -53,18 +44,18 @@ impl Page {
     /// A port that is taken.
     pub(super) fn start(file: &Path, args: &PageArgs) -> Result<Self, Failure> {
         let title = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
-        let (port, allow_hosts) = (args.port, args.allow_host.clone());
-        let preview = Preview::start(&Options { port, allow_hosts, title })?;
+        let mut preview = Preview::start(args, &title)?;
         report::note(&format!("preview: {}", preview.url()));
-        let opens = !args.no_open && std::io::stderr().is_terminal();
-        let leading = opens.then(|| preview::open(preview.url())).flatten();
-        let (screen, subject) = (preview.screen().clone(), Subject::default());
+        if !args.no_open && std::io::stderr().is_terminal() {
+            preview.open();
+        }
+        let (screen, about) = (preview.screen().clone(), About::default());
         let ended = Arc::new(AtomicBool::new(false));
-        let (about, over) = (subject.clone(), ended.clone());
-        let answering = std::thread::spawn(move || answer(&preview, &about, &over));
+        let (subject, over) = (about.clone(), ended.clone());
+        let answering = std::thread::spawn(move || answer(&preview, &subject, &over));
         let (generation, broken, answering) =
             (AtomicU64::new(0), Mutex::default(), Some(answering));
-        Ok(Self { screen, subject, generation, broken, leading, ended, answering })
+        Ok(Self { screen, about, generation, broken, ended, answering })
     }
 
     /// Lays messages over the last good picture, each list with the texts that it is about; none
@@ -101,13 +92,13 @@ impl Page {
         stage: &Arc<Stage>,
         read: &Arc<Read>,
         of_samples: u32,
-    ) -> impl FnMut(&Film, Seen) + Send + use<> {
-        *lock(&self.subject) = Some((stage.clone(), read.clone()));
+    ) -> impl FnMut(&Film, Reached) + Send + use<> {
+        *lock(&self.about) = Some((stage.clone(), read.clone()));
         self.broken.lock().unwrap_or_else(PoisonError::into_inner).clear();
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
         let (screen, settings) = (self.screen.clone(), stage.film.clone());
         let mut last = None;
-        move |film: &Film, now: Seen| {
+        move |film: &Film, now: Reached| {
             let is_last = now.step == 1 && now.samples >= of_samples;
             let is_soon = now.samples > 1 && last.is_some_and(|at: Instant| at.elapsed() < PACE);
             if !is_last && (is_soon || !screen.is_watched()) {
@@ -134,31 +125,31 @@ fn problems(found: &[Diagnostic], sources: &Sources) -> impl Iterator<Item = Pro
 
 /// Nobody looks on.
 pub(super) fn unseen() -> Box<Look<'static>> {
-    Box::new(|_: &Film, _: Seen| {})
+    Box::new(|_: &Film, _: Reached| {})
 }
 
-fn status(now: Seen, of_samples: u32) -> String {
+fn status(now: Reached, of_samples: u32) -> String {
     match now {
-        Seen { step: 1, samples } if samples >= of_samples => format!("{samples} samples, done"),
-        Seen { step: 1, samples } => format!("{samples} of {of_samples} samples"),
-        Seen { step, .. } => format!("coarse: one pixel of {}", step * step),
+        Reached { step: 1, samples } if samples >= of_samples => format!("{samples} samples, done"),
+        Reached { step: 1, samples } => format!("{samples} of {of_samples} samples"),
+        Reached { step, .. } => format!("coarse: one pixel of {}", step * step),
     }
 }
 
-fn lock(subject: &Subject) -> std::sync::MutexGuard<'_, Option<(Arc<Stage>, Arc<Read>)>> {
-    subject.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock(about: &About) -> MutexGuard<'_, Option<(Arc<Stage>, Arc<Read>)>> {
+    about.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Answers what the page asks, until the watch has ended.
-fn answer(preview: &Preview, subject: &Subject, ended: &AtomicBool) {
+fn answer(preview: &Preview, about: &About, ended: &AtomicBool) {
     while !ended.load(Ordering::Relaxed) {
         let (at, side) = match preview.commands().recv_timeout(LOOK) {
             Ok(Command::Pixel { at, side }) => (UVec2::from(at), side),
             Err(RecvTimeoutError::Timeout) => continue,
             Err(RecvTimeoutError::Disconnected) => return,
         };
-        let about = lock(subject).clone();
-        let facts = about.map_or(vec![], |(stage, read)| facts(&stage, &read.sources, at));
+        let scene = lock(about).clone();
+        let facts = scene.map_or(vec![], |(stage, read)| facts(&stage, &read.sources, at));
         preview.screen().pixel(&PixelReply { at, side, facts });
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use luxel_core::diag::Sources;
 use luxel_core::film::Film;
-use luxel_core::render::{Control, Look, Options, Outcome, Seen};
+use luxel_core::render::{Control, Look, Options, Outcome, Reached};
 use luxel_core::stage::Stage;
 
 use super::Args;
@@ -54,10 +54,14 @@ pub(super) fn render(
     let options = Options { coarse: args.preview, ..args.render.options() };
     let first = options.samples(stage) > COARSE;
     let mut refused = None;
-    let mut seen = |film: &Film, now: Seen| {
+    let mut seen = |film: &Film, now: Reached| {
         look(film, now);
         if first && now == ONE_SAMPLE && !control.is_cancelled() {
             refused = coarse((&output, film, stage), course).err();
+            if refused.is_some() {
+                // What cannot be written is not worth more samples.
+                control.cancel();
+            }
         }
     };
     let of = (args.file.as_path(), stage);
@@ -87,7 +91,7 @@ pub(super) fn render(
 }
 
 /// When every pixel has one sample.
-const ONE_SAMPLE: Seen = Seen { step: 1, samples: 1 };
+const ONE_SAMPLE: Reached = Reached { step: 1, samples: 1 };
 
 /// Writes the PNG of one sample per pixel; whoever waits for a picture has one.
 fn coarse(

@@ -90,7 +90,7 @@ impl Control {
 
 /// How far a picture has come, for those who look on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Seen {
+pub struct Reached {
     /// Pixels from one that has a sample to the next; 1 once all have.
     pub step: u32,
     /// Samples of those pixels.
@@ -98,7 +98,7 @@ pub struct Seen {
 }
 
 /// Sees a picture grow: told after each pass, while nothing is measured.
-pub type Look<'a> = dyn FnMut(&Film, Seen) + Send + 'a;
+pub type Look<'a> = dyn FnMut(&Film, Reached) + Send + 'a;
 
 /// How far a render came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,7 +168,7 @@ pub fn render_seen(
             if stop.is_asked() {
                 break;
             }
-            look(&film, Seen { step: lattice.step(), samples: samples.end });
+            look(&film, Reached { step: lattice.step(), samples: samples.end });
         }
     });
     let outcome = match (stop.is_failure(), stop.is_asked()) {

@@ -13,7 +13,7 @@ use super::lattice::Lattice;
 use super::light::{Bundle, Splat};
 use super::tile::{StageHost, Worker};
 use super::watched::Watched;
-use super::{FROM_CAMERA, Look, Seen, Stop};
+use super::{FROM_CAMERA, Look, Reached, Stop};
 use crate::film::{Film, Rect};
 use crate::stage::{Emitters, First, Moment, Skin, Stage};
 
@@ -219,7 +219,7 @@ impl PictureJob for PictureHost<'_> {
         pass.sum.fill(DVec3::ZERO);
         pass.done += 1;
         self.stop.control.add(self.window.area() as u64);
-        (self.look.borrow_mut())(&self.film.borrow(), Seen { step: 1, samples: pass.done });
+        (self.look.borrow_mut())(&self.film.borrow(), Reached { step: 1, samples: pass.done });
     }
 }
 

@@ -55,7 +55,8 @@ const MOST_BEHIND: u32 = 7;
 pub(super) enum Landed {
     Nowhere,
     At(Hit),
-    /// A triangle that double precision finds behind the ray's origin: the ray is taken up there.
+    /// A triangle that double precision finds behind the ray's origin: the ray is taken up there, and
+    /// passes it.
     Behind(Taken, u32),
 }
 

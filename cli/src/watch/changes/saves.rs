@@ -1,7 +1,7 @@
 //! The ways in which programs save, with timings drawn from seeds: none is lost, and none that
 //! changes no byte is noticed.
 //!
-//! `LUXEL_SEEDS=200 cargo test --release -p luxel saves -- --nocapture` prints the table of
+//! `LUXEL_SEEDS=200 cargo test --release -p luxel saves_of -- --nocapture` prints the table of
 //! docs/watch.md.
 #![cfg(unix)]
 
@@ -21,6 +21,10 @@ const LONG: Duration = Duration::from_secs(20);
 const SAVES: usize = 3;
 /// A save that takes this long shows its halves, and rightly so.
 const SLOW: Duration = Duration::from_millis(110);
+/// So often a course with a spurious notice is run in all. Where a busy machine tells of an event only
+/// after the next one has begun, a half may pass for the whole: 8 of 200 courses of one pattern under a
+/// load of 18. By chance that happens in all of three with 6e-5; a wrong rule does it in each.
+const TRIES: usize = 3;
 /// Courses at a time: they sleep for the most part.
 const AT_ONCE: usize = 12;
 
@@ -54,6 +58,8 @@ struct Tally {
     saves: usize,
     lost: usize,
     spurious: usize,
+    /// Courses that had spurious notices however often they were run.
+    stubborn: usize,
     latencies: Vec<Duration>,
 }
 
@@ -62,6 +68,7 @@ impl Tally {
         self.saves += other.saves;
         self.lost += other.lost;
         self.spurious += other.spurious;
+        self.stubborn += other.stubborn;
         self.latencies.extend(other.latencies);
     }
 
@@ -142,6 +149,17 @@ fn course(pattern: &Pattern, seed: usize) -> Tally {
     tally
 }
 
+/// The same; one with a spurious notice is run again, and the first counts.
+fn tried(pattern: &Pattern, seed: usize) -> Tally {
+    let first = course(pattern, seed);
+    let is_stubborn = first.spurious > 0
+        && (1..TRIES).all(|_| {
+            let again = course(pattern, seed);
+            again.spurious > 0 || again.lost > 0
+        });
+    Tally { stubborn: is_stubborn.into(), ..first }
+}
+
 /// All patterns, each with so many seeds.
 fn all(seeds: usize) -> Vec<Tally> {
     let tallies = Mutex::new(vec![Tally::default(); PATTERNS.len()]);
@@ -155,7 +173,7 @@ fn all(seeds: usize) -> Vec<Tally> {
                     if seed >= seeds {
                         return;
                     }
-                    let tally = course(&PATTERNS[pattern], seed);
+                    let tally = tried(&PATTERNS[pattern], seed);
                     tallies.lock().unwrap()[pattern].add(tally);
                 }
             });
@@ -178,10 +196,8 @@ fn saves_of_every_kind_are_noticed_and_those_that_change_no_byte_are_not() {
         println!("| {} | {saves} | {lost} | {spurious} | {half:.1} | {most:.1} |", pattern.name);
     }
     for (pattern, tally) in PATTERNS.iter().zip(&tallies) {
-        let Tally { saves, lost, spurious, .. } = tally;
+        let Tally { saves, lost, spurious, stubborn, .. } = tally;
         assert_eq!(*lost, 0, "{}: of {saves} saves", pattern.name);
-        // Where a busy machine tells of an event only after the next one has begun, a half may pass
-        // for the whole. One that compared no contents would notice every other save.
-        assert!(*spurious <= 1.max(saves / 50), "{}: {spurious} of {saves}", pattern.name);
+        assert_eq!(*stubborn, 0, "{}: {spurious} spurious of {saves} saves", pattern.name);
     }
 }

@@ -1,23 +1,16 @@
-//! Rays that leave a flat mesh do not meet it again: neither the triangle that they leave, which is
-//! passed, nor its neighbour in the same plane, which only the offset of the origin keeps away.
+//! Rays that leave a mesh do not meet it where they leave it: neither the triangle that they leave, which
+//! is passed, nor one in the same plane or behind them, by whatever rounding.
 
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
-use luxel_sdk::Params;
-use luxel_sdk::abi::Class;
-use luxel_sdk::kind::{Hit, Kind, Shape, ShapeSample, Surface, TriangleMesh};
-use luxel_sdk::num::{Bounds3, Ray, offset_origin};
-use luxel_sdk::params::{Build, BuildContext, Fault, Shared, Table};
+use luxel_sdk::kind::{Hit, TriangleMesh};
+use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::Rng;
 
 use super::{Approach, Mesh};
 use crate::accel::{Direction, Precision, Processor, Watch};
-use crate::diag::{SourceId, Span};
-use crate::files::MemoryFiles;
-use crate::object::{Builder, ColorMode, Objects};
-use crate::registry::Registry;
-use crate::scene::{Argument, Node, Scene, Value};
 
 /// Rays per triangle.
 const N: u32 = 20_000;
@@ -30,70 +23,91 @@ fn direction(rng: &mut Rng, ng: DVec3) -> DVec3 {
     (d - ng * d.dot(ng) + ng * height).normalize()
 }
 
-/// A parallelogram of two triangles: three of its corners are in the table.
-#[derive(Params, Clone, Copy)]
-#[repr(C)]
-struct Triangle<'a> {
-    /// Nine numbers.
-    #[param(required)]
-    points: Table<'a>,
-    #[param(shared)]
-    mesh: Shared<'a, Arc<TriangleMesh>>,
+fn built(points: &[DVec3], indices: Vec<[u32; 3]>) -> Mesh {
+    let triangles = Arc::new(TriangleMesh::rebased(points, indices));
+    Mesh::build(triangles, [0.0; 2], &Watch::default()).unwrap()
 }
 
-impl Build<Arc<TriangleMesh>> for Triangle<'_> {
-    fn build(&self, _: &dyn BuildContext) -> Result<Arc<TriangleMesh>, Vec<Fault>> {
-        let mut points: Vec<_> = self.points.get().chunks(3).map(DVec3::from_slice).collect();
-        points.push(points[0] + points[2] - points[1]);
-        Ok(TriangleMesh::rebased(&points, vec![[0, 1, 2], [0, 2, 3]]).into())
-    }
+/// A parallelogram of two triangles, by three of its corners.
+fn mesh_of([a, b, c]: [DVec3; 3]) -> Mesh {
+    built(&[a, b, c, a + c - b], vec![[0, 1, 2], [0, 2, 3]])
 }
 
-impl Shape for Triangle<'_> {
-    fn bounds(&self) -> Bounds3 {
-        Bounds3::ALL
-    }
-    fn intersect(&self, _: &Ray) -> Option<Hit> {
-        None
-    }
-    fn surface(&self, _: &Ray, _: &Hit) -> Surface {
-        unreachable!("the host takes the mesh over")
-    }
-    fn area(&self) -> f64 {
-        0.0
-    }
-    fn sample(&self, _: Option<DVec3>, _: [f32; 2]) -> Option<ShapeSample> {
-        None
-    }
-    fn pdf(&self, _: Option<DVec3>, _: &Surface) -> f64 {
-        0.0
-    }
-    fn mesh(&self) -> Option<Arc<TriangleMesh>> {
-        Some(Arc::clone(&self.mesh))
-    }
+/// The ray that leaves a triangle at a place in a direction, as a stage offsets it, and what it meets.
+fn leave(
+    mesh: &Mesh,
+    (face, at): (u32, DVec2),
+    precision: Precision,
+    rng: &mut Rng,
+) -> (Ray, Option<Hit>) {
+    let surface = mesh.surface(face, at, precision, 0.0);
+    let d = direction(rng, surface.ng);
+    let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
+    let ray = Ray { o, d, t_max: f64::INFINITY };
+    let direction = Direction::new(d).unwrap();
+    let approach = Approach {
+        processor: Processor::ANY,
+        precision,
+        direction: Some(&direction),
+        t_enter: 0.0,
+        from: Some(face),
+        time: 0.0,
+    };
+    (ray, mesh.intersect(&ray, approach, &mut 0))
 }
 
-fn mesh_of(corners: [DVec3; 3]) -> Mesh {
-    let mut registry = Registry::default();
-    registry.add("test", &[Class::shape::<Triangle<'_>>("triangle")]).unwrap();
-    let mut scene = Scene::default();
-    let span = Span::new(SourceId(0), 0, 0);
-    let table: Vec<f64> = corners.iter().flat_map(DVec3::to_array).collect();
-    let points = Argument { name: "points", value: Value::Table(table.into()), span };
-    let id = scene.add(Node {
-        kind: Kind::Shape,
-        class: "triangle".into(),
-        label: None,
-        params: vec![points],
-        overrides: vec![],
-        span,
-        hash: [0; 32],
-    });
-    let (files, before) = (MemoryFiles::default(), Objects::default());
-    let object =
-        Builder::new(&registry, &scene, &files, ColorMode::Rgb, &before).build(id).unwrap();
-    let mesh = object.fixed().shape().mesh().unwrap();
-    Mesh::build(mesh, [0.0; 2], &Watch::default()).unwrap()
+/// Anywhere on a triangle.
+fn anywhere(rng: &mut Rng) -> DVec2 {
+    let [u, v] = rng.pair();
+    let [_, b, c] = luxel_sdk::sampling::uniform_triangle([u, v]).map(f64::from);
+    DVec2::new(b, c)
+}
+
+/// A closed ball of radius 1 whose points are rounded to sixteenths, a million metres out: its
+/// triangles lie in few planes, on each other and across each other.
+fn rounded_ball() -> Mesh {
+    const RINGS: u32 = 200;
+    let centre = DVec3::new(1e6, -1e6, 1e6);
+    let point = |ring: u32, side: u32| {
+        let (polar, turn) =
+            (PI * f64::from(ring) / f64::from(RINGS), TAU * f64::from(side) / f64::from(RINGS));
+        let p = DVec3::new(polar.sin() * turn.cos(), polar.sin() * turn.sin(), polar.cos());
+        centre + (p * 16.0).round() / 16.0
+    };
+    let points: Vec<_> =
+        (0..=RINGS).flat_map(|ring| (0..RINGS).map(move |side| point(ring, side))).collect();
+    let quad = |ring: u32, side: u32| {
+        let (a, b) = (ring * RINGS + side, ring * RINGS + (side + 1) % RINGS);
+        [[a, a + RINGS, b + RINGS], [a, b + RINGS, b]]
+    };
+    let indices = (0..RINGS).flat_map(|ring| (0..RINGS).flat_map(move |side| quad(ring, side)));
+    built(&points, indices.collect())
+}
+
+#[test]
+fn rays_from_a_mesh_as_fine_as_its_numbers_meet_nothing_behind_them() {
+    let (mesh, mut rng) = (rounded_ball(), Rng::new(8));
+    let n_faces = u32::try_from(mesh.triangles.indices.len()).unwrap();
+    let is_flat = |face: u32| {
+        let [a, b, c] = mesh.opening_corners(face);
+        (b - a).cross(c - a) == DVec3::ZERO
+    };
+    for precision in [Precision::Standard, Precision::Exact] {
+        for i in 0..N {
+            let face = rng.u32() % n_faces;
+            if is_flat(face) {
+                continue;
+            }
+            let at = if i % 2 == 0 { DVec2::ZERO } else { anywhere(&mut rng) };
+            let (ray, hit) = leave(&mesh, (face, at), precision, &mut rng);
+            let Some(hit) = hit else { continue };
+            // Corners are sixteenths, so that only the products with `d` round.
+            let [a, b, c] = mesh.opening_corners(hit.face);
+            let n = (b - a).cross(c - a);
+            let ahead = n.dot(a - ray.o) * n.dot(ray.d) > 0.0;
+            assert!(hit.face != face && ahead, "{face} {at} {precision:?}: {hit:?}");
+        }
+    }
 }
 
 #[test]
@@ -117,23 +131,8 @@ fn rays_from_a_flat_quad_do_not_meet_it_whatever_its_place_and_shape() {
             let mesh = mesh_of(corners);
             let mut hits = 0;
             for _ in 0..N {
-                let [u, v] = rng.pair();
-                let at = luxel_sdk::sampling::uniform_triangle([u, v]);
-                let at = DVec2::new(f64::from(at[1]), f64::from(at[2]));
-                let surface = mesh.surface(0, at, precision, 0.0);
-                let d = direction(&mut rng, surface.ng);
-                let o = offset_origin(surface.p, surface.p_err, surface.ng, d);
-                let ray = Ray { o, d, t_max: f64::INFINITY };
-                let direction = Direction::new(d).unwrap();
-                let approach = Approach {
-                    processor: Processor::ANY,
-                    precision,
-                    direction: Some(&direction),
-                    t_enter: 0.0,
-                    from: Some(0),
-                    time: 0.0,
-                };
-                hits += u32::from(mesh.intersect(&ray, approach, &mut 0).is_some());
+                let at = anywhere(&mut rng);
+                hits += u32::from(leave(&mesh, (0, at), precision, &mut rng).1.is_some());
             }
             assert_eq!(hits, 0, "triangle {index} at scale {scale}, {precision:?}");
         }

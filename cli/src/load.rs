@@ -11,7 +11,7 @@ use luxel_core::stage::{self, Stage, Unbuilt};
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure, blaming};
-use crate::files::DiskFiles;
+use crate::files::{DiskFiles, Known};
 use crate::interrupt::CANCELLED;
 use crate::isolate::{Beat, Phase};
 use crate::libraries::{Plugins, Session, Surroundings};
@@ -66,6 +66,8 @@ pub(crate) struct Course {
     pub(crate) beat: Beat,
     /// Ends the building of trees.
     pub(crate) watch: Arc<Watch>,
+    /// Files that need not be read to know what is in them.
+    pub(crate) known: Known,
     /// Whether a line tells of it on a terminal.
     pub(crate) line: bool,
 }
@@ -81,7 +83,7 @@ pub(crate) fn load(
     plugins: &Plugins,
     course: &Course,
 ) -> Result<Loaded, Failure> {
-    build(path, read(path, args, size, plugins, &course.beat)?, plugins, None, course)
+    build(path, read(path, args, size, plugins, course)?, plugins, None, course)
 }
 
 /// A scene's text and what it says.
@@ -105,10 +107,10 @@ pub(crate) fn read(
     args: &LoadArgs,
     size: Option<UVec2>,
     plugins: &Plugins,
-    beat: &Beat,
+    Course { beat, known, .. }: &Course,
 ) -> Result<Text, Failure> {
     blaming(&path.display().to_string(), || {
-        let files = DiskFiles::new(path, &args.allow_path);
+        let files = DiskFiles::new(path, &args.allow_path).knowing(known);
         beat.reading(files.shared());
         beat.phase(Phase::Loading);
         let settings = luxel_lang::Settings {
@@ -138,7 +140,7 @@ pub(crate) fn build(
     text: Text,
     plugins: &Plugins,
     before: Option<&Stage>,
-    Course { beat, watch, line }: &Course,
+    Course { beat, watch, line, .. }: &Course,
 ) -> Result<Loaded, Failure> {
     let loaded = blaming(&path.display().to_string(), || {
         let Text { scene, mut diagnostics, sources, files } = text;

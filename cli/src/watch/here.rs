@@ -145,10 +145,12 @@ impl Watching<'_, '_> {
     fn load(&mut self) -> Result<Next, Failure> {
         let Args { file, load, render, .. } = self.args;
         let form = self.args.form();
-        let text = load::read(file, load, render.size, &self.plugins, &Beat::silent())?;
+        let (line, known) = (!self.args.quiet, self.changes.known().clone());
+        let course = load::Course { known, line, ..load::Course::default() };
+        let text = load::read(file, load, render.size, &self.plugins, &course)?;
         self.asked = text.files.shared().clone();
         if let Some(Shown { subject, .. }) = &mut self.shown
-            && subject.is_of(&text)
+            && subject.is_of(&text, self.changes.known())
         {
             subject.read_again(&text);
             self.changes.expect(subject.files.clone());
@@ -160,7 +162,7 @@ impl Watching<'_, '_> {
         }
         let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
-        let (loaded, noticed) = self.build(text);
+        let (loaded, noticed) = self.build(text, &course);
         let loaded = match noticed {
             Noticed::Save => return Ok(Next::Read),
             Noticed::Stop => return Ok(Next::End),
@@ -185,8 +187,7 @@ impl Watching<'_, '_> {
     }
 
     /// Makes a scene ready, unless a save comes between.
-    fn build(&mut self, text: Text) -> (Result<Loaded, Failure>, Noticed) {
-        let course = load::Course { line: !self.args.quiet, ..load::Course::default() };
+    fn build(&mut self, text: Text, course: &load::Course) -> (Result<Loaded, Failure>, Noticed) {
         self.in_hand.get().1 = course.watch.clone();
         let mut now = text.files.asked();
         now.extend(self.plugins.watched.clone());
@@ -195,7 +196,7 @@ impl Watching<'_, '_> {
         let patient = !self.impatient;
         changes.expect(now);
         let (built, noticed) = std::thread::scope(|scope| {
-            let building = scope.spawn(|| load::build(file, text, plugins, before, &course));
+            let building = scope.spawn(|| load::build(file, text, plugins, before, course));
             let mut noticed = Noticed::Nothing;
             while !building.is_finished() && noticed == Noticed::Nothing {
                 noticed = match changes.within(TICK) {
@@ -256,7 +257,8 @@ impl Watching<'_, '_> {
         session: &mut Session,
         (args, surroundings): (&PluginArgs, &Surroundings),
     ) -> Result<(), Failure> {
-        if self.plugins.watched.iter().all(|(path, seen)| look(path) == *seen) {
+        let known = self.changes.known();
+        if self.plugins.watched.iter().all(|(path, seen)| known.look(path) == *seen) {
             return Ok(());
         }
         match session.refresh(args, surroundings) {

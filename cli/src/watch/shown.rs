@@ -11,7 +11,7 @@ use luxel_core::scene::Hash;
 use luxel_core::stage::Stage;
 
 use super::round::Read;
-use crate::files::{Seen, Watched, look};
+use crate::files::{Known, Seen, Watched};
 use crate::load::Text;
 
 /// What a picture is of.
@@ -30,9 +30,10 @@ pub(super) struct Subject {
 
 impl Subject {
     /// Whether a text that was read shows the same scene, of files that have not changed.
-    pub(super) fn is_of(&self, text: &Text) -> bool {
-        let same =
-            |(path, seen): (&PathBuf, &Seen)| self.texts.contains(path) || look(path) == *seen;
+    pub(super) fn is_of(&self, text: &Text, known: &Known) -> bool {
+        let same = |(path, seen): (&PathBuf, &Seen)| {
+            self.texts.contains(path) || known.look(path) == *seen
+        };
         text.scene.as_ref().is_some_and(|scene| scene.hash() == self.hash)
             && !self.stage.has_failed()
             && self.files.iter().all(same)

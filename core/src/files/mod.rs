@@ -7,6 +7,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::scene::Hash;
+
 /// Why a file could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileError {
@@ -44,6 +46,12 @@ pub trait Files: Send + Sync {
     /// # Errors
     /// `FileError` says which of the four things went wrong.
     fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError>;
+
+    /// The BLAKE3 hash of the whole file, `None` when it cannot be read: for whoever knows what was in
+    /// it. An implementation may know it without reading.
+    fn hash(&self, path: &Path) -> Option<Hash> {
+        self.read(path).ok().map(|bytes| *blake3::hash(&bytes).as_bytes())
+    }
 
     /// One name for one file, so that a cycle is seen through links and `..`.
     fn canonical(&self, path: &Path) -> PathBuf {

@@ -17,6 +17,8 @@ pub type Embedded = BTreeMap<PathBuf, Arc<[u8]>>;
 pub(super) struct Read {
     pub(super) path: PathBuf,
     pub(super) hash: Option<Hash>,
+    /// How many bytes those were.
+    pub(super) bytes: usize,
 }
 
 /// Reads through `Files` and remembers what.
@@ -49,8 +51,9 @@ impl<'a> Reader<'a> {
             return Ok(bytes.clone());
         }
         let result = self.files.read(path);
-        let hash = result.as_ref().ok().map(|bytes| *blake3::hash(bytes).as_bytes());
-        let read = Read { path: path.to_path_buf(), hash };
+        let hash = result.as_ref().ok().and_then(|_| self.files.hash(path));
+        let bytes = result.as_ref().map_or(0, |bytes| bytes.len());
+        let read = Read { path: path.to_path_buf(), hash, bytes };
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push(read);
         result.map_err(|error| format!("`{}`: {error}", path.display()))
     }
@@ -58,10 +61,7 @@ impl<'a> Reader<'a> {
 
 /// Whether every file is still what it was.
 pub(super) fn unchanged(reads: &[Read], files: &dyn Files) -> bool {
-    reads.iter().all(|read| {
-        let now = files.read(&read.path).ok().map(|bytes| *blake3::hash(&bytes).as_bytes());
-        now == read.hash
-    })
+    reads.iter().all(|read| files.hash(&read.path) == read.hash)
 }
 
 impl BuildContext for Reader<'_> {

@@ -1,12 +1,12 @@
 //! One file: whether it is as it was seen.
 
 use std::ffi::OsString;
-use std::fs;
 use std::path::Path;
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use super::hear::Heard;
 use super::{Seen, look};
+use crate::files::Stamp;
 
 /// How files stand, the later the more there is to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,9 +48,9 @@ impl File {
         Self { seen, known: None, len: None }
     }
 
-    /// Whether the stamp alone tells that the contents are the same.
-    pub(super) fn is_sure(&self) -> bool {
-        self.known.as_ref().is_some_and(|known| known.sure)
+    /// The stamp that alone tells that the contents are the same, if there is one.
+    pub(super) fn sure(&self) -> Option<&Stamp> {
+        self.known.as_ref().filter(|known| known.sure).map(|known| &known.stamp)
     }
 
     /// How the file stands, and what was found if it was read.
@@ -94,62 +94,6 @@ fn steady(path: &Path) -> Option<(Stamp, Seen)> {
         before = after;
     }
     None
-}
-
-/// What the system says about a file: cheap to ask, but may stay the same for a tick of its clock
-/// though the bytes change. `None` where there is nothing.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Stamp(Option<About>);
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct About {
-    len: u64,
-    modified: Option<SystemTime>,
-    identity: Identity,
-    changed: (i64, i64),
-}
-
-/// Which file or folder it is, whatever its name: device and number, and when it was made, for
-/// numbers are used again.
-pub(super) type Identity = (u64, u64, Option<SystemTime>);
-
-impl Stamp {
-    fn of(path: &Path) -> Self {
-        let about = |about: fs::Metadata| About {
-            len: about.len(),
-            modified: about.modified().ok(),
-            identity: identity(&about),
-            changed: changed(&about),
-        };
-        Self(fs::metadata(path).ok().map(about))
-    }
-
-    fn len(&self) -> Option<u64> {
-        self.0.as_ref().map(|about| about.len)
-    }
-}
-
-#[cfg(unix)]
-pub(super) fn identity(about: &fs::Metadata) -> Identity {
-    use std::os::unix::fs::MetadataExt;
-    (about.dev(), about.ino(), about.created().ok())
-}
-
-#[cfg(not(unix))]
-pub(super) fn identity(about: &fs::Metadata) -> Identity {
-    (0, 0, about.created().ok())
-}
-
-/// No program can set this time back, as it can that of the contents.
-#[cfg(unix)]
-fn changed(about: &fs::Metadata) -> (i64, i64) {
-    use std::os::unix::fs::MetadataExt;
-    (about.ctime(), about.ctime_nsec())
-}
-
-#[cfg(not(unix))]
-fn changed(_: &fs::Metadata) -> (i64, i64) {
-    (0, 0)
 }
 
 /// The last part of a path.

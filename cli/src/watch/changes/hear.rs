@@ -10,8 +10,9 @@ use notify::event::{AccessKind, AccessMode, ModifyKind};
 use notify::{Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 
 use super::Wake;
-use super::file::{Identity, identity, name};
+use super::file::name;
 use super::hops::Hops;
+use crate::files::{Identity, identity};
 
 /// What was heard since the last time, by the files that it may concern.
 #[derive(Clone, Debug, Default)]

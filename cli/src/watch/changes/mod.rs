@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
-use crate::files::{Seen, Watched, look};
+use crate::files::{Known, Seen, Watched, look};
 
 use file::{File, Standing};
 use hear::{Ears, Heard};
@@ -66,6 +66,8 @@ pub(super) struct Changes {
     past: BTreeMap<PathBuf, File>,
     /// What was there at the last look, for loads that tell nothing.
     found: Watched,
+    /// What is in files for sure, for whoever loads them.
+    known: Known,
     wakes: Receiver<Wake>,
     /// How often stamps are compared, here and where events do not tell all.
     anyway: Duration,
@@ -90,12 +92,13 @@ impl Changes {
 
     fn hearing(ears: impl FnOnce(Sender<Wake>) -> Ears) -> (Self, Sender<Wake>) {
         let (sender, wakes) = mpsc::channel();
-        let (files, past, found) = Default::default();
+        let (files, past, found, known) = Default::default();
         let changes = Self {
             ears: ears(sender.clone()),
             files,
             past,
             found,
+            known,
             wakes,
             anyway: ANYWAY,
             here: ANYWAY,
@@ -105,6 +108,11 @@ impl Changes {
             noticed: None,
         };
         (changes, sender)
+    }
+
+    /// What is in files for sure, now and later.
+    pub(super) fn known(&self) -> &Known {
+        &self.known
     }
 
     /// Watches what leads to these files too, before they are read.
@@ -127,9 +135,10 @@ impl Changes {
             let same = known.filter(|file| file.seen == seen);
             self.files.insert(path, same.unwrap_or_else(|| File::new(seen)));
         }
-        before.retain(|_, file| file.is_sure());
+        before.retain(|_, file| file.sure().is_some());
         self.past = before;
         self.found.retain(|path, _| self.files.contains_key(path));
+        self.known.keep(|path| self.files.contains_key(path) || self.past.contains_key(path));
         self.listen();
         self.anyway = if self.is_far() { FAR } else { self.here };
         self.fresh = true;
@@ -258,6 +267,7 @@ impl Changes {
         let mut all = Standing::Same;
         for (path, file) in &mut self.files {
             let (standing, found) = file.check(path, heard);
+            self.known.set(path, file.sure(), file.seen);
             if let Some(found) = found {
                 self.found.insert(path.clone(), found);
             }

@@ -1,12 +1,19 @@
 //! Files on disk, as scenes may see them.
 
+mod known;
+mod stamp;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use luxel_core::files::{FileError, Files, normalise};
+use luxel_core::scene::Hash;
+
+pub(crate) use known::Known;
+pub(crate) use stamp::{Identity, Stamp, identity};
 
 /// Bytes of one file, at most: far above any mesh, below what would take a machine down.
 const MAX_BYTES: u64 = 4 << 30;
@@ -26,6 +33,9 @@ pub(crate) type Asked = Arc<Mutex<Watched>>;
 pub(crate) struct DiskFiles {
     allowed: Vec<PathBuf>,
     asked: Asked,
+    /// Of what was read, the hash of its bytes: in one load a file is one thing.
+    read: Mutex<BTreeMap<PathBuf, Hash>>,
+    known: Known,
 }
 
 impl DiskFiles {
@@ -38,7 +48,12 @@ impl DiskFiles {
         let allowed = std::iter::once(own).chain(allow.iter().map(PathBuf::as_path));
         // A folder that does not exist holds nothing that could be allowed.
         let allowed = allowed.filter_map(|folder| fs::canonicalize(folder).ok()).collect();
-        Self { allowed, asked: Asked::default() }
+        Self { allowed, asked: Asked::default(), read: Mutex::default(), known: Known::default() }
+    }
+
+    /// The same, for whoever watches files and knows what is in them.
+    pub(crate) fn knowing(self, known: &Known) -> Self {
+        Self { known: known.clone(), ..self }
     }
 
     /// The paths that are asked for, now and later.
@@ -48,7 +63,7 @@ impl DiskFiles {
 
     /// Every path that was asked for, with the hash of what was found there.
     pub(crate) fn asked(&self) -> Watched {
-        self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        lock(&self.asked).clone()
     }
 
     /// One hash over the contents of all files that were read.
@@ -60,12 +75,19 @@ impl DiskFiles {
         hasher.finalize()
     }
 
-    fn fetch(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+    /// Where a file is, if it may be read.
+    fn place(&self, path: &Path) -> Result<PathBuf, FileError> {
         let place = fs::canonicalize(path).map_err(|error| told(&error))?;
-        if !self.allowed.iter().any(|folder| place.starts_with(folder)) {
-            return Err(FileError::Outside);
-        }
-        read_regular(&place).map(Arc::from)
+        let allowed = self.allowed.iter().any(|folder| place.starts_with(folder));
+        if allowed { Ok(place) } else { Err(FileError::Outside) }
+    }
+
+    fn fetch(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+        read_regular(&self.place(path)?).map(Arc::from)
+    }
+
+    fn note(&self, path: &Path, seen: Seen) {
+        lock(&self.asked).insert(path.to_path_buf(), seen);
     }
 }
 
@@ -73,17 +95,38 @@ impl Files for DiskFiles {
     fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
         let found = self.fetch(path);
         let seen = match &found {
-            Ok(bytes) => Some(blake3::hash(bytes)),
+            Ok(bytes) => {
+                let hash = blake3::hash(bytes);
+                lock(&self.read).insert(path.to_path_buf(), hash.into());
+                Some(hash)
+            }
             // A folder, or a file that may not be read, is no news if it stays as it is.
             Err(_) => look(path).filter(|_| self.fetch(path).is_err()),
         };
-        self.asked.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_path_buf(), seen);
+        self.note(path, seen);
         found
+    }
+
+    fn hash(&self, path: &Path) -> Option<Hash> {
+        if let Some(hash) = lock(&self.read).get(path) {
+            return Some(*hash);
+        }
+        let known = self.known.seen(path).flatten().filter(|_| self.place(path).is_ok());
+        if known.is_some() {
+            self.note(path, known);
+            return known.map(Hash::from);
+        }
+        self.read(path).ok()?;
+        lock(&self.read).get(path).copied()
     }
 
     fn canonical(&self, path: &Path) -> PathBuf {
         fs::canonicalize(path).unwrap_or_else(|_| normalise(path))
     }
+}
+
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What is there now.

@@ -189,6 +189,20 @@ fn an_edit_keeps_the_geometry_that_it_does_not_touch() {
 }
 
 #[test]
+fn going_back_to_a_scene_of_a_moment_ago_makes_no_geometry_anew() {
+    let first = stage(SCENE, &[], None);
+    let second = stage(SCENE, &[("corner", "3 m")], Some(&first));
+    let third = stage(SCENE, &[("corner", "3.5 m")], Some(&second));
+    for (before, n) in [(&second, 1), (&third, 2)] {
+        let back = stage(SCENE, &[], Some(before));
+        assert!(Arc::ptr_eq(&meshes(&first)[0], &meshes(&back)[0]), "forgotten after {n} edits");
+    }
+    let fourth = stage(SCENE, &[("corner", "4 m")], Some(&third));
+    let late = stage(SCENE, &[], Some(&fourth));
+    assert!(!Arc::ptr_eq(&meshes(&first)[0], &meshes(&late)[0]), "kept for ever");
+}
+
+#[test]
 fn equal_shapes_share_their_geometry_whatever_they_are_made_of() {
     let mesh = "points = #[ 0 0 0  1 0 0  0 1 0 ] m, indices = #[ 0 1 2 ]";
     let text = format!(

@@ -1,6 +1,6 @@
 //! From a node of the scene graph to an object: its template and what varies.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use luxel_sdk::abi::Class;
@@ -15,6 +15,7 @@ use super::context::{Embedded, Reader};
 use super::draft::Draft;
 use super::part::{MeshParts, OWN_BITS};
 use super::patch::Patches;
+use super::shelf::{Kept, Shelf};
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::registry::Registry;
@@ -30,10 +31,22 @@ pub enum ColorMode {
     Spectral,
 }
 
+impl Kept for Arc<Object> {
+    fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(self, other)
+    }
+
+    fn bytes(&self) -> usize {
+        self.bytes_read()
+    }
+}
+
 /// Objects of the last builds, by content.
 #[derive(Debug, Default)]
 pub struct Objects {
-    by_content: BTreeMap<(Hash, ColorMode), Arc<Object>>,
+    by_content: Shelf<(Hash, ColorMode), Arc<Object>>,
+    /// How many the last build had to make.
+    pub made: usize,
     /// Objects of no node: what the host takes where a scene says nothing.
     presets: Vec<Arc<Object>>,
     /// Raised by each object that fails, of this build and of those before and after it.
@@ -43,9 +56,15 @@ pub struct Objects {
 impl Objects {
     /// Every object that has failed, by its content, if a node made it: who and how.
     pub fn failures(&self) -> impl Iterator<Item = (Option<&Hash>, String)> {
-        let of_nodes = self.by_content.iter().map(|((hash, _), object)| (Some(hash), object));
+        let of_nodes = self.by_content.now().iter();
+        let of_nodes = of_nodes.map(|((hash, _), object)| (Some(hash), object));
         let presets = self.presets.iter().map(|object| (None, object));
         of_nodes.chain(presets).filter_map(|(hash, object)| Some((hash, object.failure()?)))
+    }
+
+    /// Takes over what builds before have left, of so many bytes at most; returns how many those are.
+    pub(crate) fn inherit(&mut self, before: &Self, most: usize) -> usize {
+        self.by_content.inherit(&before.by_content, most)
     }
 }
 
@@ -108,14 +127,13 @@ impl<'a> Builder<'a> {
     fn build_or_keep(&mut self, id: NodeId) -> Option<Arc<Object>> {
         let node = self.scene.node(id);
         let key = (self.scene.own_hash(id), self.mode);
-        if let Some(object) = self.objects.by_content.get(&key) {
+        if let Some(object) = self.objects.by_content.now().get(&key) {
             return Some(object.clone());
         }
-        if let Some(object) = self.before.by_content.get(&key)
-            && object.is_current(self.registry)
-            && object.is_unchanged(self.files)
-        {
-            self.objects.by_content.insert(key, object.clone());
+        let may_stay =
+            |it: &&Arc<Object>| it.is_current(self.registry) && it.is_unchanged(self.files);
+        if let Some(object) = self.before.by_content.all(key).find(may_stay) {
+            self.objects.by_content.put(key, object.clone());
             return Some(object.clone());
         }
         let Some(class) = self.registry.class(node.kind, &node.class) else {
@@ -124,7 +142,8 @@ impl<'a> Builder<'a> {
             return None;
         };
         let object = self.make(class, Some(node))?;
-        self.objects.by_content.insert(key, object.clone());
+        self.objects.by_content.put(key, object.clone());
+        self.objects.made += 1;
         Some(object)
     }
 

@@ -13,6 +13,7 @@ mod draft;
 mod part;
 mod patch;
 mod resolve;
+mod shelf;
 
 #[cfg(test)]
 mod tests;
@@ -39,6 +40,7 @@ pub use colour::white;
 pub use context::{Embedded, Reader};
 pub use part::MeshParts;
 pub use resolve::{Resolved, Scratch, Site};
+pub use shelf::{Kept, Shelf};
 
 /// The most objects that one may be made of: a mixture of mixtures of the same two doubles them with
 /// every step.
@@ -109,6 +111,11 @@ impl Object {
     /// Who failed and how, if a library's code has failed in this object.
     pub fn failure(&self) -> Option<String> {
         self.watch.as_ref()?.told()
+    }
+
+    /// Bytes of what was read to build it: what was made of them, only its plugin knows.
+    fn bytes_read(&self) -> usize {
+        self.reads.iter().map(|read| read.bytes).sum()
     }
 
     /// Whether it may be used again: its class and those of its parts are still the registry's own,

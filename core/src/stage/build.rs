@@ -8,10 +8,11 @@ use luxel_sdk::num::Transform;
 use super::analytic::Analytic;
 use super::flatten::{Flat, flatten};
 use super::geometry::mesh_part;
+use super::kept::{Anew, Cache, Shaped};
 use super::lights::LightSource;
 use super::made::{Made, Settings};
 use super::motion::{Motion, Splits};
-use super::{Cache, Film, Geometry, Mesh, Place, Placement, Skin, Stage};
+use super::{Film, Geometry, Mesh, Place, Placement, Skin, Stage};
 use super::{failures, features, import, shining};
 use crate::accel::{BuildError, Watch};
 use crate::cast::{index, whole};
@@ -29,6 +30,8 @@ pub struct Built {
     pub stage: Stage,
     /// Warnings.
     pub warnings: Vec<Diagnostic>,
+    /// What had to be made; the rest was kept from builds before.
+    pub anew: Anew,
 }
 
 /// Makes a scene ready to trace, keeping what has not changed since `before`.
@@ -99,14 +102,15 @@ pub fn build_watched(
     let settings = maker.settings();
     diagnostics.append(&mut maker.builder.diagnostics);
     let (made, objects) = (maker.made, maker.builder.objects);
+    let anew = Anew { objects: objects.made, shapes: made.new_shapes };
     match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
-            let stage = made.finish(settings, objects, (scene, film, mode), watch);
+            let stage = made.finish(settings, objects, (scene, film, mode), cache, watch);
             let stage = stage.ok_or(Unbuilt::Cancelled)?;
             let mut found = stage.failures();
             found.extend(unseen(&stage));
             if found.is_empty() {
-                return Ok(Built { stage, warnings: diagnostics });
+                return Ok(Built { stage, warnings: diagnostics, anew });
             }
             diagnostics.extend(found);
             Err(Unbuilt::Faulty(diagnostics))
@@ -234,15 +238,16 @@ impl Maker<'_> {
         }
         let object = self.builder.build(id)?;
         let hash = self.scene.own_hash(id);
-        let known = self.made.meshes.get(&hash).or_else(|| self.cache.meshes.get(&hash));
+        // The object itself is kept only where no file that it read has changed.
+        let may_stay =
+            |(kept, geometry): &&Shaped| Arc::ptr_eq(kept, &object) && geometry.is_of(self.during);
+        let (own, before) = (&self.made.shapes, &self.cache.shapes);
+        let known = own.now().get(&hash).into_iter().chain(before.all(hash)).find(may_stay);
         let geometry = match known {
-            // The object itself is kept only where no file that it read has changed.
-            Some((kept, geometry)) if Arc::ptr_eq(kept, &object) && geometry.is_of(self.during) => {
-                geometry.clone()
-            }
-            _ => Arc::new(self.new_geometry(id, &object)?),
+            Some((_, geometry)) => geometry.clone(),
+            None => Arc::new(self.new_geometry(id, &object)?),
         };
-        self.made.meshes.insert(hash, (object, geometry.clone()));
+        self.made.shapes.put(hash, (object, geometry.clone()));
         self.made.geometries.push(geometry);
         let last = index(self.made.geometries.len() - 1);
         self.made.geometry_of.insert(id, last);
@@ -250,6 +255,7 @@ impl Maker<'_> {
     }
 
     fn new_geometry(&mut self, id: NodeId, object: &Arc<Object>) -> Option<Geometry> {
+        self.made.new_shapes += 1;
         self.watch.name(&name(self.scene.node(id)));
         let shape = object.fixed().shape();
         let Some(triangles) = shape.mesh() else {

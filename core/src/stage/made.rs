@@ -6,13 +6,12 @@ use std::sync::Arc;
 use glam::DVec3;
 use luxel_sdk::num::Bounds3;
 
+use super::kept::{Cache, Shaped};
 use super::lights::LightSource;
 use super::nesting;
-use super::{
-    Cache, Eye, Features, Film, Geometry, Lights, MediumStack, Place, Placement, Skin, Stage,
-};
+use super::{Eye, Features, Film, Geometry, Lights, MediumStack, Place, Placement, Skin, Stage};
 use crate::accel::{Box64, TopBvh, Watch};
-use crate::object::{ColorMode, Object, Objects};
+use crate::object::{ColorMode, Object, Objects, Shelf};
 use crate::scene::{Hash, NodeId, Scene};
 
 /// The objects that a scene has one of.
@@ -30,7 +29,9 @@ pub(super) struct Settings {
 pub(super) struct Made {
     pub(super) geometries: Vec<Arc<Geometry>>,
     pub(super) geometry_of: BTreeMap<NodeId, u32>,
-    pub(super) meshes: BTreeMap<Hash, (Arc<Object>, Arc<Geometry>)>,
+    pub(super) shapes: Shelf<Hash, Shaped>,
+    /// How many of them had to be made ready.
+    pub(super) new_shapes: usize,
     pub(super) placements: Vec<Placement>,
     pub(super) materials: Vec<Arc<Object>>,
     pub(super) material_nodes: Vec<NodeId>,
@@ -48,6 +49,7 @@ impl Made {
         settings: Settings,
         objects: Objects,
         (scene, film, mode): (Scene, Film, ColorMode),
+        before: &Cache,
         watch: &Watch,
     ) -> Option<Stage> {
         let during = film.during();
@@ -66,6 +68,8 @@ impl Made {
         let features = Features { media, open_surfaces, nested, motion };
         watch.name("the scene");
         let top = TopBvh::build_watched(&boxes, watch)?;
+        let mut cache = Cache { objects, shapes: self.shapes };
+        cache.inherit(before);
         let mut stage = Stage {
             lights: Lights::new(self.lights, sphere.1, mode),
             top,
@@ -83,7 +87,7 @@ impl Made {
             reach: sphere.1,
             camera_media: MediumStack::default(),
             eye: None,
-            cache: Cache { objects, meshes: self.meshes },
+            cache,
             scene,
             film,
             mode,

@@ -12,6 +12,7 @@ mod features;
 mod flatten;
 mod geometry;
 mod import;
+mod kept;
 mod lights;
 mod made;
 mod media;
@@ -25,7 +26,6 @@ mod shining;
 mod trace;
 mod turning;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -36,6 +36,7 @@ use crate::diag::Diagnostic;
 use crate::object::{ColorMode, Object, Objects};
 use crate::registry::dynamic::{Alarm, FAILED};
 use crate::scene::{Hash, NodeId, Scene};
+use kept::Cache;
 
 pub use analytic::Analytic;
 pub use batch::{Asked, Rooms};
@@ -43,6 +44,7 @@ pub use build::{Built, Unbuilt, build, build_watched};
 pub use eye::{Eye, Seen};
 pub use features::Features;
 pub use geometry::{Geometry, Mesh};
+pub use kept::Anew;
 pub use lights::{
     EmissionNumbers, Emitted, Emitters, Facets, FoundLight, Lamp, LightSource, Lights, Quad,
 };
@@ -130,11 +132,4 @@ fn failures(objects: &Objects, scene: &Scene) -> Vec<Diagnostic> {
         None => Diagnostic::unplaced(FAILED, message),
     });
     told.collect()
-}
-
-/// What one build leaves for the next.
-#[derive(Debug, Default)]
-pub struct Cache {
-    objects: Objects,
-    meshes: BTreeMap<Hash, (Arc<Object>, Arc<Geometry>)>,
 }

@@ -6,6 +6,7 @@
 
 mod color;
 mod conform;
+mod diff;
 mod pose;
 mod print;
 mod value;
@@ -23,6 +24,7 @@ pub use color::Color;
 pub use conform::{
     DefaultUnits, Given, Misfit, conform, describe, number_words, range_words, wanted,
 };
+pub use diff::{Difference, How, called, diff};
 pub use pose::{Key, Pose, Step};
 pub use print::print;
 pub use value::{Hash, Value};
@@ -74,7 +76,7 @@ impl Node {
 }
 
 /// What stands in a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     /// A shape, a light or an asset.
     Node(NodeId),

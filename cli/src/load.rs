@@ -7,7 +7,7 @@ use glam::UVec2;
 use luxel_core::accel::Watch;
 use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::scene::Scene;
-use luxel_core::stage::{self, Stage, Unbuilt};
+use luxel_core::stage::{self, Anew, Stage, Unbuilt};
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure, blaming};
@@ -29,6 +29,8 @@ pub(crate) struct Loaded {
     pub(crate) sources: Sources,
     /// The files that were asked for.
     pub(crate) files: DiskFiles,
+    /// What had to be made; the rest was kept.
+    pub(crate) anew: Anew,
 }
 
 /// Every class that a scene may name: the built-in ones, and those of trusted libraries.
@@ -151,9 +153,11 @@ pub(crate) fn build(
             progress::shown_while(told, *line, build)
         };
         let built = scene.as_ref().map(build);
+        let mut anew = Anew::default();
         let stage = match built {
             Some(Ok(built)) => {
                 diagnostics.extend(built.warnings);
+                anew = built.anew;
                 Some(built.stage)
             }
             Some(Err(Unbuilt::Faulty(found))) => {
@@ -163,7 +167,7 @@ pub(crate) fn build(
             Some(Err(Unbuilt::Cancelled)) | None => None,
         };
         let stage = stage.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
-        Loaded { scene, stage, diagnostics, sources, files }
+        Loaded { scene, stage, diagnostics, sources, files, anew }
     })?;
     if watch.is_cancelled() {
         return Err(Failure::new(Exit::Incomplete, CANCELLED));

@@ -185,7 +185,7 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let pixels = Pixels::new(glam::UVec2::ONE, &[1.0; 3], &[], vec![]);
         let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
-        let settings = luxel_core::stage::Film::default();
+        let settings = stage::Film::default();
         let seen = luxel_core::render::Reached { step: 1, samples: 1 };
         Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
     };

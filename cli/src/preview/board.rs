@@ -45,7 +45,13 @@ impl Board {
 
     /// Puts up a message.
     pub(super) fn pin(&self, topic: Topic, bytes: Bytes) {
+        self.alter(topic, |_| Some(bytes));
+    }
+
+    /// Puts up another form of the last message of its topic, if there is one.
+    pub(super) fn alter(&self, topic: Topic, form: impl FnOnce(&[u8]) -> Option<Bytes>) {
         let mut notes = self.notes();
+        let Some(bytes) = form(&notes[topic as usize].1) else { return };
         self.changed.send_modify(|number| {
             *number += 1;
             notes[topic as usize] = (*number, bytes);

@@ -20,6 +20,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
 
+use luxel_core::stage;
 use serde_json::json;
 use tempfile::NamedTempFile;
 use tokio::sync::oneshot;
@@ -118,6 +119,11 @@ impl Screen {
     /// Shows a picture in place of the last one of its side. Pages that are slow miss those between.
     pub(crate) fn show(&self, frame: &Frame) {
         self.0.pin(frame.side.topic(), frame.encode().into());
+    }
+
+    /// Shows the last picture as a film wants it shown now.
+    pub(crate) fn shown_as(&self, settings: &stage::Film) {
+        self.0.alter(Side::A.topic(), |picture| frame::shown_as(picture, settings).map(Into::into));
     }
 
     /// Lays messages over the last good picture; none takes them away.

@@ -4,15 +4,16 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::Scope;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
 use luxel_core::render::{Control, Look};
 
 use super::Args;
 use super::changes::{Changes, Noticed, Wake};
+use super::edit::{self, Edit};
 use super::page::{self, Page};
-use super::round::{self, Course, Read};
+use super::round::{Course, Read, Sitting};
 use super::shown::{Shown, Subject};
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
@@ -144,7 +145,7 @@ impl Watching<'_, '_> {
 
     fn load(&mut self) -> Result<Next, Failure> {
         let Args { file, load, render, .. } = self.args;
-        let form = self.args.form();
+        let (form, begun) = (self.args.form(), Instant::now());
         let (line, known) = (!self.args.quiet, self.changes.known().clone());
         let course = load::Course { known, line, ..load::Course::default() };
         let text = load::read(file, load, render.size, &self.plugins, &course)?;
@@ -160,7 +161,6 @@ impl Watching<'_, '_> {
             self.page.inspect(|page| page.problems(&told));
             return Ok(Next::Wait);
         }
-        let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
         let (loaded, noticed) = self.build(text, &course);
         let loaded = match noticed {
@@ -177,11 +177,20 @@ impl Watching<'_, '_> {
             let told = [(&loaded.diagnostics, &loaded.sources)];
             self.page.inspect(|page| page.problems(&told));
         }
-        let Loaded { stage, files, sources, mut diagnostics, .. } = loaded;
-        if let (Some(stage), Some(hash)) = (stage, hash) {
-            let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
+        let Loaded { scene, stage, files, sources, mut diagnostics, anew } = loaded;
+        if let (Some(stage), Some(scene)) = (stage, scene) {
+            let before = self.shown.as_ref().map(|Shown { subject, .. }| subject);
+            let changes = before.map_or(vec![], |before| {
+                edit::changes((&before.scene, &before.files), (&scene, &watched), &texts)
+            });
+            let edit = Edit::new(changes, anew, begun.elapsed().as_secs_f64());
+            if !self.args.quiet && !self.args.json {
+                report::aside(&edit.words());
+            }
+            let (scene, stage) = (Arc::new(scene), Arc::new(stage));
+            let read = Arc::new(Read { files, sources });
             let warnings = diagnostics.split_off(n_told.min(diagnostics.len()));
-            self.show(Subject { hash, stage, read, files: watched, texts, warnings });
+            self.turn_to(Subject { scene, stage, read, files: watched, texts, warnings }, edit);
         }
         Ok(Next::Wait)
     }
@@ -214,8 +223,25 @@ impl Watching<'_, '_> {
         (built.unwrap_or_else(|payload| Err(lost(payload))), noticed)
     }
 
+    /// Goes on with the picture before if only how it is shown has changed, else begins one.
+    fn turn_to(&mut self, subject: Subject, edit: Edit) {
+        let Some(shown) = &mut self.shown else { return self.show(subject, edit) };
+        if !subject.is_measured_by(&shown.subject) {
+            return self.show(subject, edit);
+        }
+        let of = (subject.stage.clone(), subject.read.clone());
+        let course = Course { control: &shown.control, guard: self.guard, beat: &Beat::silent() };
+        let written = shown.sitting.show_as(of, edit, self.args, &course);
+        shown.subject = subject;
+        self.page.inspect(|page| page.shows(&shown.subject.stage, &shown.subject.read));
+        if let Err(failure) = written {
+            report::failure(&failure);
+            self.page.inspect(|page| page.lost(&failure));
+        }
+    }
+
     /// Ends the picture before, and begins one.
-    fn show(&mut self, subject: Subject) {
+    fn show(&mut self, subject: Subject, edit: Edit) {
         if let Some(before) = self.shown.take() {
             before.control.supersede();
             before.ended();
@@ -228,16 +254,18 @@ impl Watching<'_, '_> {
         let follow =
             |page: &Page| -> Box<Look<'_>> { Box::new(page.follow(&stage, &read, of_samples)) };
         let mut look = page.map_or_else(page::unseen, follow);
+        let sitting = Arc::new(Sitting::new(stage.clone(), read.clone(), Some(edit)));
+        let sits = sitting.clone();
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
-            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut *look) {
+            if let Err(failure) = sits.render(args, &course, &mut *look) {
                 report::failure(&failure);
                 page.inspect(|page| page.lost(&failure));
             } else if stage.has_failed() {
                 page.inspect(|page| page.broke(&stage.failures(), &read.sources));
             }
         });
-        self.shown = Some(Shown { subject, control, thread });
+        self.shown = Some(Shown { subject, sitting, control, thread });
     }
 
     /// Ends the picture in hand.

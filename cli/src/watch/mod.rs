@@ -2,6 +2,7 @@
 
 mod apart;
 mod changes;
+mod edit;
 mod here;
 mod page;
 mod round;

@@ -86,6 +86,12 @@ impl Page {
         *self.broken.lock().unwrap_or_else(PoisonError::into_inner) = told;
     }
 
+    /// The picture shows this from now on, which differs only in how it is shown.
+    pub(super) fn shows(&self, stage: &Arc<Stage>, read: &Arc<Read>) {
+        *lock(&self.about) = Some((stage.clone(), read.clone()));
+        self.screen.shown_as(&stage.film);
+    }
+
     /// Shows pictures of a scene from now on, of so many samples in the end.
     pub(super) fn follow(
         &self,
@@ -96,7 +102,8 @@ impl Page {
         *lock(&self.about) = Some((stage.clone(), read.clone()));
         self.broken.lock().unwrap_or_else(PoisonError::into_inner).clear();
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
-        let (screen, settings) = (self.screen.clone(), stage.film.clone());
+        let (screen, about) = (self.screen.clone(), self.about.clone());
+        let settings = stage.film.clone();
         let mut last = None;
         move |film: &Film, now: Reached| {
             let is_last = now.step == 1 && now.samples >= of_samples;
@@ -104,7 +111,9 @@ impl Page {
             if !is_last && (is_soon || !screen.is_watched()) {
                 return;
             }
-            let frame = Frame::of_film(film, &settings, (now, of_samples));
+            let shown = lock(&about).as_ref().map(|(stage, _)| stage.film.clone());
+            let settings = shown.as_ref().unwrap_or(&settings);
+            let frame = Frame::of_film(film, settings, (now, of_samples));
             screen.show(&Frame { generation, ..frame });
             screen.status(&status(now, of_samples));
             last = Some(Instant::now());

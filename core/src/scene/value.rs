@@ -56,14 +56,16 @@ pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
     *hasher.finalize().as_bytes()
 }
 
-/// The hash of a scene: of what stands in its places, and of its settings.
-pub(super) fn hash_scene(scene: &Scene) -> Hash {
+/// The hash of a scene: of what stands in its places, and of its settings, among them the film as it
+/// is given here.
+pub(super) fn hash_scene(scene: &Scene, film: Option<Hash>) -> Hash {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&hash_group(scene, &scene.root, &group_hashes(scene)));
     hash_pose(&mut hasher, &scene.camera_pose);
-    let Scene { camera, film, integrator, sampler, filter, medium, .. } = scene;
-    for setting in [camera, film, integrator, sampler, filter, medium] {
-        hasher.update(&setting.map_or([0; 32], |id| scene.node(id).hash));
+    let Scene { camera, integrator, sampler, filter, medium, .. } = scene;
+    let of = |id: &Option<NodeId>| id.map(|id| scene.node(id).hash);
+    for setting in [of(camera), film, of(integrator), of(sampler), of(filter), of(medium)] {
+        hasher.update(&setting.unwrap_or([0; 32]));
     }
     *hasher.finalize().as_bytes()
 }

@@ -117,7 +117,7 @@ impl Screen {
 
     /// Shows a picture in place of the last one of its side. Pages that are slow miss those between.
     pub(crate) fn show(&self, frame: &Frame) {
-        self.0.pin(frame.side.topic(), frame.encode().into());
+        self.0.pin(frame.side.topic(), frame.generation, frame.encode().into());
     }
 
     /// Lays messages over the last good picture; none takes them away.

@@ -19,6 +19,8 @@ mod dynamic;
 #[cfg(test)]
 mod disk;
 #[cfg(test)]
+mod edits;
+#[cfg(test)]
 mod extremes;
 #[cfg(test)]
 mod generated;

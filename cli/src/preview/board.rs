@@ -30,8 +30,25 @@ impl Topic {
 
 /// The latest message of each topic with its number, which grows.
 pub(super) struct Board {
-    notes: Mutex<[(u64, Bytes); Topic::ALL.len()]>,
+    notes: Mutex<[Note; Topic::ALL.len()]>,
     changed: watch::Sender<u64>,
+}
+
+#[derive(Default)]
+struct Note {
+    number: u64,
+    bytes: Bytes,
+    /// Of pictures, that of the edit that they show, and the number of its first one.
+    generation: u64,
+    first: u64,
+}
+
+/// A message that a page has not been told.
+pub(super) struct News {
+    pub(super) number: u64,
+    pub(super) bytes: Bytes,
+    /// Whether the page has no picture of this edit yet.
+    pub(super) is_first: bool,
 }
 
 impl Board {
@@ -39,34 +56,45 @@ impl Board {
         Self { notes: Mutex::default(), changed: watch::Sender::new(0) }
     }
 
-    fn notes(&self) -> MutexGuard<'_, [(u64, Bytes); Topic::ALL.len()]> {
+    fn notes(&self) -> MutexGuard<'_, [Note; Topic::ALL.len()]> {
         self.notes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts up a message.
-    pub(super) fn pin(&self, topic: Topic, bytes: Bytes) {
-        self.alter(topic, |_| Some(bytes));
+    /// Puts up a picture of an edit, or another message of one topic.
+    pub(super) fn pin(&self, topic: Topic, generation: u64, bytes: Bytes) {
+        self.change(topic, |note| {
+            let is_first = note.number == 0 || note.generation != generation;
+            Some((generation, is_first, bytes))
+        });
     }
 
     /// Puts up another form of the last message of its topic, if there is one.
     pub(super) fn alter(&self, topic: Topic, form: impl FnOnce(&[u8]) -> Option<Bytes>) {
+        self.change(topic, |note| Some((note.generation, false, form(&note.bytes)?)));
+    }
+
+    /// The next message of a topic: its generation, whether it is the first of that, its bytes.
+    fn change(&self, topic: Topic, next: impl FnOnce(&Note) -> Option<(u64, bool, Bytes)>) {
         let mut notes = self.notes();
-        let Some(bytes) = form(&notes[topic as usize].1) else { return };
+        let note = &mut notes[topic as usize];
+        let Some((generation, is_first, bytes)) = next(note) else { return };
         self.changed.send_modify(|number| {
             *number += 1;
-            notes[topic as usize] = (*number, bytes);
+            let first = if is_first { *number } else { note.first };
+            *note = Note { number: *number, bytes, generation, first };
         });
     }
 
     /// Puts up a message in words.
     pub(super) fn tell(&self, topic: Topic, message: &Value) {
-        self.pin(topic, message.to_string().into());
+        self.pin(topic, 0, message.to_string().into());
     }
 
     /// The message of this topic if it is later than number `than`.
-    pub(super) fn later(&self, topic: Topic, than: u64) -> Option<(u64, Bytes)> {
-        let (number, bytes) = &self.notes()[topic as usize];
-        (*number > than).then(|| (*number, bytes.clone()))
+    pub(super) fn later(&self, topic: Topic, than: u64) -> Option<News> {
+        let Note { number, bytes, first, .. } = &self.notes()[topic as usize];
+        let news = || News { number: *number, bytes: bytes.clone(), is_first: *first > than };
+        (*number > than).then(news)
     }
 
     /// Whether anybody is told of changes.
@@ -88,12 +116,31 @@ mod tests {
     fn the_latest_message_of_a_topic_wins_and_is_told_once() {
         let board = Board::new();
         assert!(board.later(Topic::PictureA, 0).is_none());
-        board.pin(Topic::PictureA, Bytes::from_static(b"one"));
-        board.pin(Topic::PictureA, Bytes::from_static(b"two"));
-        board.pin(Topic::Status, Bytes::from_static(b"busy"));
-        let (number, bytes) = board.later(Topic::PictureA, 0).unwrap();
-        assert_eq!(&bytes[..], b"two");
-        assert!(board.later(Topic::PictureA, number).is_none());
-        assert_eq!(&board.later(Topic::Status, 0).unwrap().1[..], b"busy");
+        board.pin(Topic::PictureA, 1, Bytes::from_static(b"one"));
+        board.pin(Topic::PictureA, 1, Bytes::from_static(b"two"));
+        board.tell(Topic::Status, &"busy".into());
+        let news = board.later(Topic::PictureA, 0).unwrap();
+        assert_eq!(&news.bytes[..], b"two");
+        assert!(board.later(Topic::PictureA, news.number).is_none());
+        assert_eq!(&board.later(Topic::Status, 0).unwrap().bytes[..], b"\"busy\"");
+    }
+
+    #[test]
+    fn a_page_is_told_what_is_its_first_picture_of_an_edit() {
+        let board = Board::new();
+        let pin = |generation| board.pin(Topic::PictureA, generation, Bytes::new());
+        let news = |than| board.later(Topic::PictureA, than).unwrap();
+        pin(1);
+        let one = news(0);
+        assert!(one.is_first);
+        pin(1);
+        assert!(!news(one.number).is_first);
+        pin(2);
+        pin(2);
+        // Whoever missed its first has not seen it either.
+        assert!(news(one.number).is_first);
+        let two = news(0).number;
+        pin(2);
+        assert!(!news(two).is_first);
     }
 }

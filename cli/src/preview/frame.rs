@@ -195,14 +195,13 @@ impl Pixels {
     #[expect(clippy::cast_possible_truncation, reason = "a screen shows less than 32 bits")]
     fn of_film(film: &Film, step: u32) -> Self {
         let (mut rgb, mut se, mut n) = (vec![], vec![], vec![]);
-        let corner = film.window.min;
-        let on = |at: UVec2| (at - corner) % step == UVec2::ZERO;
-        for (_, pixel) in film.pixels().filter(|(at, _)| on(*at)) {
+        let size = (film.window.size + step - 1) / step;
+        for at in Rect::new(UVec2::ZERO, size).points() {
+            let pixel = film.pixel(film.window.min + at * step);
             rgb.extend(pixel.mean.to_array().map(|v| v as f32));
             se.extend(pixel.standard_error().to_array().map(|v| v as f32));
             n.push(pixel.n);
         }
-        let size = (film.window.size + step - 1) / step;
         Self { step, ..Self::new(size, &rgb, &se, n) }
     }
 }

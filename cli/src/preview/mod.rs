@@ -118,7 +118,7 @@ impl Screen {
 
     /// Shows a picture in place of the last one of its side. Pages that are slow miss those between.
     pub(crate) fn show(&self, frame: &Frame) {
-        self.0.pin(frame.side.topic(), frame.encode().into());
+        self.0.pin(frame.side.topic(), frame.generation, frame.encode().into());
     }
 
     /// Shows the last picture as a film wants it shown now.

@@ -37,7 +37,7 @@ enum Said {
 pub(super) const ASKED_BYTES: usize = 4 << 10;
 /// Commands that wait for the program; further ones are dropped.
 pub(super) const WAITING_COMMANDS: usize = 64;
-/// At most ten pictures a second.
+/// At most ten pictures of an edit a second.
 pub(crate) const PACE: Duration = Duration::from_millis(100);
 /// A page that takes nothing for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -51,14 +51,15 @@ pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSen
         let _ = changes.borrow_and_update();
         let early = Instant::now() < next;
         for topic in Topic::ALL {
-            if topic.is_picture() && (drawing || early) {
+            let Some(news) = board.later(topic, told[topic as usize]) else { continue };
+            // Whoever edits waits for the first picture, and for no pace.
+            if topic.is_picture() && (drawing || early && !news.is_first) {
                 continue;
             }
-            let Some((number, bytes)) = board.later(topic, told[topic as usize]) else { continue };
-            if send(&mut socket, topic, bytes).await.is_none() {
+            if send(&mut socket, topic, news.bytes).await.is_none() {
                 return;
             }
-            told[topic as usize] = number;
+            told[topic as usize] = news.number;
             if topic.is_picture() {
                 (drawing, next) = (true, Instant::now() + PACE);
             }

@@ -109,7 +109,9 @@ impl Watching<'_, '_> {
     /// If standard error cannot be written.
     fn rounds(&mut self, session: &mut Session, around: &Surroundings) -> Result<(), Failure> {
         loop {
-            let next = match self.round()? {
+            let next = self.round()?;
+            self.page.inspect(|page| page.has_read());
+            let next = match next {
                 Next::Wait if self.changes.wait() => Next::Read,
                 Next::Wait => Next::End,
                 next => next,
@@ -117,6 +119,7 @@ impl Watching<'_, '_> {
             if next == Next::End {
                 return Ok(());
             }
+            self.page.inspect(|page| page.reading());
             self.renew(session, (&self.args.plugins, around))?;
         }
     }

@@ -31,6 +31,8 @@ pub(super) struct Page {
     screen: Screen,
     about: About,
     generation: AtomicU64,
+    /// How far the picture is.
+    standing: Arc<Mutex<String>>,
     /// Why the picture of the scene is not what it should be.
     broken: Mutex<Vec<Problem>>,
     ended: Arc<AtomicBool>,
@@ -55,7 +57,18 @@ impl Page {
         let answering = std::thread::spawn(move || answer(&preview, &subject, &over));
         let (generation, broken, answering) =
             (AtomicU64::new(0), Mutex::default(), Some(answering));
-        Ok(Self { screen, about, generation, broken, ended, answering })
+        let standing = Arc::default();
+        Ok(Self { screen, about, generation, standing, broken, ended, answering })
+    }
+
+    /// Tells that a save has been noticed, until it is known what it shows.
+    pub(super) fn reading(&self) {
+        self.screen.status("reading");
+    }
+
+    /// Tells how far the picture is.
+    pub(super) fn has_read(&self) {
+        self.screen.status(&lock(&self.standing));
     }
 
     /// Lays messages over the last good picture, each list with the texts that it is about; none
@@ -103,7 +116,8 @@ impl Page {
         self.broken.lock().unwrap_or_else(PoisonError::into_inner).clear();
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
         let (screen, about) = (self.screen.clone(), self.about.clone());
-        let settings = stage.film.clone();
+        let (standing, settings) = (self.standing.clone(), stage.film.clone());
+        *lock(&standing) = "rendering".to_owned();
         let mut last = None;
         move |film: &Film, now: Reached| {
             let is_last = now.step == 1 && now.samples >= of_samples;
@@ -115,7 +129,9 @@ impl Page {
             let settings = shown.as_ref().unwrap_or(&settings);
             let frame = Frame::of_film(film, settings, (now, of_samples));
             screen.show(&Frame { generation, ..frame });
-            screen.status(&status(now, of_samples));
+            let status = status(now, of_samples);
+            screen.status(&status);
+            *lock(&standing) = status;
             last = Some(Instant::now());
         }
     }
@@ -145,8 +161,8 @@ fn status(now: Reached, of_samples: u32) -> String {
     }
 }
 
-fn lock(about: &About) -> MutexGuard<'_, Option<(Arc<Stage>, Arc<Read>)>> {
-    about.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Answers what the page asks, until the watch has ended.

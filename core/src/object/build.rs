@@ -130,11 +130,14 @@ impl<'a> Builder<'a> {
         if let Some(object) = self.objects.by_content.now().get(&key) {
             return Some(object.clone());
         }
-        let may_stay =
-            |it: &&Arc<Object>| it.is_current(self.registry) && it.is_unchanged(self.files);
-        if let Some(object) = self.before.by_content.all(key).find(may_stay) {
+        let may_stay = |it: &&Arc<Object>| {
+            it.is_current(self.registry) && it.is_unchanged(self.files, &self.embedded)
+        };
+        if let Some(object) = self.before.by_content.all(key).find(may_stay).cloned() {
+            self.keep_parts(object.class(), node);
+            self.tell(&object, node);
             self.objects.by_content.put(key, object.clone());
-            return Some(object.clone());
+            return Some(object);
         }
         let Some(class) = self.registry.class(node.kind, &node.class) else {
             let message = format!("there is no {} `{}`", node.kind, node.class);
@@ -145,6 +148,32 @@ impl<'a> Builder<'a> {
         self.objects.by_content.put(key, object.clone());
         self.objects.made += 1;
         Some(object)
+    }
+
+    /// Keeps what an object that is kept was made of, in the order in which it was made.
+    fn keep_parts(&mut self, class: &Class, node: &Node) {
+        for param in class.params.iter().filter(|param| param.offset != usize::MAX) {
+            match (param.ty, node.get(param.name).map(|argument| &argument.value)) {
+                (Type::Object(Kind::Shape), _) => {}
+                (Type::Object(Kind::Texture), Some(Value::Node(id))) => _ = self.build_asked(*id),
+                (_, Some(Value::Node(id) | Value::Moved(id, _))) => _ = self.build(*id),
+                _ => {}
+            }
+        }
+    }
+
+    /// A texture that is asked for numbers says the same in every mode: a mesh keeps its form.
+    fn build_asked(&mut self, id: NodeId) -> Option<Arc<Object>> {
+        let mode = std::mem::replace(&mut self.mode, ColorMode::Rgb);
+        let texture = self.build(id);
+        self.mode = mode;
+        texture
+    }
+
+    /// Tells what an object warned of when it was made.
+    fn tell(&mut self, object: &Object, node: &Node) {
+        let warning = |told: &String| Diagnostic::warning("E0417", node.span, told);
+        self.diagnostics.extend(object.warnings.iter().map(warning));
     }
 
     /// An object of a class with its defaults alone.
@@ -196,6 +225,7 @@ impl<'a> Builder<'a> {
             watch,
             needs: None,
             reads: vec![],
+            warnings: vec![],
         };
         if let Some(fault) = object.is_too_large() {
             self.fault(fault, None, node);
@@ -215,13 +245,8 @@ impl<'a> Builder<'a> {
         }
         let reader = Reader::new(self.files, &self.embedded);
         let built = object.build_shared(&reader);
-        let (reads, warnings) = reader.finish();
-        object.reads = reads;
-        for warning in warnings {
-            if let Some(node) = node {
-                self.diagnostics.push(Diagnostic::warning("E0417", node.span, warning));
-            }
-        }
+        (object.reads, object.warnings) = reader.finish();
+        node.inspect(|node| self.tell(object, node));
         if let Err(faults) = built {
             for fault in faults {
                 self.fault(fault, None, node);
@@ -267,13 +292,9 @@ impl<'a> Builder<'a> {
             (Type::Part, Some(Value::Node(id))) => self.part(draft, param, *id, None)?,
             (Type::Part, Some(Value::Moved(id, to))) => self.part(draft, param, *id, Some(to))?,
             (Type::Object(Kind::Texture), Some(Value::Node(id))) => {
-                // What is asked for numbers says the same in every mode: a mesh keeps its form.
-                let mode = std::mem::replace(&mut self.mode, ColorMode::Rgb);
-                let texture = self.part_of(draft, *id);
-                self.mode = mode;
-                if let Some(texture) = texture {
-                    draft.asked(param.offset, &texture);
-                }
+                let texture = self.build_asked(*id);
+                draft.lacks |= texture.is_none();
+                texture.inspect(|texture| draft.asked(param.offset, texture));
             }
             (Type::Object(_), Some(Value::Node(id))) => {
                 if let Some(child) = self.part_of(draft, *id) {

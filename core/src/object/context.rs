@@ -47,11 +47,9 @@ impl<'a> Reader<'a> {
     }
 
     fn read_path(&self, path: &Path) -> Result<Arc<[u8]>, String> {
-        if let Some(bytes) = self.embedded.get(path) {
-            return Ok(bytes.clone());
-        }
-        let result = self.files.read(path);
-        let hash = result.as_ref().ok().and_then(|_| self.files.hash(path));
+        let result =
+            self.embedded.get(path).map_or_else(|| self.files.read(path), |it| Ok(it.clone()));
+        let hash = result.as_ref().ok().and_then(|_| hash(path, self.files, self.embedded));
         let bytes = result.as_ref().map_or(0, |bytes| bytes.len());
         let read = Read { path: path.to_path_buf(), hash, bytes };
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push(read);
@@ -60,8 +58,13 @@ impl<'a> Reader<'a> {
 }
 
 /// Whether every file is still what it was.
-pub(super) fn unchanged(reads: &[Read], files: &dyn Files) -> bool {
-    reads.iter().all(|read| files.hash(&read.path) == read.hash)
+pub(super) fn unchanged(reads: &[Read], files: &dyn Files, embedded: &Embedded) -> bool {
+    reads.iter().all(|read| hash(&read.path, files, embedded) == read.hash)
+}
+
+/// What stands inside an imported file may have changed as any other.
+fn hash(path: &Path, files: &dyn Files, embedded: &Embedded) -> Option<Hash> {
+    embedded.get(path).map_or_else(|| files.hash(path), |it| Some(*blake3::hash(it).as_bytes()))
 }
 
 impl BuildContext for Reader<'_> {

@@ -88,6 +88,8 @@ pub struct Object {
     watch: Option<Arc<Watch>>,
     /// Files that were read to build it, with the hash of their bytes.
     reads: Vec<context::Read>,
+    /// What was warned of while it was built: holds for as long as it is kept.
+    warnings: Vec<String>,
 }
 
 impl Object {
@@ -129,9 +131,9 @@ impl Object {
     }
 
     /// Whether the files that it and its parts were built from are what they were.
-    fn is_unchanged(&self, files: &dyn Files) -> bool {
-        context::unchanged(&self.reads, files)
-            && self.parts.iter().all(|part| part.is_unchanged(files))
+    fn is_unchanged(&self, files: &dyn Files, embedded: &Embedded) -> bool {
+        context::unchanged(&self.reads, files, embedded)
+            && self.parts.iter().all(|part| part.is_unchanged(files, embedded))
     }
 
     /// What is to be said where it takes more room or time at one point than an object may.

@@ -242,11 +242,19 @@ impl Maker<'_> {
         let may_stay =
             |(kept, geometry): &&Shaped| Arc::ptr_eq(kept, &object) && geometry.is_of(self.during);
         let (own, before) = (&self.made.shapes, &self.cache.shapes);
+        let is_told = own.now().contains_key(&hash);
         let known = own.now().get(&hash).into_iter().chain(before.all(hash)).find(may_stay);
         let geometry = match known {
             Some((_, geometry)) => geometry.clone(),
             None => Arc::new(self.new_geometry(id, &object)?),
         };
+        if let (false, Geometry::Mesh(mesh)) = (is_told, &*geometry)
+            && mesh.dropped() > 0
+        {
+            let message = format!("{} triangles without area left out", mesh.dropped());
+            let span = self.scene.node(id).span;
+            self.builder.diagnostics.push(Diagnostic::warning("E0418", span, message));
+        }
         self.made.shapes.put(hash, (object, geometry.clone()));
         self.made.geometries.push(geometry);
         let last = index(self.made.geometries.len() - 1);
@@ -263,13 +271,7 @@ impl Maker<'_> {
         };
         let span = self.scene.node(id).span;
         match Mesh::build(triangles, self.during, self.watch) {
-            Ok(mesh) => {
-                if mesh.dropped() > 0 {
-                    let message = format!("{} triangles without area left out", mesh.dropped());
-                    self.builder.diagnostics.push(Diagnostic::warning("E0418", span, message));
-                }
-                Some(Geometry::Mesh(Arc::new(mesh)))
-            }
+            Ok(mesh) => Some(Geometry::Mesh(Arc::new(mesh))),
             Err(BuildError::Cancelled) => None,
             Err(error) => {
                 self.builder.diagnostics.push(mesh_error(error, span));

@@ -95,3 +95,22 @@ fn another_exposure_shows_what_was_measured_in_another_way() {
     assert_eq!(fresh.code, 0, "{fresh:?}");
     assert_eq!(folder.read("c.exr"), folder.read("b.exr"));
 }
+
+#[test]
+fn once_a_scene_is_stable_its_picture_is_the_end_and_a_command_follows_it() {
+    let folder = Folder::new("watch-once").with("a.scene", &SCENE.replace("radius", "radus"));
+    let command = "cp $LUXEL_PNG seen.png; echo $LUXEL_SCENE $LUXEL_EXR; exit 3";
+    let watching =
+        folder.start(&["watch", "a.scene", "--once-stable", "--json", "--exec", command]);
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    assert!(!folder.names().contains(&"a.png".to_owned()), "a mistake is not the end");
+    folder.write("a.scene", SCENE);
+    let done = watching.end();
+    assert_eq!(done.code, 0, "{done:?}");
+    assert_eq!(folder.read("seen.png"), folder.read("a.png"));
+    assert!(
+        done.err.contains("a.scene a.exr\n") && done.err.contains("exit status: 3"),
+        "{done:?}"
+    );
+    assert_eq!(done.out.lines().count(), 1, "one picture, told once: {done:?}");
+}

@@ -7,12 +7,12 @@ use std::thread::Scope;
 use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
-use luxel_core::render::{Control, Look};
+use luxel_core::render::Control;
 
 use super::Args;
+use super::audience::Audience;
 use super::changes::{Changes, Noticed, Wake};
 use super::edit::{self, Edit};
-use super::page::{self, Page};
 use super::round::{Course, Read, Sitting};
 use super::shown::{Shown, Subject};
 use crate::args::PluginArgs;
@@ -26,6 +26,9 @@ use crate::report::{self, Stream};
 
 /// Between two looks at whether a scene is ready.
 const TICK: Duration = Duration::from_millis(1);
+
+/// So long nothing is saved when a scene is called stable.
+const STILL: Duration = Duration::from_millis(120);
 
 /// What Ctrl-C ends: the render and the build in hand.
 #[derive(Clone, Default)]
@@ -63,33 +66,39 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         build.cancel();
     })?;
     changes.arm([args.file.as_path()]);
-    let page = args.preview.then(|| Page::start(&args.file, &args.page)).transpose()?;
+    let audience = Audience::new(args)?;
     std::thread::scope(|scope| {
         let mut watching = Watching {
             args,
             scope,
             guard: &guard,
-            page: page.as_ref(),
+            audience: &audience,
             in_hand,
             plugins,
             changes,
             asked: Asked::default(),
             shown: None,
             impatient: true,
+            is_good: false,
         };
         let ended = watching.rounds(&mut session, &surroundings);
-        watching.end();
-        ended
-    })?;
-    report::note("watching has ended");
-    Ok(Exit::Fine)
+        let has_picture = watching.end();
+        ended.map(|()| has_picture)
+    })
+    .map(|has_picture| {
+        if args.then.once_stable {
+            return if has_picture { Exit::Fine } else { Exit::Input };
+        }
+        report::note("watching has ended");
+        Exit::Fine
+    })
 }
 
 struct Watching<'scope, 'env> {
     args: &'env Args,
     scope: &'scope Scope<'scope, 'env>,
     guard: &'env Guard,
-    page: Option<&'env Page>,
+    audience: &'env Audience,
     in_hand: InHand,
     plugins: Plugins,
     changes: Changes,
@@ -100,6 +109,8 @@ struct Watching<'scope, 'env> {
     /// Whether a save ends the making ready of a scene. Not twice in a row: however fast saves come,
     /// pictures follow.
     impatient: bool,
+    /// Whether the last load gave a scene.
+    is_good: bool,
 }
 
 impl Watching<'_, '_> {
@@ -110,17 +121,32 @@ impl Watching<'_, '_> {
     fn rounds(&mut self, session: &mut Session, around: &Surroundings) -> Result<(), Failure> {
         loop {
             let next = self.round()?;
-            self.page.inspect(|page| page.has_read());
+            self.audience.page().inspect(|page| page.has_read());
             let next = match next {
-                Next::Wait if self.changes.wait() => Next::Read,
-                Next::Wait => Next::End,
+                Next::Wait => self.wait(),
                 next => next,
             };
             if next == Next::End {
                 return Ok(());
             }
-            self.page.inspect(|page| page.reading());
+            self.audience.page().inspect(|page| page.reading());
             self.renew(session, (&self.args.plugins, around))?;
+        }
+    }
+
+    /// Waits for a save, or for the picture if that is the end.
+    fn wait(&mut self) -> Next {
+        loop {
+            let noticed = self.changes.within(STILL);
+            let is_done = || self.shown.as_ref().is_some_and(|it| it.thread.is_finished());
+            match noticed {
+                Noticed::Save => return Next::Read,
+                Noticed::Stop => return Next::End,
+                Noticed::Nothing if self.args.then.once_stable && self.is_good && is_done() => {
+                    return Next::End;
+                }
+                Noticed::Nothing => {}
+            }
         }
     }
 
@@ -132,8 +158,7 @@ impl Watching<'_, '_> {
         match self.load() {
             // A panic in a plugin ends this attempt, not the watch.
             Err(failure) if failure.exit == Exit::Ours => {
-                report::failure(&failure);
-                self.page.inspect(|page| page.failed(&failure));
+                self.audience.failed(&failure);
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
                 let told = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
                 let also = libraries.chain([self.args.file.as_path()]);
@@ -151,17 +176,19 @@ impl Watching<'_, '_> {
         let (form, begun) = (self.args.form(), Instant::now());
         let (line, known) = (!self.args.quiet, self.changes.known().clone());
         let course = load::Course { known, line, ..load::Course::default() };
+        self.is_good = false;
         let text = load::read(file, load, render.size, &self.plugins, &course)?;
         self.asked = text.files.shared().clone();
         if let Some(Shown { subject, .. }) = &mut self.shown
             && subject.is_of(&text, self.changes.known())
         {
+            self.is_good = true;
             subject.read_again(&text);
             self.changes.expect(subject.files.clone());
             report::diagnostics(&text.diagnostics, &text.sources, form, Stream::Error)?;
             let Subject { warnings, read, .. } = &*subject;
             let told = [(&text.diagnostics, &text.sources), (warnings, &read.sources)];
-            self.page.inspect(|page| page.problems(&told));
+            self.audience.page().inspect(|page| page.problems(&told));
             return Ok(Next::Wait);
         }
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
@@ -178,10 +205,11 @@ impl Watching<'_, '_> {
         if loaded.stage.is_some() || !self.changes.more_to_come() {
             report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
             let told = [(&loaded.diagnostics, &loaded.sources)];
-            self.page.inspect(|page| page.problems(&told));
+            self.audience.page().inspect(|page| page.problems(&told));
         }
         let Loaded { scene, stage, files, sources, mut diagnostics, anew } = loaded;
         if let (Some(stage), Some(scene)) = (stage, scene) {
+            self.is_good = true;
             let before = self.shown.as_ref().map(|Shown { subject, .. }| subject);
             let changes = before.map_or(vec![], |before| {
                 edit::changes((&before.scene, &before.files), (&scene, &watched), &texts)
@@ -236,11 +264,8 @@ impl Watching<'_, '_> {
         let course = Course { control: &shown.control, guard: self.guard, beat: &Beat::silent() };
         let written = shown.sitting.show_as(of, edit, self.args, &course);
         shown.subject = subject;
-        self.page.inspect(|page| page.shows(&shown.subject.stage, &shown.subject.read));
-        if let Err(failure) = written {
-            report::failure(&failure);
-            self.page.inspect(|page| page.lost(&failure));
-        }
+        self.audience.page().inspect(|page| page.shows(&shown.subject.stage, &shown.subject.read));
+        self.audience.told(written);
     }
 
     /// Ends the picture before, and begins one.
@@ -251,32 +276,30 @@ impl Watching<'_, '_> {
         }
         let control = Arc::new(Control::default());
         self.in_hand.get().0.clone_from(&control);
-        let (args, guard, page) = (self.args, self.guard, self.page);
+        let (args, guard, audience) = (self.args, self.guard, self.audience);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
         let of_samples = args.render.options().samples(&stage);
-        let follow =
-            |page: &Page| -> Box<Look<'_>> { Box::new(page.follow(&stage, &read, of_samples)) };
-        let mut look = page.map_or_else(page::unseen, follow);
+        let mut look = audience.follow(&stage, &read, of_samples);
         let sitting = Arc::new(Sitting::new(stage.clone(), read.clone(), Some(edit)));
         let sits = sitting.clone();
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
-            if let Err(failure) = sits.render(args, &course, &mut *look) {
-                report::failure(&failure);
-                page.inspect(|page| page.lost(&failure));
-            } else if stage.has_failed() {
-                page.inspect(|page| page.broke(&stage.failures(), &read.sources));
+            audience.told(sits.render(args, &course, &mut look));
+            if let Some(page) = audience.page().filter(|_| stage.has_failed()) {
+                page.broke(&stage.failures(), &read.sources);
             }
         });
         self.shown = Some(Shown { subject, sitting, control, thread });
     }
 
-    /// Ends the picture in hand.
-    fn end(&mut self) {
-        if let Some(shown) = self.shown.take() {
+    /// Ends the picture in hand: whether it was whole.
+    fn end(&mut self) -> bool {
+        self.shown.take().is_some_and(|shown| {
             shown.control.cancel();
+            let sitting = shown.sitting.clone();
             shown.ended();
-        }
+            sitting.is_done()
+        })
     }
 
     /// Opens libraries anew if one has changed, or what is trusted has.
@@ -299,8 +322,7 @@ impl Watching<'_, '_> {
             }
             // A lock or configuration that cannot be understood leaves everything as it was.
             Err(failure) => {
-                report::failure(&failure);
-                self.page.inspect(|page| page.failed(&failure));
+                self.audience.failed(&failure);
                 let seen = |path: &PathBuf| (path.clone(), look(path));
                 self.plugins.watched = self.plugins.watched.keys().map(seen).collect();
                 Ok(())

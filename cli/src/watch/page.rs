@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use glam::UVec2;
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_core::film::Film;
-use luxel_core::render::{Look, Reached};
+use luxel_core::render::Reached;
 use luxel_core::scene::{Node, NodeId};
 use luxel_core::stage::{Skin, Stage};
 
@@ -117,7 +117,7 @@ impl Page {
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
         let (screen, about) = (self.screen.clone(), self.about.clone());
         let (standing, settings) = (self.standing.clone(), stage.film.clone());
-        *lock(&standing) = "rendering".to_owned();
+        "rendering".clone_into(&mut lock(&standing));
         let mut last = None;
         move |film: &Film, now: Reached| {
             let is_last = now.step == 1 && now.samples >= of_samples;
@@ -146,11 +146,6 @@ impl Drop for Page {
 
 fn problems(found: &[Diagnostic], sources: &Sources) -> impl Iterator<Item = Problem> {
     found.iter().map(move |found| Problem::of_diagnostic(found, sources))
-}
-
-/// Nobody looks on.
-pub(super) fn unseen() -> Box<Look<'static>> {
-    Box::new(|_: &Film, _: Reached| {})
 }
 
 fn status(now: Reached, of_samples: u32) -> String {

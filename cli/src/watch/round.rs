@@ -61,6 +61,11 @@ impl Sitting {
         self.lock().stage.clone()
     }
 
+    /// Whether there is a picture, all of its samples taken.
+    pub(super) fn is_done(&self) -> bool {
+        self.lock().done.is_some()
+    }
+
     /// Renders and writes the picture, which `look` sees grow; one that was cancelled or failed is not
     /// written, and the last stays. Returns where it is, if it is there.
     ///

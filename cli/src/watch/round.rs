@@ -82,7 +82,8 @@ impl Sitting {
         self.lock().output(args)?;
         guard.measuring();
         beat.phase(Phase::Rendering);
-        let options = Options { coarse: args.preview, ..args.render.options() };
+        let options =
+            Options { coarse: args.preview, courteous: args.preview, ..args.render.options() };
         let first = options.samples(&stage) > COARSE;
         let mut refused = None;
         let mut seen = |film: &Film, now: Reached| {

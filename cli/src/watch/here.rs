@@ -12,8 +12,10 @@ use luxel_core::render::{Control, Look};
 use super::Args;
 use super::changes::{Changes, Noticed, Wake};
 use super::page::{self, Page};
+use super::reading;
 use super::round::{self, Course, Read};
 use super::shown::{Shown, Subject};
+use super::wishes::Wishes;
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::files::{Asked, look};
@@ -52,6 +54,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let plugins = session.refresh(&args.plugins, &surroundings)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
     let (mut changes, waker) = Changes::new();
+    let wishes = Wishes::new(changes.wished(), waker.clone());
     let in_hand = InHand::default();
     let stopped = in_hand.clone();
     let guard = Guard::default();
@@ -62,7 +65,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         build.cancel();
     })?;
     changes.arm([args.file.as_path()]);
-    let page = args.preview.then(|| Page::start(&args.file, &args.page)).transpose()?;
+    let page = args.preview.then(|| Page::start(&args.file, &args.page, wishes)).transpose()?;
     std::thread::scope(|scope| {
         let mut watching = Watching {
             args,
@@ -143,9 +146,9 @@ impl Watching<'_, '_> {
     }
 
     fn load(&mut self) -> Result<Next, Failure> {
-        let Args { file, load, render, .. } = self.args;
         let form = self.args.form();
-        let text = load::read(file, load, render.size, &self.plugins, &Beat::silent())?;
+        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
+        let text = reading::read(self.args, &self.plugins, self.page, before)?;
         self.asked = text.files.shared().clone();
         if let Some(Shown { subject, .. }) = &mut self.shown
             && subject.is_of(&text)
@@ -223,6 +226,7 @@ impl Watching<'_, '_> {
         self.in_hand.get().0.clone_from(&control);
         let (args, guard, page) = (self.args, self.guard, self.page);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
+        self.page.inspect(|page| page.stands_at(&stage, &self.plugins.registry, &read));
         let of_samples = args.render.options().samples(&stage);
         let follow =
             |page: &Page| -> Box<Look<'_>> { Box::new(page.follow(&stage, &read, of_samples)) };

@@ -1,11 +1,16 @@
 //! `luxel watch`: render again whenever a file that the scene reads is saved.
 
 mod apart;
+mod camera;
 mod changes;
+mod facts;
 mod here;
 mod page;
+mod params;
+mod reading;
 mod round;
 mod shown;
+mod wishes;
 
 use std::path::PathBuf;
 
@@ -24,6 +29,7 @@ use crate::report::Form;
 Examples:
   luxel watch scenes/cornell.scene
   luxel watch scenes/cornell.scene --preview
+  luxel watch scenes/cornell.scene --preview --editor 'vscode://file/{file}:{line}:{column}'
   luxel watch scenes/cornell.scene -o small --size 320x320 --spp 16
   luxel watch scenes/cornell.scene --plugin-dir target/release --isolate")]
 pub(crate) struct Args {

@@ -113,8 +113,8 @@ impl Evaluator<'_> {
             }
             _ => None,
         };
-        let written = [Some(&def.value), def.range.as_ref()].into_iter().flatten();
-        let written = written.filter_map(|expr| written_unit(expr, dimension, &text)).next();
+        let mut expressions = [Some(&def.value), def.range.as_ref()].into_iter().flatten();
+        let written = expressions.find_map(|expr| written_unit(expr, dimension, &text));
         let info = ParamInfo {
             name: def.name.text.to_string(),
             ty: def.ty.name.text.to_string(),

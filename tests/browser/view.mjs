@@ -1,0 +1,204 @@
+// `luxel view` in a real browser. By hand, not part of `cargo test`:
+//
+//   cargo build && cd tests/browser && npm ci && npm test
+//
+// LUXEL is the program (default: target/debug/luxel of this tree), CHROMIUM the browser (default:
+// `chromium`). Pictures of the page are left in SHOTS (default: tests/browser/shots). An argument
+// chooses the tests whose names hold it.
+
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { copyFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import {
+  WINDOW, attacked, decoded, folder, isHidden, luxel, mean, open, press, readback, root, run, settled, shots, text, until,
+} from "./common.mjs";
+
+const SIZE = [96, 64];
+function render(name, spp, seed) {
+  const scene = join(root, "scenes/cornell.scene");
+  const args = ["render", scene, "-o", join(folder, name), "--size", SIZE.join("x"), "--spp", spp, "--seed", seed, "-q"];
+  execFileSync(luxel, args, { stdio: "inherit" });
+  return join(folder, `${name}.exr`);
+}
+
+
+async function view(...args) {
+  const child = spawn(luxel, ["view", ...args, "--no-open"], { stdio: ["ignore", "pipe", "inherit"] });
+  const url = await new Promise((done, failed) => {
+    child.stdout.once("data", (text) => done(String(text).trim()));
+    child.once("exit", (code) => failed(new Error(`luxel view ended with ${code}`)));
+  });
+  return { url, port: new URL(url).port, token: new URL(url).searchParams.get("token"), end: () => child.kill("SIGINT") };
+}
+
+const tests = {
+  async "a pixel of the page is the pixel of the PNG, in every tone"({ browser, one, folder }) {
+    const { page, complaints, close } = await open(browser, one.url);
+    await press(page, "z");
+    const drawn = await readback(page), png = await decoded(page, join(folder, "a.png"));
+    assert.deepEqual([drawn.w, drawn.h], SIZE);
+    const worst = drawn.data.reduce((worst, v, i) => Math.max(worst, Math.abs(v - png[i])), 0);
+    // Halves have 11 bits: an error of 2^-12 in a value, at most 0.5 of 255 after sRGB, and rounding.
+    assert.ok(worst <= 1, `${worst} of 255 apart`);
+    await press(page, "t");
+    const linear = await readback(page);
+    assert.ok(mean(linear.data) < mean(drawn.data) - 5, "linear is darker");
+    await press(page, "t");
+    assert.notDeepEqual((await readback(page)).data, linear.data);
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
+  async "exposure keys change the picture and 0 takes it back"({ browser, one }) {
+    const { page, complaints, close } = await open(browser, one.url);
+    const before = await readback(page);
+    await press(page, "Shift+ArrowUp");
+    assert.equal(await text(page, "stops"), "+1.0");
+    assert.ok(mean((await readback(page)).data) > mean(before.data) + 5);
+    await press(page, "0");
+    assert.deepEqual((await readback(page)).data, before.data);
+    await press(page, "a");
+    assert.notEqual(await text(page, "stops"), "0.0");
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
+  async "false colour, error and histogram show themselves with a legend"({ browser, one }) {
+    const { page, complaints, close } = await open(browser, one.url);
+    await press(page, "2");
+    assert.match(await text(page, "quantity"), /Luminance/);
+    const luminance = await readback(page);
+    await press(page, "3");
+    assert.match(await text(page, "quantity"), /standard error/);
+    assert.notDeepEqual((await readback(page)).data, luminance.data);
+    await press(page, "h");
+    assert.equal(await isHidden(page, "histogram"), false);
+    await press(page, "1");
+    assert.equal(await isHidden(page, "legend"), true);
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
+  async "a pixel tells the file's values, and the page's own agree"({ browser, one }) {
+    const { page, complaints, close } = await open(browser, one.url);
+    const area = await readback(page, false);
+    const values = () => page.evaluate(() => [...document.querySelectorAll("#facts dd")].map((dd) => dd.textContent));
+    await page.mouse.move(area.x + area.w * 0.3, area.y + area.h * 0.7);
+    await until("own values", async () => (await values()).length > 3);
+    const own = await values();
+    await until("the file's values", async () => (await values())[0].length > own[0].length || (await values())[0] !== own[0]);
+    const exact = await values();
+    for (const c of [0, 1, 2]) {
+      const [a, b] = [own[c], exact[c]].map((v) => Number(v.replace("−", "-")));
+      // Half a place of eleven bits, and half a place of the four digits that are shown.
+      assert.ok(Math.abs(a - b) <= Math.abs(b) * (2 ** -11 + 5e-4), `${a} ${b}`);
+    }
+    assert.equal(exact.at(-1), "4");
+    await page.mouse.click(area.x + area.w * 0.3, area.y + area.h * 0.7);
+    await page.mouse.move(5, 5);
+    assert.deepEqual(await values(), exact);
+    await press(page, "Escape");
+    assert.equal(await isHidden(page, "inspector"), true);
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
+  async "the wipe shows the first picture on its left and the second on its right"({ browser, two, folder }) {
+    const { page, complaints, close } = await open(browser, two.url);
+    await until("the second picture", async () => !(await isHidden(page, "wipe")));
+    await press(page, "z");
+    await press(page, "ArrowLeft");
+    const drawn = await readback(page);
+    const [a, b] = [await decoded(page, join(folder, "a.png")), await decoded(page, join(folder, "b.png"))];
+    const split = Math.round(0.48 * WINDOW.width) - drawn.x;
+    for (let i = 0; i < drawn.data.length; i++) {
+      const x = Math.floor(i / 4) % SIZE[0];
+      if (Math.abs(x - split) <= 1) continue;
+      assert.ok(Math.abs(drawn.data[i] - (x < split ? a : b)[i]) <= 1, `at ${x} of ${split}`);
+    }
+    await page.keyboard.down(" ");
+    await settled(page);
+    const other = await readback(page);
+    assert.ok(other.data.every((v, i) => Math.abs(v - b[i]) <= 1));
+    await page.keyboard.up(" ");
+    await press(page, "4");
+    assert.match(await text(page, "quantity"), /standard errors/);
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
+  async "a broken file lies over the last good picture until it is whole"({ browser, folder }) {
+    const file = join(folder, "c.exr");
+    copyFileSync(join(folder, "a.exr"), file);
+    const own = await view(file);
+    const { page, complaints, close } = await open(browser, own.url);
+    const before = await readback(page);
+    writeFileSync(file, "no picture");
+    await until("the message", async () => !(await isHidden(page, "problems")));
+    assert.match(await text(page, "problems"), /cannot read the picture .*c\.exr/);
+    assert.deepEqual((await readback(page)).data, before.data);
+    await page.screenshot({ path: join(shots, "problem.png") });
+    copyFileSync(join(folder, "b.exr"), file);
+    await until("no message", () => isHidden(page, "problems"));
+    await until("the new picture", async () => mean((await readback(page)).data) !== mean(before.data));
+    await page.locator("#compare").selectOption("previous");
+    await until("the wipe", async () => !(await isHidden(page, "wipe")));
+    own.end();
+    await until("the end", async () => /does not answer|has ended/.test(await text(page, "status")));
+    assert.deepEqual(complaints.filter((text) => !/WebSocket/.test(text)), []);
+    await close();
+  },
+
+  "a foreign page that has stolen the token gets nothing": ({ browser, one }) => attacked(browser, one),
+
+  async "it can be used on a phone and by light and dark"({ browser, two, one }) {
+    const viewport = { width: 1280, height: 800 };
+    const phone = { viewport: { width: 390, height: 760 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
+    const looks = { dark: { colorScheme: "dark", viewport }, light: { colorScheme: "light", viewport }, phone: { colorScheme: "dark", ...phone } };
+    for (const [name, options] of Object.entries(looks)) {
+      const { page, complaints, close } = await open(browser, process.env.SHOW ?? two.url, options);
+      await until("the wipe", async () => !(await isHidden(page, "wipe")));
+      const area = await readback(page, false);
+      const ratio = options.deviceScaleFactor ?? 1;
+      const at = [(area.x + area.w * 0.3) / ratio, (area.y + area.h * 0.6) / ratio];
+      await (options.hasTouch ? page.touchscreen.tap(...at) : page.mouse.click(...at));
+      await until("the inspector", async () => !(await isHidden(page, "inspector")));
+      await press(page, "h");
+      await page.waitForTimeout(300);
+      await page.screenshot({ path: join(shots, `${name}.png`) });
+      await press(page, "2");
+      await page.screenshot({ path: join(shots, `${name}-luminance.png`) });
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+      assert.equal(wide, false, `${name} is wider than its window`);
+      await press(page, "?");
+      await page.screenshot({ path: join(shots, `${name}-help.png`) });
+      assert.deepEqual(complaints, []);
+      await close();
+    }
+  },
+
+  async "without WebGL 2 the same is drawn"({ browser, one, folder }) {
+    const context = await browser.newContext({ viewport: WINDOW });
+    await context.addInitScript(() => {
+      const real = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        return kind === "webgl2" ? null : real.call(this, kind, ...rest);
+      };
+    });
+    const page = await context.newPage();
+    await page.goto(one.url);
+    await until("a picture", () => isHidden(page, "empty"));
+    await press(page, "z");
+    const drawn = await readback(page), png = await decoded(page, join(folder, "a.png"));
+    assert.deepEqual([drawn.w, drawn.h], SIZE);
+    assert.ok(drawn.data.every((v, i) => Math.abs(v - png[i]) <= 1));
+    await context.close();
+  },
+};
+
+const [a, b] = [render("a", 4, 1), render("b", 8, 2)];
+const [one, two] = [await view(a), await view(a, b)];
+await run(tests, { one, two });
+one.end();
+two.end();

@@ -39,3 +39,25 @@ impl PageArgs {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        page: PageArgs,
+    }
+
+    #[test]
+    fn an_editor_is_an_address_or_a_mistake_of_the_command_line() {
+        let of = |address: &str| Line::try_parse_from(["luxel", "--editor", address]);
+        let page = of("vscode://file/{file}:{line}").map(|line| line.page).ok().unwrap();
+        assert_eq!(page.editor().unwrap(), Editor::of("vscode://file/{file}:{line}").ok());
+        let told = of("javascript://{file}").err().unwrap().to_string();
+        assert!(told.contains("`javascript` opens no editor"), "{told}");
+    }
+}

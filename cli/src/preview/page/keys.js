@@ -10,8 +10,8 @@ export function keys(act) {
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const own = event.target.closest?.("#side input");
-    if (own && event.key === "Escape") own.blur();
-    else if (own && (own.type === "text" || /^(Arrow|Home|End|Page| )/.test(event.key))) return;
+    if (own && event.key === "Escape") return own.blur();
+    if (own && (own.type === "text" || /^(Arrow|Home|End|Page| )/.test(event.key))) return;
     const inField = event.target.closest?.("select, input");
     const step = event.shiftKey ? 1 : 1 / 3;
     if (event.key === "ArrowUp" || event.key === "ArrowDown") {

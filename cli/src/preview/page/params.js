@@ -94,8 +94,12 @@ function row(param, ask) {
     Object.assign(input, { type: "text", spellcheck: false, inputMode: param.kind === "number" ? "decimal" : "text" });
     input.autocomplete = "off";
     out.value = behind;
-    const changed = () => input.value.trim() && tell(param.kind === "number" ? input.value.trim() + behind : input.value);
-    input.addEventListener("change", changed);
+    input.addEventListener("change", () => {
+      const text = input.value.trim();
+      if (param.kind === "text") tell(input.value);
+      // With a unit of its own, as it stands.
+      else if (text) tell(Number.isFinite(Number(text)) ? text + behind : text);
+    });
   }
   const back = document.createElement("button");
   Object.assign(back, { type: "button", textContent: "↺", title: "As the file says" });

@@ -218,6 +218,30 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
 }
 
 #[test]
+fn a_page_that_says_too_much_at_once_is_left() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let set = |value: usize| {
+        format!(r#"{{"ask":{{"set":{{"name":"r","value":"{}"}}}}}}"#, "9".repeat(value))
+    };
+    let say = |stream: &mut TcpStream, text: &str| {
+        let length = u16::try_from(text.len()).unwrap().to_be_bytes();
+        let mut bytes = vec![0x81, 0x80 | 0x7e, length[0], length[1], 0, 0, 0, 0];
+        bytes.extend(text.bytes());
+        stream.write_all(&bytes).unwrap();
+    };
+    let mut page = socket(port, &token);
+    say(&mut page, &set(4000));
+    let command = preview.commands().recv_timeout(Duration::from_secs(20)).unwrap();
+    assert!(matches!(command, Command::Set { value: Some(value), .. } if value.len() == 4000));
+    say(&mut page, &set(5000));
+    let mut rest = vec![];
+    // It ends, whatever was told before.
+    let _ = page.read_to_end(&mut rest);
+    assert!(preview.commands().try_recv().is_err());
+}
+
+#[test]
 fn a_port_that_is_taken_is_told_and_a_dropped_preview_frees_it() {
     let first = preview();
     let (port, _) = place(&first);

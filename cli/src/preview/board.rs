@@ -12,6 +12,8 @@ pub(super) enum Topic {
     Title,
     Status,
     Problems,
+    Params,
+    Camera,
     Pixel,
     PictureA,
     PictureB,
@@ -19,8 +21,16 @@ pub(super) enum Topic {
 
 impl Topic {
     /// In the order in which a page that has just come is told.
-    pub(super) const ALL: [Self; 6] =
-        [Self::Title, Self::Status, Self::Problems, Self::Pixel, Self::PictureA, Self::PictureB];
+    pub(super) const ALL: [Self; 8] = [
+        Self::Title,
+        Self::Status,
+        Self::Problems,
+        Self::Params,
+        Self::Camera,
+        Self::Pixel,
+        Self::PictureA,
+        Self::PictureB,
+    ];
 
     /// Whether its messages are large and wait for the page to have drawn the last.
     pub(super) fn is_picture(self) -> bool {

@@ -10,6 +10,7 @@ use super::after::After;
 use super::page::Page;
 use super::round::Read;
 use super::tev::Tev;
+use super::wishes::Wishes;
 use super::{Args, ThenArgs};
 use crate::exit::Failure;
 use crate::output::Output;
@@ -25,12 +26,12 @@ pub(super) struct Audience {
 impl Audience {
     /// # Errors
     /// A port of the page that is taken.
-    pub(super) fn new(args: &Args) -> Result<Self, Failure> {
+    pub(super) fn new(args: &Args, wishes: Wishes) -> Result<Self, Failure> {
         let (file, ThenArgs { tev, exec, .. }) = (&args.file, &args.then);
         let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
         let tev = tev.clone().map(|address| Tev::new(address, name.into_owned()));
         let after = exec.clone().map(|command| After::new(command, file.clone()));
-        let page = args.preview.then(|| Page::start(file, &args.page)).transpose()?;
+        let page = args.preview.then(|| Page::start(file, &args.page, wishes)).transpose()?;
         Ok(Self { page, tev, after })
     }
 

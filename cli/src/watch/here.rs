@@ -13,8 +13,10 @@ use super::Args;
 use super::audience::Audience;
 use super::changes::{Changes, Noticed, Wake};
 use super::edit::{self, Edit};
+use super::reading;
 use super::round::{Course, Read, Sitting};
 use super::shown::{Shown, Subject};
+use super::wishes::Wishes;
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::files::{Asked, look};
@@ -56,6 +58,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let plugins = session.refresh(&args.plugins, &surroundings)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
     let (mut changes, waker) = Changes::new();
+    let wishes = Wishes::new(changes.wished(), waker.clone());
     let in_hand = InHand::default();
     let stopped = in_hand.clone();
     let guard = Guard::default();
@@ -66,7 +69,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         build.cancel();
     })?;
     changes.arm([args.file.as_path()]);
-    let audience = Audience::new(args)?;
+    let audience = Audience::new(args, wishes)?;
     std::thread::scope(|scope| {
         let mut watching = Watching {
             args,
@@ -172,12 +175,12 @@ impl Watching<'_, '_> {
     }
 
     fn load(&mut self) -> Result<Next, Failure> {
-        let Args { file, load, render, .. } = self.args;
         let (form, begun) = (self.args.form(), Instant::now());
         let (line, known) = (!self.args.quiet, self.changes.known().clone());
         let course = load::Course { known, line, ..load::Course::default() };
         self.is_good = false;
-        let text = load::read(file, load, render.size, &self.plugins, &course)?;
+        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
+        let text = reading::read(self.args, &self.plugins, self.audience.page(), before, &course)?;
         self.asked = text.files.shared().clone();
         if let Some(Shown { subject, .. }) = &mut self.shown
             && subject.is_of(&text, self.changes.known())
@@ -278,6 +281,7 @@ impl Watching<'_, '_> {
         self.in_hand.get().0.clone_from(&control);
         let (args, guard, audience) = (self.args, self.guard, self.audience);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
+        self.audience.page().inspect(|page| page.stands_at(&stage, &self.plugins.registry, &read));
         let of_samples = args.render.options().samples(&stage);
         let mut look = audience.follow(&stage, &read, of_samples);
         let sitting = Arc::new(Sitting::new(stage.clone(), read.clone(), Some(edit)));

@@ -3,14 +3,19 @@
 mod after;
 mod apart;
 mod audience;
+mod camera;
 mod changes;
 mod edit;
+mod facts;
 mod here;
 mod mailbox;
 mod page;
+mod params;
+mod reading;
 mod round;
 mod shown;
 mod tev;
+mod wishes;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -31,6 +36,7 @@ Examples:
   luxel watch scenes/cornell.scene
   luxel watch scenes/cornell.scene --preview
   luxel watch scenes/cornell.scene --exec 'cp $LUXEL_PNG last.png'
+  luxel watch scenes/cornell.scene --preview --editor 'vscode://file/{file}:{line}:{column}'
   luxel watch scenes/cornell.scene -o small --size 320x320 --spp 16
   luxel watch scenes/cornell.scene --plugin-dir target/release --isolate")]
 pub(crate) struct Args {

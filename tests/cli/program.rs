@@ -170,6 +170,13 @@ impl Running {
         assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
     }
 
+    /// How many files it has open, and how many threads.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn held(&self) -> [usize; 2] {
+        let process = format!("/proc/{}", self.0.as_ref().unwrap().id());
+        ["fd", "task"].map(|of| fs::read_dir(format!("{process}/{of}")).unwrap().count())
+    }
+
     /// Waits until Ctrl-C is answered by the program itself.
     #[cfg(target_os = "linux")]
     pub(crate) fn listens(&self) {

@@ -113,4 +113,35 @@ fn once_a_scene_is_stable_its_picture_is_the_end_and_a_command_follows_it() {
         "{done:?}"
     );
     assert_eq!(done.out.lines().count(), 1, "one picture, told once: {done:?}");
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_hundred_edits_leave_no_file_open_and_no_thread() {
+    let scene = |n: u32| {
+        let mesh = "shape mesh { file = \"a.obj\", unit = 1 m }";
+        SCENE.replace("= 0.5", &format!("= 0.{n:03}")).replace("= 4", "= 1") + mesh
+    };
+    let mesh = |n: u32| format!("v 0 0 0\nv 1 0 0\nv 0 1 {n}\nf 1 2 3\n");
+    let folder = Folder::new("watch-holds").with("a.scene", &scene(1)).with("a.obj", &mesh(1));
+    let mut watching =
+        folder.start(&["watch", "a.scene", "--quiet", "--preview", "--no-open", "--port=0"]);
+    let picture = || folder.read("a.exr");
+    until("the first picture", || !picture().is_empty());
+    let edit = |n: u32| {
+        let before = picture();
+        folder.write("a.obj", &mesh(n));
+        folder.write("a.scene", &if n.is_multiple_of(7) { scene(n) + "mistake" } else { scene(n) });
+        // A picture now and then: most edits overtake the one before.
+        if n % 10 == 1 {
+            until("a picture", || picture() != before);
+        }
+        std::thread::sleep(std::time::Duration::from_millis(3));
+    };
+    (2..12).for_each(edit);
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let held = watching.held();
+    (12..112).for_each(edit);
+    until("what was held before", || watching.held() == held);
+    watching.interrupt();
+    assert_eq!(watching.end().code, 0);
 }

@@ -312,8 +312,8 @@ fn bytes(file: &str, contents: u64) -> Arc<[u8]> {
             let name = ["box_sparse", "CornellBox"][(contents % 2) as usize];
             OnDisk.read(&root().join(format!("tests/data/gltf/{name}.glb"))).unwrap()
         }
-        _ if file.ends_with(".hdr") => picture(contents).into(),
-        _ => octahedron(contents).into_bytes().into(),
+        "a.obj" | "b.obj" => octahedron(contents).into_bytes().into(),
+        _ => picture(contents).into(),
     }
 }
 
@@ -341,7 +341,8 @@ fn picture(contents: u64) -> Vec<u8> {
     let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n".to_vec();
     let mut rng = Rng::new(contents);
     bytes.extend((0..16).flat_map(|_| {
-        [0; 3].map(|_: u8| 40 + below(&mut rng, 200) as u8).into_iter().chain([128])
+        let [r, g, b, _] = rng.u32().to_le_bytes();
+        [r | 16, g | 16, b | 16, 128]
     }));
     bytes
 }
@@ -351,5 +352,5 @@ fn below(rng: &mut Rng, n: u64) -> u64 {
 }
 
 fn index(rng: &mut Rng, n: usize) -> usize {
-    below(rng, n as u64) as usize
+    usize::try_from(below(rng, n as u64)).expect("below a length")
 }

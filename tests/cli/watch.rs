@@ -113,6 +113,7 @@ fn once_a_scene_is_stable_its_picture_is_the_end_and_a_command_follows_it() {
         "{done:?}"
     );
     assert_eq!(done.out.lines().count(), 1, "one picture, told once: {done:?}");
+}
 
 #[cfg(target_os = "linux")]
 #[test]

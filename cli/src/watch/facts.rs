@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::UVec2;
 use luxel_core::diag::{Sources, Span};
-use luxel_core::scene::{Node, NodeId};
+use luxel_core::scene::{NodeId, called};
 use luxel_core::stage::{Skin, Stage};
 
 use crate::preview::Editor;
@@ -27,7 +27,7 @@ pub(super) fn facts(stage: &Stage, sources: &Sources, editor: Option<&Editor>, a
     };
     let about = |id: NodeId| {
         let node = stage.scene.nodes.get(id.0 as usize)?;
-        Some((name(node), place(node.span, sources, editor)))
+        Some((called(node), place(node.span, sources, editor)))
     };
     let (mut facts, mut places) = (vec![], vec![]);
     if let Some((name, (place, address))) = about(placement.node) {
@@ -46,14 +46,6 @@ pub(super) fn facts(stage: &Stage, sources: &Sources, editor: Option<&Editor>, a
     facts.push(("point".to_owned(), format!("({:.6}, {:.6}, {:.6}) m", p.x, p.y, p.z)));
     facts.push(("normal".to_owned(), format!("({:.4}, {:.4}, {:.4})", n.x, n.y, n.z)));
     Facts { told: facts, places }
-}
-
-/// What people call an object: its class, and its name if it has one.
-fn name(node: &Node) -> String {
-    match &node.label {
-        Some(label) => format!("{} \"{label}\"", node.class),
-        None => node.class.to_string(),
-    }
 }
 
 /// `file:line:column`, and what opens it.

@@ -169,7 +169,7 @@ impl Differ<'_> {
     }
 
     fn lone(&mut self, node: &Node, how: How) {
-        self.found.push(Difference { what: called(node), how, span: Some(node.span) });
+        self.found.push(Difference { what: told(node), how, span: Some(node.span) });
     }
 
     /// What people call something; empty where they gave no name.
@@ -194,7 +194,7 @@ impl Differ<'_> {
 
     fn called(&self, i: usize, target: Target) -> String {
         match target {
-            Target::Node(id) => called(self.scenes[i].node(id)),
+            Target::Node(id) => told(self.scenes[i].node(id)),
             Target::Group(id) => match &self.scenes[i].group(id).label {
                 Some(label) => format!("group \"{label}\""),
                 None => "group".to_owned(),
@@ -207,6 +207,14 @@ impl Differ<'_> {
 pub fn called(node: &Node) -> String {
     match &node.label {
         Some(label) => format!("{} \"{label}\"", node.class),
+        None => node.class.to_string(),
+    }
+}
+
+/// The same where its kind is not known: what has no name is told by its kind too.
+fn told(node: &Node) -> String {
+    match &node.label {
+        Some(_) => called(node),
         None => format!("{} {}", node.kind, node.class),
     }
 }

@@ -13,6 +13,7 @@ mod curvature;
 #[cfg(test)]
 mod curves;
 mod determinism;
+mod diff;
 #[cfg(test)]
 mod dynamic;
 #[cfg(test)]

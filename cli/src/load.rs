@@ -7,7 +7,8 @@ use glam::UVec2;
 use luxel_core::accel::Watch;
 use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::scene::Scene;
-use luxel_core::stage::{self, Stage, Unbuilt};
+use luxel_core::stage::{self, Anew, Stage, Unbuilt};
+use luxel_lang::ParamInfo;
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure, blaming};
@@ -29,6 +30,8 @@ pub(crate) struct Loaded {
     pub(crate) sources: Sources,
     /// The files that were asked for.
     pub(crate) files: DiskFiles,
+    /// What had to be made; the rest was kept.
+    pub(crate) anew: Anew,
 }
 
 /// Every class that a scene may name: the built-in ones, and those of trusted libraries.
@@ -96,6 +99,8 @@ pub(crate) struct Text {
     pub(crate) sources: Sources,
     /// The files that were asked for: so far, texts alone.
     pub(crate) files: DiskFiles,
+    /// What may be set.
+    pub(crate) params: Vec<ParamInfo>,
 }
 
 /// Reads a scene, whose picture is to have `size` if one is given.
@@ -118,15 +123,16 @@ pub(crate) fn read(
             unloaded: plugins.unloaded(),
             ..Default::default()
         };
-        let read = luxel_lang::load(path, &files, &plugins.registry, &settings);
-        let mut scene = read.scene;
+        let mut read = luxel_lang::load(path, &files, &plugins.registry, &settings);
+        let mut scene = read.scene.take();
         if let (Some(scene), Some(size)) = (&mut scene, size) {
             scene.set_resolution(size);
         }
         if let (Some(scene), Some(precision)) = (&mut scene, args.precision) {
             scene.set_precision(precision);
         }
-        Text { scene, diagnostics: read.diagnostics, sources: read.sources, files }
+        let luxel_lang::Loaded { diagnostics, sources, params, .. } = read;
+        Text { scene, diagnostics, sources, files, params }
     })
 }
 
@@ -143,7 +149,7 @@ pub(crate) fn build(
     Course { beat, watch, line, .. }: &Course,
 ) -> Result<Loaded, Failure> {
     let loaded = blaming(&path.display().to_string(), || {
-        let Text { scene, mut diagnostics, sources, files } = text;
+        let Text { scene, mut diagnostics, sources, files, .. } = text;
         beat.building(watch);
         let build = |scene: &Scene| {
             let told = |_| progress::building(&watch.standing());
@@ -151,9 +157,11 @@ pub(crate) fn build(
             progress::shown_while(told, *line, build)
         };
         let built = scene.as_ref().map(build);
+        let mut anew = Anew::default();
         let stage = match built {
             Some(Ok(built)) => {
                 diagnostics.extend(built.warnings);
+                anew = built.anew;
                 Some(built.stage)
             }
             Some(Err(Unbuilt::Faulty(found))) => {
@@ -163,7 +171,7 @@ pub(crate) fn build(
             Some(Err(Unbuilt::Cancelled)) | None => None,
         };
         let stage = stage.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
-        Loaded { scene, stage, diagnostics, sources, files }
+        Loaded { scene, stage, diagnostics, sources, files, anew }
     })?;
     if watch.is_cancelled() {
         return Err(Failure::new(Exit::Incomplete, CANCELLED));

@@ -4,6 +4,7 @@
 mod args;
 mod check;
 mod describe;
+mod errors;
 mod exit;
 mod files;
 mod interrupt;

@@ -1,13 +1,15 @@
 //! One render: progress, the end by Ctrl-C, panics told with the scene's name.
 
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use glam::UVec2;
 use luxel_core::film::{Film, Rect};
-use luxel_core::render::{Control, Look, Options, Outcome, render_seen};
+use luxel_core::render::{Control, Look, Options, Outcome, Reached, render_seen};
 use luxel_core::stage::Stage;
 
+use crate::errors::Errors;
 use crate::exit::{Exit, Failure, blaming};
 use crate::progress;
 
@@ -55,9 +57,20 @@ pub(crate) fn measure(
     let window = window(stage, options)?;
     let total = window.area() as u64 * u64::from(options.samples(stage));
     let start = Instant::now();
+    let (shown, error) = (progress::is_shown(line), Mutex::new(None));
+    let mut seen = |film: &Film, now: Reached| {
+        if shown && now.samples >= 2 {
+            let found = Errors::of_film(film).map(|errors| errors.median);
+            *error.lock().unwrap_or_else(PoisonError::into_inner) = found;
+        }
+        look(film, now);
+    };
     let rendered = blaming(&scene.display().to_string(), || {
-        let told = |seconds| progress::line(control.samples_done(), total, seconds);
-        progress::shown_while(told, line, || render_seen(stage, options, control, look))
+        let told = |seconds| {
+            let error = *error.lock().unwrap_or_else(PoisonError::into_inner);
+            progress::line(control.samples_done(), total, error, seconds)
+        };
+        progress::shown_while(told, line, || render_seen(stage, options, control, &mut seen))
     });
     let (film, outcome) = rendered?;
     Ok(Measured { film, outcome, seconds: start.elapsed().as_secs_f64() })

@@ -19,7 +19,7 @@ pub(crate) fn shown_while<T>(
     shown: bool,
     work: impl FnOnce() -> T,
 ) -> T {
-    if !shown || !std::io::stderr().is_terminal() {
+    if !is_shown(shown) {
         return work();
     }
     // The sender is dropped when the work ends, also by a panic; that ends the thread.
@@ -103,14 +103,21 @@ fn count(n: u64) -> String {
     }
 }
 
-/// ` 42 %  3.20 Msamples/s  110.1 of 262.1 Msamples  48 s left`
-pub(crate) fn line(done: u64, total: u64, seconds: f64) -> String {
+/// Whether a line that is wanted has somebody who reads it.
+pub(crate) fn is_shown(wanted: bool) -> bool {
+    wanted && std::io::stderr().is_terminal()
+}
+
+/// ` 42 %  3.20 Msamples/s  110.1 of 262.1 Msamples  ±1.3 %  48 s left`; the error, if it is known, is
+/// the median of pixels' relative standard errors.
+pub(crate) fn line(done: u64, total: u64, error: Option<f64>, seconds: f64) -> String {
     let share = if total == 0 { 1.0 } else { done as f64 / total as f64 };
     let rate = done as f64 / seconds.max(f64::MIN_POSITIVE);
     let left =
         if done == 0 { "…".into() } else { duration((total - done.min(total)) as f64 / rate) };
+    let error = error.map_or_else(String::new, |error| format!("  ±{:.2} %", error * 100.0));
     format!(
-        "{:3.0} %  {:.2} Msamples/s  {:.1} of {:.1} Msamples  {left} left",
+        "{:3.0} %  {:.2} Msamples/s  {:.1} of {:.1} Msamples{error}  {left} left",
         (share * 100.0).min(100.0),
         rate / 1e6,
         done as f64 / 1e6,
@@ -136,11 +143,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_line_tells_rate_share_and_time_left() {
-        let told = line(1_000_000, 4_000_000, 2.0);
-        assert_eq!(told, " 25 %  0.50 Msamples/s  1.0 of 4.0 Msamples  6.00 s left");
-        assert!(line(0, 10, 0.0).contains("… left"));
-        assert!(line(11, 10, 1.0).starts_with("100 %"));
+    fn the_line_tells_rate_share_error_and_time_left() {
+        let told = line(1_000_000, 4_000_000, Some(0.0131), 2.0);
+        assert_eq!(told, " 25 %  0.50 Msamples/s  1.0 of 4.0 Msamples  ±1.31 %  6.00 s left");
+        assert!(line(0, 10, None, 0.0).contains("Msamples  … left"));
+        assert!(line(11, 10, None, 1.0).starts_with("100 %"));
     }
 
     #[test]

@@ -4,9 +4,9 @@ use glam::{DVec3, UVec2};
 use luxel_core::film::Film;
 use luxel_core::render::{Options, Outcome};
 use luxel_core::stage::Stage;
-use luxel_sdk::color::RgbSpace;
 use serde_json::{Value, json};
 
+use crate::errors::Errors;
 use crate::files::DiskFiles;
 use crate::output::Output;
 use crate::picture::Notes;
@@ -34,13 +34,6 @@ pub(crate) struct Summary {
     pub(crate) bad: u64,
 }
 
-/// Relative standard error of pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Errors {
-    median: f64,
-    p95: f64,
-}
-
 impl Summary {
     pub(crate) fn new(
         (stage, files): (&Stage, &DiskFiles),
@@ -64,7 +57,7 @@ impl Summary {
             seconds,
             samples,
             mean: film.mean().0,
-            error: errors(film),
+            error: Errors::of_film(film),
             scene: hex(stage.scene.hash()),
             files: files.hash().to_hex().to_string(),
             bad: film.bad_samples(),
@@ -158,34 +151,5 @@ impl Summary {
 
     fn rate(&self) -> f64 {
         self.samples as f64 / self.seconds.max(f64::MIN_POSITIVE)
-    }
-}
-
-/// Relative standard error of luminance, over the pixels that have two samples and are not black.
-/// Errors of the channels are taken as fully correlated, which they nearly are: an upper bound.
-fn errors(film: &Film) -> Option<Errors> {
-    let weights = RgbSpace::LinearSrgb.luminance_weights();
-    let relative = film.pixels().filter_map(|(_, pixel)| {
-        let (mean, error) = (weights.dot(pixel.mean), weights.dot(pixel.standard_error()));
-        // A pixel that saw nothing but black is black without error, as far as one can tell.
-        let relative = if error > 0.0 { error / mean } else { 0.0 };
-        (pixel.n >= 2 && relative.is_finite()).then_some(relative)
-    });
-    let mut sorted: Vec<f64> = relative.collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let last = sorted.len().checked_sub(1)?;
-    Some(Errors { median: sorted[last / 2], p95: sorted[last - last / 20] })
-}
-
-#[cfg(test)]
-mod tests {
-    use luxel_core::film::Rect;
-
-    use super::*;
-
-    #[test]
-    fn a_picture_without_two_samples_has_no_known_error() {
-        let film = Film::new(UVec2::splat(4), Rect::new(UVec2::ZERO, UVec2::splat(4)));
-        assert_eq!(errors(&film), None);
     }
 }

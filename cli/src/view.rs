@@ -77,8 +77,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let at = glam::UVec2::from(at);
                 let picture = shown.get(&(side as u8)).and_then(|shown| shown.picture.as_ref());
                 let facts = picture.map_or(vec![], |picture| picture.facts(at));
-                preview.screen().pixel(&PixelReply { at, side, facts });
+                preview.screen().pixel(&PixelReply { at, side, facts, places: vec![] });
             }
+            // A finished picture has nothing to set.
+            Ok(_) => {}
             Err(RecvTimeoutError::Timeout) => look_again(&preview, &mut shown),
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(Failure::new(Exit::Ours, "the preview's server has ended"));

@@ -43,7 +43,7 @@ pub struct Unloaded {
 }
 
 /// A `param` that the root file declares.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ParamInfo {
     /// Its name.
     pub name: String,
@@ -57,8 +57,38 @@ pub struct ParamInfo {
     pub default: String,
     /// Its range as it is written, if it has one.
     pub range: Option<String>,
+    /// What it is in this load: its default, or what was set.
+    pub value: ParamValue,
+    /// Its range, if it has one of numbers.
+    pub limits: Option<ParamLimits>,
+    /// The unit in which its default or its range is written, and what it is of the SI unit.
+    pub written: Option<(String, f64)>,
     /// Where its name stands.
     pub span: Span,
+}
+
+/// The value of a `param`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParamValue {
+    /// A number, in SI units.
+    Number(f64),
+    /// True or false.
+    Bool(bool),
+    /// Text.
+    Text(String),
+    /// A list, a colour, or what a mistake has left.
+    Other,
+}
+
+/// The range of a `param`, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParamLimits {
+    /// The least that it may be.
+    pub low: f64,
+    /// The most that it may be, or what it is to stay below.
+    pub high: f64,
+    /// Whether it may be `high`.
+    pub inclusive: bool,
 }
 
 /// What a load gives.

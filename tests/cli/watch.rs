@@ -95,4 +95,53 @@ fn a_hundred_edits_leave_no_file_open_and_no_thread() {
     until("what was held before", || watching.held() == held);
     watching.interrupt();
     assert_eq!(watching.end().code, 0);
+
+#[test]
+fn another_exposure_shows_what_was_measured_in_another_way() {
+    let folder = Folder::new("watch-exposure").with("a.scene", SCENE);
+    let mut watching = folder.start(&["watch", "a.scene", "--json"]);
+    until("the first picture", || !folder.read("a.exr").is_empty());
+    let first = folder.read("a.png");
+    let brighter = SCENE.replace("film rgb {", "film rgb { exposure = 1.5,");
+    assert_ne!(brighter, SCENE, "the test's scene has another form");
+    folder.write("a.scene", &brighter);
+    until("the brighter picture", || folder.read("a.png") != first);
+    let second = folder.read("a.png");
+    folder.write("a.scene", &brighter.replace("exposure", "file = \"b\", exposure"));
+    until("the picture elsewhere", || folder.names().contains(&"b.png".to_owned()));
+    watching.interrupt();
+    let done = watching.end();
+    assert_eq!(done.code, 0, "{done:?}");
+    assert_eq!(folder.read("b.png"), second);
+    let told: Vec<serde_json::Value> =
+        done.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let changes = told.iter().map(|it| it["edit"]["changes"].clone());
+    let words = [vec![], vec!["film rgb: exposure"], vec!["film rgb: file"]];
+    assert_eq!(changes.collect::<Vec<_>>(), words.map(serde_json::Value::from), "{done:?}");
+    // Two renders never take the same time to the last bit.
+    assert!(told.iter().all(|it| it["seconds"] == told[0]["seconds"]), "measured again: {done:?}");
+
+    // A fresh render of the same text is the same picture.
+    let fresh = folder.luxel(&["render", "a.scene", "-o", "c"]);
+    assert_eq!(fresh.code, 0, "{fresh:?}");
+    assert_eq!(folder.read("c.exr"), folder.read("b.exr"));
+}
+
+#[test]
+fn once_a_scene_is_stable_its_picture_is_the_end_and_a_command_follows_it() {
+    let folder = Folder::new("watch-once").with("a.scene", &SCENE.replace("radius", "radus"));
+    let command = "cp $LUXEL_PNG seen.png; echo $LUXEL_SCENE $LUXEL_EXR; exit 3";
+    let watching =
+        folder.start(&["watch", "a.scene", "--once-stable", "--json", "--exec", command]);
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    assert!(!folder.names().contains(&"a.png".to_owned()), "a mistake is not the end");
+    folder.write("a.scene", SCENE);
+    let done = watching.end();
+    assert_eq!(done.code, 0, "{done:?}");
+    assert_eq!(folder.read("seen.png"), folder.read("a.png"));
+    assert!(
+        done.err.contains("a.scene a.exr\n") && done.err.contains("exit status: 3"),
+        "{done:?}"
+    );
+    assert_eq!(done.out.lines().count(), 1, "one picture, told once: {done:?}");
 }

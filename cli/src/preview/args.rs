@@ -1,5 +1,8 @@
 //! How the page is asked for on the command line.
 
+use super::editor::Editor;
+use crate::exit::{Exit, Failure};
+
 /// Where the page is served, and to whom.
 #[derive(clap::Args, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PageArgs {
@@ -12,4 +15,49 @@ pub(crate) struct PageArgs {
     /// Answer under this name too, as at the near end of a tunnel
     #[arg(long, value_name = "HOST[:PORT]")]
     pub(crate) allow_host: Vec<String>,
+    /// What opens a line in the editor, as `vscode://file/{file}:{line}:{column}`; a click on a
+    /// place in the page goes there [default: `LUXEL_EDITOR`]
+    #[arg(long, value_name = "ADDRESS", value_parser = Editor::of)]
+    pub(crate) editor: Option<Editor>,
+}
+
+impl PageArgs {
+    /// What opens a line in the editor: as was said here, or in the environment.
+    ///
+    /// # Errors
+    /// What the environment says is no such address.
+    pub(crate) fn editor(&self) -> Result<Option<Editor>, Failure> {
+        let told = std::env::var_os("LUXEL_EDITOR").filter(|told| !told.is_empty());
+        let told = told.map(|told| told.to_string_lossy().into_owned());
+        let read = |told: String| {
+            Editor::of(&told)
+                .map_err(|why| Failure::new(Exit::Usage, format!("LUXEL_EDITOR={told}: {why}")))
+        };
+        match &self.editor {
+            None => told.map(read).transpose(),
+            said => Ok(said.clone()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        page: PageArgs,
+    }
+
+    #[test]
+    fn an_editor_is_an_address_or_a_mistake_of_the_command_line() {
+        let of = |address: &str| Line::try_parse_from(["luxel", "--editor", address]);
+        let page = of("vscode://file/{file}:{line}").map(|line| line.page).ok().unwrap();
+        assert_eq!(page.editor().unwrap(), Editor::of("vscode://file/{file}:{line}").ok());
+        let told = of("javascript://{file}").err().unwrap().to_string();
+        assert!(told.contains("`javascript` opens no editor"), "{told}");
+    }
 }

@@ -14,10 +14,12 @@ macro_rules! script {
 }
 
 /// Path, type and text of each file.
-const FILES: [(&str, &str, &str); 14] = [
+const FILES: [(&str, &str, &str); 17] = [
     ("/", HTML, include_str!("page/index.html")),
     ("/page.css", CSS, include_str!("page/page.css")),
     script!("bar"),
+    script!("camera"),
+    script!("copy"),
     script!("flat"),
     script!("gl"),
     script!("keys"),
@@ -25,6 +27,7 @@ const FILES: [(&str, &str, &str); 14] = [
     script!("maps"),
     script!("pan"),
     script!("panels"),
+    script!("params"),
     script!("picture"),
     script!("shade"),
     script!("shader"),

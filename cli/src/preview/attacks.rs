@@ -185,7 +185,7 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let pixels = Pixels::new(glam::UVec2::ONE, &[1.0; 3], &[], vec![]);
         let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
-        let settings = luxel_core::stage::Film::default();
+        let settings = stage::Film::default();
         let seen = luxel_core::render::Reached { step: 1, samples: 1 };
         Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
     };
@@ -215,6 +215,30 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
     // Who talks nonsense is left.
     tell(&mut page, "nonsense");
     assert!(matches!(page.read(&mut [0; 64]), Ok(0) | Err(_)));
+}
+
+#[test]
+fn a_page_that_says_too_much_at_once_is_left() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let set = |value: usize| {
+        format!(r#"{{"ask":{{"set":{{"name":"r","value":"{}"}}}}}}"#, "9".repeat(value))
+    };
+    let say = |stream: &mut TcpStream, text: &str| {
+        let length = u16::try_from(text.len()).unwrap().to_be_bytes();
+        let mut bytes = vec![0x81, 0x80 | 0x7e, length[0], length[1], 0, 0, 0, 0];
+        bytes.extend(text.bytes());
+        stream.write_all(&bytes).unwrap();
+    };
+    let mut page = socket(port, &token);
+    say(&mut page, &set(4000));
+    let command = preview.commands().recv_timeout(Duration::from_secs(20)).unwrap();
+    assert!(matches!(command, Command::Set { value: Some(value), .. } if value.len() == 4000));
+    say(&mut page, &set(5000));
+    let mut rest = vec![];
+    // It ends, whatever was told before.
+    let _ = page.read_to_end(&mut rest);
+    assert!(preview.commands().try_recv().is_err());
 }
 
 #[test]

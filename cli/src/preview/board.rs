@@ -12,6 +12,8 @@ pub(super) enum Topic {
     Title,
     Status,
     Problems,
+    Params,
+    Camera,
     Pixel,
     PictureA,
     PictureB,
@@ -19,8 +21,16 @@ pub(super) enum Topic {
 
 impl Topic {
     /// In the order in which a page that has just come is told.
-    pub(super) const ALL: [Self; 6] =
-        [Self::Title, Self::Status, Self::Problems, Self::Pixel, Self::PictureA, Self::PictureB];
+    pub(super) const ALL: [Self; 8] = [
+        Self::Title,
+        Self::Status,
+        Self::Problems,
+        Self::Params,
+        Self::Camera,
+        Self::Pixel,
+        Self::PictureA,
+        Self::PictureB,
+    ];
 
     /// Whether its messages are large and wait for the page to have drawn the last.
     pub(super) fn is_picture(self) -> bool {
@@ -62,11 +72,24 @@ impl Board {
 
     /// Puts up a picture of an edit, or another message of one topic.
     pub(super) fn pin(&self, topic: Topic, generation: u64, bytes: Bytes) {
+        self.change(topic, |note| {
+            let is_first = note.number == 0 || note.generation != generation;
+            Some((generation, is_first, bytes))
+        });
+    }
+
+    /// Puts up another form of the last message of its topic, if there is one.
+    pub(super) fn alter(&self, topic: Topic, form: impl FnOnce(&[u8]) -> Option<Bytes>) {
+        self.change(topic, |note| Some((note.generation, false, form(&note.bytes)?)));
+    }
+
+    /// The next message of a topic: its generation, whether it is the first of that, its bytes.
+    fn change(&self, topic: Topic, next: impl FnOnce(&Note) -> Option<(u64, bool, Bytes)>) {
         let mut notes = self.notes();
         let note = &mut notes[topic as usize];
+        let Some((generation, is_first, bytes)) = next(note) else { return };
         self.changed.send_modify(|number| {
             *number += 1;
-            let is_first = note.number == 0 || note.generation != generation;
             let first = if is_first { *number } else { note.first };
             *note = Note { number: *number, bytes, generation, first };
         });

@@ -12,7 +12,7 @@ use luxel_core::registry::Display;
 use luxel_core::render::Reached;
 use luxel_core::stage;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::board::Topic;
 use crate::picture;
@@ -36,6 +36,9 @@ impl Side {
         }
     }
 }
+
+/// The first bytes of a message.
+const MAGIC: &[u8] = b"LXL1";
 
 /// A picture and what is said of it.
 #[derive(Clone, Debug)]
@@ -90,11 +93,6 @@ impl Frame {
     pub(super) fn encode(&self) -> Vec<u8> {
         let Self { pixels, window, .. } = self;
         let n = pixels.n.first().filter(|first| pixels.n.iter().all(|n| n == *first));
-        let display = match self.display {
-            Display::Srgb => "srgb",
-            Display::Linear => "linear",
-            Display::Filmic => "filmic",
-        };
         let planes = [("n", n.is_none()), ("rgb", true), ("se", !pixels.se.is_empty())];
         let planes: Vec<_> = planes.iter().filter(|plane| plane.1).map(|plane| plane.0).collect();
         let mut head = json!({
@@ -108,28 +106,54 @@ impl Frame {
             "planes": planes,
             "n": n,
             "unit": pixels.unit,
-            "exposure": self.exposure,
-            "scale": picture::scale(self.exposure),
-            "display": display,
             "samples": self.samples,
             "of_samples": self.of_samples,
             "complete": self.complete,
-        })
-        .to_string();
-        head.extend(std::iter::repeat_n(' ', head.len().wrapping_neg() % 8));
-        let length = u32::try_from(head.len()).expect("a head is a few hundred bytes");
+        });
+        show(&mut head, self.exposure, self.display);
         let counts = if n.is_none() { pixels.n.len() * 4 } else { 0 };
-        let planes = counts + (pixels.rgb.len() + pixels.se.len()) * 2;
-        let mut bytes = Vec::with_capacity(8 + head.len() + planes);
-        bytes.extend(b"LXL1");
-        bytes.extend(length.to_le_bytes());
-        bytes.extend(head.as_bytes());
+        let mut bytes = begin(&head, counts + (pixels.rgb.len() + pixels.se.len()) * 2);
         if n.is_none() {
             bytes.extend(pixels.n.iter().flat_map(|n| n.to_le_bytes()));
         }
         bytes.extend(pixels.rgb.iter().chain(&pixels.se).flat_map(|half| half.to_le_bytes()));
         bytes
     }
+}
+
+/// How a picture is exposed and shown.
+fn show(head: &mut Value, exposure: Option<f64>, display: Display) {
+    head["exposure"] = exposure.into();
+    head["scale"] = picture::scale(exposure).into();
+    head["display"] = match display {
+        Display::Srgb => "srgb",
+        Display::Linear => "linear",
+        Display::Filmic => "filmic",
+    }
+    .into();
+}
+
+/// The beginning of a message, with room for so many bytes of planes.
+fn begin(head: &Value, planes: usize) -> Vec<u8> {
+    let mut head = head.to_string();
+    head.extend(std::iter::repeat_n(' ', head.len().wrapping_neg() % 8));
+    let length = u32::try_from(head.len()).expect("a head is a few hundred bytes");
+    let mut bytes = Vec::with_capacity(8 + head.len() + planes);
+    bytes.extend(MAGIC);
+    bytes.extend(length.to_le_bytes());
+    bytes.extend(head.as_bytes());
+    bytes
+}
+
+/// A picture on its way, shown as a film wants it; `None` if these bytes are no picture.
+pub(super) fn shown_as(bytes: &[u8], settings: &stage::Film) -> Option<Vec<u8>> {
+    let (length, rest) = bytes.strip_prefix(MAGIC)?.split_first_chunk()?;
+    let (head, planes) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+    let mut head = serde_json::from_slice(head).ok()?;
+    show(&mut head, settings.exposure, settings.display);
+    let mut bytes = begin(&head, planes.len());
+    bytes.extend(planes);
+    Some(bytes)
 }
 
 /// Radiance in halves, row by row.
@@ -200,8 +224,6 @@ fn halves(values: &[f32], unit: f64) -> Vec<f16> {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::Value;
-
     use super::*;
 
     const ONE: Reached = Reached { step: 1, samples: 1 };
@@ -229,6 +251,22 @@ mod tests {
         assert_eq!((&head["complete"], &head["planes"]), (&json!(false), &json!(["rgb", "se"])));
         assert_eq!(planes.len(), 7 * 4 * 3 * 2 * 2);
         assert!(half(planes, 7 * 4 * 3).is_infinite());
+    }
+
+    #[test]
+    fn a_picture_is_shown_otherwise_without_another_film() {
+        let film = Film::new(UVec2::new(8, 4), Rect::new(UVec2::ZERO, UVec2::new(8, 4)));
+        let [plain, brighter] = [None, Some(3.0)].map(|exposure| stage::Film {
+            exposure,
+            display: if exposure.is_some() { Display::Filmic } else { Display::Srgb },
+            ..stage::Film::default()
+        });
+        let [before, wanted] =
+            [&plain, &brighter].map(|it| Frame::of_film(&film, it, (ONE, 4)).encode());
+        assert_ne!(before, wanted);
+        assert_eq!(shown_as(&before, &brighter), Some(wanted));
+        assert_eq!(shown_as(b"", &plain), None);
+        assert_eq!(shown_as(b"LXL1\xff\xff\xff\xff", &plain), None);
     }
 
     #[test]

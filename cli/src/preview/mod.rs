@@ -9,8 +9,10 @@ mod assets;
 mod attacks;
 mod board;
 mod browser;
+mod editor;
 mod frame;
 mod guard;
+mod offer;
 mod problem;
 mod server;
 mod session;
@@ -20,6 +22,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread::JoinHandle;
 
+use luxel_core::stage;
 use serde_json::json;
 use tempfile::NamedTempFile;
 use tokio::sync::oneshot;
@@ -29,9 +32,11 @@ use board::{Board, Topic};
 use guard::Gate;
 
 pub(crate) use args::PageArgs;
+pub(crate) use editor::Editor;
 pub(crate) use frame::{Frame, Pixels, Side};
+pub(crate) use offer::{Camera, Field, Param};
 pub(crate) use problem::Problem;
-pub(crate) use session::{Command, PACE};
+pub(crate) use session::{Command, PACE, View};
 
 /// What is known of one pixel beyond the picture: the answer to `Command::Pixel`.
 #[derive(Clone, Debug, Default)]
@@ -42,6 +47,9 @@ pub(crate) struct PixelReply {
     pub(crate) side: Side,
     /// Names and values in reading order: exact radiance, material, depth, normal, `file:line:column`.
     pub(crate) facts: Vec<(String, String)>,
+    /// Of facts that are written somewhere: their name, `file:line:column`, and what opens that in
+    /// an editor.
+    pub(crate) places: Vec<(String, String, Option<String>)>,
 }
 
 /// What is on the page, for whoever has something to show, on any thread.
@@ -120,6 +128,11 @@ impl Screen {
         self.0.pin(frame.side.topic(), frame.generation, frame.encode().into());
     }
 
+    /// Shows the last picture as a film wants it shown now.
+    pub(crate) fn shown_as(&self, settings: &stage::Film) {
+        self.0.alter(Side::A.topic(), |picture| frame::shown_as(picture, settings).map(Into::into));
+    }
+
     /// Lays messages over the last good picture; none takes them away.
     pub(crate) fn problems(&self, problems: &[Problem]) {
         self.0.tell(Topic::Problems, &json!({ "problems": problems }));
@@ -132,9 +145,20 @@ impl Screen {
 
     /// Answers the last question for a pixel.
     pub(crate) fn pixel(&self, reply: &PixelReply) {
-        let PixelReply { at, side, facts } = reply;
-        let reply = json!({ "pixel": { "at": at.to_array(), "side": side, "facts": facts } });
-        self.0.tell(Topic::Pixel, &reply);
+        let PixelReply { at, side, facts, places } = reply;
+        let at = at.to_array();
+        let reply = json!({ "at": at, "side": side, "facts": facts, "places": places });
+        self.0.tell(Topic::Pixel, &json!({ "pixel": reply }));
+    }
+
+    /// Offers what may be set, and says how a command line sets what is set now.
+    pub(crate) fn params(&self, params: &[Param], line: &str) {
+        self.0.tell(Topic::Params, &json!({ "params": params, "line": line }));
+    }
+
+    /// Tells where the camera stands; none cannot be moved.
+    pub(crate) fn camera(&self, camera: Option<&Camera>) {
+        self.0.tell(Topic::Camera, &json!({ "camera": camera }));
     }
 }
 

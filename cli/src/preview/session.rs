@@ -22,6 +22,32 @@ pub(crate) enum Command {
         /// In which picture.
         side: Side,
     },
+    /// Another value for a `param` of the scene.
+    Set {
+        /// Of which.
+        name: String,
+        /// As `--set` takes it; none takes back what was set here.
+        value: Option<String>,
+    },
+    /// Stands the camera elsewhere.
+    Camera {
+        /// In the world; none stands it where the file does.
+        view: Option<View>,
+    },
+    /// Every `param` as the file says.
+    ResetParams,
+}
+
+/// Where the camera is to stand, in the world.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct View {
+    /// Its place, metres.
+    pub(crate) from: [f64; 3],
+    /// Straight ahead, metres.
+    pub(crate) to: [f64; 3],
+    /// Which way is up.
+    pub(crate) up: [f64; 3],
 }
 
 /// What a page says.
@@ -102,7 +128,33 @@ mod tests {
         let Ok(Said::Ask(command)) = serde_json::from_str(pixel) else { panic!("refused") };
         assert_eq!(command, expected);
         assert!(matches!(serde_json::from_str(r#""drawn""#), Ok(Said::Drawn)));
-        for wrong in ["", "drawn", r#"{"ask":{"pixel":{"at":[-1,4],"side":"a"}}}"#, "[]"] {
+        let set = r#"{"ask":{"set":{"name":"r","value":"2 m"}}}"#;
+        let expected = Command::Set { name: "r".into(), value: Some("2 m".into()) };
+        let Ok(Said::Ask(command)) = serde_json::from_str(set) else { panic!("refused") };
+        assert_eq!(command, expected);
+        let view = r#"{"ask":{"camera":{"view":{"from":[0,1,2.5],"to":[0,0,0],"up":[0,1,0]}}}}"#;
+        let Ok(Said::Ask(Command::Camera { view: Some(view) })) = serde_json::from_str(view) else {
+            panic!("refused")
+        };
+        assert!((view.from[2] - 2.5).abs() < 1e-12);
+        let back = r#"{"ask":{"camera":{"view":null}}}"#;
+        assert!(matches!(
+            serde_json::from_str(back),
+            Ok(Said::Ask(Command::Camera { view: None }))
+        ));
+        assert!(matches!(
+            serde_json::from_str(r#"{"ask":"reset_params"}"#),
+            Ok(Said::Ask(Command::ResetParams))
+        ));
+        let odd = r#"{"ask":{"camera":{"view":{"from":[0,1],"to":[0,0,0],"up":[0,1,0]}}}}"#;
+        for wrong in [
+            odd,
+            r#"{"ask":{"set":{"name":1}}}"#,
+            "",
+            "drawn",
+            r#"{"ask":{"pixel":{"at":[-1,4],"side":"a"}}}"#,
+            "[]",
+        ] {
             assert!(serde_json::from_str::<Said>(wrong).is_err(), "{wrong}");
         }
     }

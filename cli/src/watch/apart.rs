@@ -9,7 +9,7 @@ use luxel_core::render::Control;
 
 use super::Args;
 use super::changes::{self, Changes, Noticed, Wake};
-use super::round::{self, Course, Read};
+use super::round::{Course, Read, Sitting};
 use crate::exit::{Exit, Failure};
 use crate::files::Watched;
 use crate::interrupt::{self, Guard};
@@ -43,7 +43,8 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let interrupt = guard.on_ctrl_c(move || stop.cancel())?;
     beat.rendering(&control, interrupt);
     let course = Course { control: &control, guard: &guard, beat };
-    round::render(args, (&stage, &Read { files, sources }), &course, &mut |_, _| {})?;
+    let read = Arc::new(Read { files, sources });
+    Sitting::new(Arc::new(stage), read, None).render(args, &course, &mut |_, _| {})?;
     Ok(Exit::Fine)
 }
 

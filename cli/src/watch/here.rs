@@ -4,16 +4,19 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::Scope;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
-use luxel_core::render::{Control, Look};
+use luxel_core::render::Control;
 
 use super::Args;
+use super::audience::Audience;
 use super::changes::{Changes, Noticed, Wake};
-use super::page::{self, Page};
-use super::round::{self, Course, Read};
+use super::edit::{self, Edit};
+use super::reading;
+use super::round::{Course, Read, Sitting};
 use super::shown::{Shown, Subject};
+use super::wishes::Wishes;
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::files::{Asked, look};
@@ -25,6 +28,9 @@ use crate::report::{self, Stream};
 
 /// Between two looks at whether a scene is ready.
 const TICK: Duration = Duration::from_millis(1);
+
+/// So long nothing is saved when a scene is called stable.
+const STILL: Duration = Duration::from_millis(120);
 
 /// What Ctrl-C ends: the render and the build in hand.
 #[derive(Clone, Default)]
@@ -52,6 +58,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     let plugins = session.refresh(&args.plugins, &surroundings)?;
     plugins.notes.tell(args.form(), Stream::Error)?;
     let (mut changes, waker) = Changes::new();
+    let wishes = Wishes::new(changes.wished(), waker.clone());
     let in_hand = InHand::default();
     let stopped = in_hand.clone();
     let guard = Guard::default();
@@ -62,33 +69,39 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         build.cancel();
     })?;
     changes.arm([args.file.as_path()]);
-    let page = args.preview.then(|| Page::start(&args.file, &args.page)).transpose()?;
+    let audience = Audience::new(args, wishes)?;
     std::thread::scope(|scope| {
         let mut watching = Watching {
             args,
             scope,
             guard: &guard,
-            page: page.as_ref(),
+            audience: &audience,
             in_hand,
             plugins,
             changes,
             asked: Asked::default(),
             shown: None,
             impatient: true,
+            is_good: false,
         };
         let ended = watching.rounds(&mut session, &surroundings);
-        watching.end();
-        ended
-    })?;
-    report::note("watching has ended");
-    Ok(Exit::Fine)
+        let has_picture = watching.end();
+        ended.map(|()| has_picture)
+    })
+    .map(|has_picture| {
+        if args.then.once_stable {
+            return if has_picture { Exit::Fine } else { Exit::Input };
+        }
+        report::note("watching has ended");
+        Exit::Fine
+    })
 }
 
 struct Watching<'scope, 'env> {
     args: &'env Args,
     scope: &'scope Scope<'scope, 'env>,
     guard: &'env Guard,
-    page: Option<&'env Page>,
+    audience: &'env Audience,
     in_hand: InHand,
     plugins: Plugins,
     changes: Changes,
@@ -99,6 +112,8 @@ struct Watching<'scope, 'env> {
     /// Whether a save ends the making ready of a scene. Not twice in a row: however fast saves come,
     /// pictures follow.
     impatient: bool,
+    /// Whether the last load gave a scene.
+    is_good: bool,
 }
 
 impl Watching<'_, '_> {
@@ -109,17 +124,32 @@ impl Watching<'_, '_> {
     fn rounds(&mut self, session: &mut Session, around: &Surroundings) -> Result<(), Failure> {
         loop {
             let next = self.round()?;
-            self.page.inspect(|page| page.has_read());
+            self.audience.page().inspect(|page| page.has_read());
             let next = match next {
-                Next::Wait if self.changes.wait() => Next::Read,
-                Next::Wait => Next::End,
+                Next::Wait => self.wait(),
                 next => next,
             };
             if next == Next::End {
                 return Ok(());
             }
-            self.page.inspect(|page| page.reading());
+            self.audience.page().inspect(|page| page.reading());
             self.renew(session, (&self.args.plugins, around))?;
+        }
+    }
+
+    /// Waits for a save, or for the picture if that is the end.
+    fn wait(&mut self) -> Next {
+        loop {
+            let noticed = self.changes.within(STILL);
+            let is_done = || self.shown.as_ref().is_some_and(|it| it.thread.is_finished());
+            match noticed {
+                Noticed::Save => return Next::Read,
+                Noticed::Stop => return Next::End,
+                Noticed::Nothing if self.args.then.once_stable && self.is_good && is_done() => {
+                    return Next::End;
+                }
+                Noticed::Nothing => {}
+            }
         }
     }
 
@@ -131,8 +161,7 @@ impl Watching<'_, '_> {
         match self.load() {
             // A panic in a plugin ends this attempt, not the watch.
             Err(failure) if failure.exit == Exit::Ours => {
-                report::failure(&failure);
-                self.page.inspect(|page| page.failed(&failure));
+                self.audience.failed(&failure);
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
                 let told = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
                 let also = libraries.chain([self.args.file.as_path()]);
@@ -146,24 +175,25 @@ impl Watching<'_, '_> {
     }
 
     fn load(&mut self) -> Result<Next, Failure> {
-        let Args { file, load, render, .. } = self.args;
-        let form = self.args.form();
+        let (form, begun) = (self.args.form(), Instant::now());
         let (line, known) = (!self.args.quiet, self.changes.known().clone());
         let course = load::Course { known, line, ..load::Course::default() };
-        let text = load::read(file, load, render.size, &self.plugins, &course)?;
+        self.is_good = false;
+        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
+        let text = reading::read(self.args, &self.plugins, self.audience.page(), before, &course)?;
         self.asked = text.files.shared().clone();
         if let Some(Shown { subject, .. }) = &mut self.shown
             && subject.is_of(&text, self.changes.known())
         {
+            self.is_good = true;
             subject.read_again(&text);
             self.changes.expect(subject.files.clone());
             report::diagnostics(&text.diagnostics, &text.sources, form, Stream::Error)?;
             let Subject { warnings, read, .. } = &*subject;
             let told = [(&text.diagnostics, &text.sources), (warnings, &read.sources)];
-            self.page.inspect(|page| page.problems(&told));
+            self.audience.page().inspect(|page| page.problems(&told));
             return Ok(Next::Wait);
         }
-        let hash = text.scene.as_ref().map(luxel_core::scene::Scene::hash);
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
         let (loaded, noticed) = self.build(text, &course);
         let loaded = match noticed {
@@ -178,13 +208,23 @@ impl Watching<'_, '_> {
         if loaded.stage.is_some() || !self.changes.more_to_come() {
             report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
             let told = [(&loaded.diagnostics, &loaded.sources)];
-            self.page.inspect(|page| page.problems(&told));
+            self.audience.page().inspect(|page| page.problems(&told));
         }
-        let Loaded { stage, files, sources, mut diagnostics, .. } = loaded;
-        if let (Some(stage), Some(hash)) = (stage, hash) {
-            let (stage, read) = (Arc::new(stage), Arc::new(Read { files, sources }));
+        let Loaded { scene, stage, files, sources, mut diagnostics, anew } = loaded;
+        if let (Some(stage), Some(scene)) = (stage, scene) {
+            self.is_good = true;
+            let before = self.shown.as_ref().map(|Shown { subject, .. }| subject);
+            let changes = before.map_or(vec![], |before| {
+                edit::changes((&before.scene, &before.files), (&scene, &watched), &texts)
+            });
+            let edit = Edit::new(changes, anew, begun.elapsed().as_secs_f64());
+            if !self.args.quiet && !self.args.json {
+                report::aside(&edit.words());
+            }
+            let (scene, stage) = (Arc::new(scene), Arc::new(stage));
+            let read = Arc::new(Read { files, sources });
             let warnings = diagnostics.split_off(n_told.min(diagnostics.len()));
-            self.show(Subject { hash, stage, read, files: watched, texts, warnings });
+            self.turn_to(Subject { scene, stage, read, files: watched, texts, warnings }, edit);
         }
         Ok(Next::Wait)
     }
@@ -217,38 +257,53 @@ impl Watching<'_, '_> {
         (built.unwrap_or_else(|payload| Err(lost(payload))), noticed)
     }
 
+    /// Goes on with the picture before if only how it is shown has changed, else begins one.
+    fn turn_to(&mut self, subject: Subject, edit: Edit) {
+        let Some(shown) = &mut self.shown else { return self.show(subject, edit) };
+        if !subject.is_measured_by(&shown.subject) {
+            return self.show(subject, edit);
+        }
+        let of = (subject.stage.clone(), subject.read.clone());
+        let course = Course { control: &shown.control, guard: self.guard, beat: &Beat::silent() };
+        let written = shown.sitting.show_as(of, edit, self.args, &course);
+        shown.subject = subject;
+        self.audience.page().inspect(|page| page.shows(&shown.subject.stage, &shown.subject.read));
+        self.audience.told(written);
+    }
+
     /// Ends the picture before, and begins one.
-    fn show(&mut self, subject: Subject) {
+    fn show(&mut self, subject: Subject, edit: Edit) {
         if let Some(before) = self.shown.take() {
             before.control.supersede();
             before.ended();
         }
         let control = Arc::new(Control::default());
         self.in_hand.get().0.clone_from(&control);
-        let (args, guard, page) = (self.args, self.guard, self.page);
+        let (args, guard, audience) = (self.args, self.guard, self.audience);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
+        self.audience.page().inspect(|page| page.stands_at(&stage, &self.plugins.registry, &read));
         let of_samples = args.render.options().samples(&stage);
-        let follow =
-            |page: &Page| -> Box<Look<'_>> { Box::new(page.follow(&stage, &read, of_samples)) };
-        let mut look = page.map_or_else(page::unseen, follow);
+        let mut look = audience.follow(&stage, &read, of_samples);
+        let sitting = Arc::new(Sitting::new(stage.clone(), read.clone(), Some(edit)));
+        let sits = sitting.clone();
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
-            if let Err(failure) = round::render(args, (&stage, &read), &course, &mut *look) {
-                report::failure(&failure);
-                page.inspect(|page| page.lost(&failure));
-            } else if stage.has_failed() {
-                page.inspect(|page| page.broke(&stage.failures(), &read.sources));
+            audience.told(sits.render(args, &course, &mut look));
+            if let Some(page) = audience.page().filter(|_| stage.has_failed()) {
+                page.broke(&stage.failures(), &read.sources);
             }
         });
-        self.shown = Some(Shown { subject, control, thread });
+        self.shown = Some(Shown { subject, sitting, control, thread });
     }
 
-    /// Ends the picture in hand.
-    fn end(&mut self) {
-        if let Some(shown) = self.shown.take() {
+    /// Ends the picture in hand: whether it was whole.
+    fn end(&mut self) -> bool {
+        self.shown.take().is_some_and(|shown| {
             shown.control.cancel();
+            let sitting = shown.sitting.clone();
             shown.ended();
-        }
+            sitting.is_done()
+        })
     }
 
     /// Opens libraries anew if one has changed, or what is trusted has.
@@ -271,8 +326,7 @@ impl Watching<'_, '_> {
             }
             // A lock or configuration that cannot be understood leaves everything as it was.
             Err(failure) => {
-                report::failure(&failure);
-                self.page.inspect(|page| page.failed(&failure));
+                self.audience.failed(&failure);
                 let seen = |path: &PathBuf| (path.clone(), look(path));
                 self.plugins.watched = self.plugins.watched.keys().map(seen).collect();
                 Ok(())

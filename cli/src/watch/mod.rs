@@ -1,12 +1,23 @@
 //! `luxel watch`: render again whenever a file that the scene reads is saved.
 
+mod after;
 mod apart;
+mod audience;
+mod camera;
 mod changes;
+mod edit;
+mod facts;
 mod here;
+mod mailbox;
 mod page;
+mod params;
+mod reading;
 mod round;
 mod shown;
+mod tev;
+mod wishes;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
@@ -24,6 +35,8 @@ use crate::report::Form;
 Examples:
   luxel watch scenes/cornell.scene
   luxel watch scenes/cornell.scene --preview
+  luxel watch scenes/cornell.scene --exec 'cp $LUXEL_PNG last.png'
+  luxel watch scenes/cornell.scene --preview --editor 'vscode://file/{file}:{line}:{column}'
   luxel watch scenes/cornell.scene -o small --size 320x320 --spp 16
   luxel watch scenes/cornell.scene --plugin-dir target/release --isolate")]
 pub(crate) struct Args {
@@ -42,6 +55,8 @@ pub(crate) struct Args {
     preview: bool,
     #[command(flatten)]
     page: PageArgs,
+    #[command(flatten)]
+    then: ThenArgs,
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
@@ -49,6 +64,29 @@ pub(crate) struct Args {
     /// JSON lines on standard error
     #[arg(long)]
     json: bool,
+}
+
+/// What is done with pictures beside writing them.
+#[derive(clap::Args, Debug)]
+struct ThenArgs {
+    /// Run this command of the shell after each finished picture, with `LUXEL_SCENE`,
+    /// `LUXEL_EXR` and `LUXEL_PNG` in its environment
+    #[arg(long, value_name = "COMMAND", conflicts_with = "isolate")]
+    exec: Option<OsString>,
+    /// Show every picture in tev too, which listens at this address
+    #[arg(
+        long,
+        value_name = "HOST:PORT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = tev::ADDRESS,
+        conflicts_with = "isolate"
+    )]
+    tev: Option<String>,
+    /// Wait until there is a scene without mistakes and nothing is saved any more, and end with its
+    /// picture
+    #[arg(long, conflicts_with = "isolate")]
+    once_stable: bool,
 }
 
 impl Args {

@@ -9,15 +9,20 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use luxel_core::diag::{Diagnostic, Sources, Span};
+use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::film::Film;
-use luxel_core::render::{Look, Reached};
-use luxel_core::scene::{Node, NodeId};
-use luxel_core::stage::{Skin, Stage};
+use luxel_core::registry::Registry;
+use luxel_core::render::Reached;
+use luxel_core::stage::Stage;
 
+use super::camera;
+use super::facts::{Facts, facts};
 use super::round::Read;
+use super::wishes::Wishes;
 use crate::exit::Failure;
-use crate::preview::{Command, Frame, PACE, PageArgs, PixelReply, Preview, Problem, Screen};
+use crate::preview::{
+    Command, Editor, Frame, PACE, PageArgs, Param, PixelReply, Preview, Problem, Screen,
+};
 use crate::report;
 
 /// Between two looks at whether the watch has ended.
@@ -30,6 +35,7 @@ type About = Arc<Mutex<Option<(Arc<Stage>, Arc<Read>)>>>;
 pub(super) struct Page {
     screen: Screen,
     about: About,
+    wishes: Arc<Wishes>,
     generation: AtomicU64,
     /// How far the picture is.
     standing: Arc<Mutex<String>>,
@@ -40,11 +46,12 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// Serves it, and tells where.
+    /// Serves it, and tells where; what it asks for beyond the file is wished for.
     ///
     /// # Errors
-    /// A port that is taken.
-    pub(super) fn start(file: &Path, args: &PageArgs) -> Result<Self, Failure> {
+    /// A port that is taken; no address of an editor.
+    pub(super) fn start(file: &Path, args: &PageArgs, wishes: Wishes) -> Result<Self, Failure> {
+        let editor = args.editor()?;
         let title = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
         let mut preview = Preview::start(args, &title)?;
         report::note(&format!("preview: {}", preview.url()));
@@ -53,12 +60,13 @@ impl Page {
         }
         let (screen, about) = (preview.screen().clone(), About::default());
         let ended = Arc::new(AtomicBool::new(false));
-        let (subject, over) = (about.clone(), ended.clone());
-        let answering = std::thread::spawn(move || answer(&preview, &subject, &over));
+        let (subject, over, wishes) = (about.clone(), ended.clone(), Arc::new(wishes));
+        let answering = Answering { editor, wishes: wishes.clone(), about: subject };
+        let answering = std::thread::spawn(move || answering.answer(&preview, &over));
         let (generation, broken, answering) =
             (AtomicU64::new(0), Mutex::default(), Some(answering));
         let standing = Arc::default();
-        Ok(Self { screen, about, generation, standing, broken, ended, answering })
+        Ok(Self { screen, about, wishes, generation, standing, broken, ended, answering })
     }
 
     /// Tells that a save has been noticed, until it is known what it shows.
@@ -69,6 +77,22 @@ impl Page {
     /// Tells how far the picture is.
     pub(super) fn has_read(&self) {
         self.screen.status(&lock(&self.standing));
+    }
+
+    /// What the page asks for beyond the file.
+    pub(super) fn wishes(&self) -> &Wishes {
+        &self.wishes
+    }
+
+    /// Offers what may be set, and says how a command line sets what is set now.
+    pub(super) fn params(&self, params: &[Param], line: &str) {
+        self.screen.params(params, line);
+    }
+
+    /// Tells where the camera of a scene stands that is shown from now on.
+    pub(super) fn stands_at(&self, stage: &Stage, registry: &Registry, read: &Read) {
+        let told = camera::told(stage, (registry, &read.sources), self.wishes.is_moved());
+        self.screen.camera(told.as_ref());
     }
 
     /// Lays messages over the last good picture, each list with the texts that it is about; none
@@ -99,6 +123,12 @@ impl Page {
         *self.broken.lock().unwrap_or_else(PoisonError::into_inner) = told;
     }
 
+    /// The picture shows this from now on, which differs only in how it is shown.
+    pub(super) fn shows(&self, stage: &Arc<Stage>, read: &Arc<Read>) {
+        *lock(&self.about) = Some((stage.clone(), read.clone()));
+        self.screen.shown_as(&stage.film);
+    }
+
     /// Shows pictures of a scene from now on, of so many samples in the end.
     pub(super) fn follow(
         &self,
@@ -109,9 +139,9 @@ impl Page {
         *lock(&self.about) = Some((stage.clone(), read.clone()));
         self.broken.lock().unwrap_or_else(PoisonError::into_inner).clear();
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
-        let (screen, settings) = (self.screen.clone(), stage.film.clone());
-        let standing = self.standing.clone();
-        *lock(&standing) = "rendering".to_owned();
+        let (screen, about) = (self.screen.clone(), self.about.clone());
+        let (standing, settings) = (self.standing.clone(), stage.film.clone());
+        "rendering".clone_into(&mut lock(&standing));
         let mut last = None;
         move |film: &Film, now: Reached| {
             let is_last = now.step == 1 && now.samples >= of_samples;
@@ -119,7 +149,9 @@ impl Page {
             if !is_last && (is_soon || !screen.is_watched()) {
                 return;
             }
-            let frame = Frame::of_film(film, &settings, (now, of_samples));
+            let shown = lock(&about).as_ref().map(|(stage, _)| stage.film.clone());
+            let settings = shown.as_ref().unwrap_or(&settings);
+            let frame = Frame::of_film(film, settings, (now, of_samples));
             screen.show(&Frame { generation, ..frame });
             let status = status(now, of_samples);
             screen.status(&status);
@@ -140,11 +172,6 @@ fn problems(found: &[Diagnostic], sources: &Sources) -> impl Iterator<Item = Pro
     found.iter().map(move |found| Problem::of_diagnostic(found, sources))
 }
 
-/// Nobody looks on.
-pub(super) fn unseen() -> Box<Look<'static>> {
-    Box::new(|_: &Film, _: Reached| {})
-}
-
 fn status(now: Reached, of_samples: u32) -> String {
     match now {
         Reached { step: 1, samples } if samples >= of_samples => format!("{samples} samples, done"),
@@ -157,92 +184,43 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Answers what the page asks, until the watch has ended.
-fn answer(preview: &Preview, about: &About, ended: &AtomicBool) {
-    while !ended.load(Ordering::Relaxed) {
-        let (at, side) = match preview.commands().recv_timeout(LOOK) {
-            Ok(Command::Pixel { at, side }) => (UVec2::from(at), side),
-            Err(RecvTimeoutError::Timeout) => continue,
-            Err(RecvTimeoutError::Disconnected) => return,
-        };
-        let scene = lock(about).clone();
-        let facts = scene.map_or(vec![], |(stage, read)| facts(&stage, &read.sources, at));
-        preview.screen().pixel(&PixelReply { at, side, facts });
-    }
+/// Whoever answers what the page asks.
+struct Answering {
+    editor: Option<Editor>,
+    wishes: Arc<Wishes>,
+    about: About,
 }
 
-/// What the middle of a pixel shows, as names and values.
-fn facts(stage: &Stage, sources: &Sources, at: UVec2) -> Vec<(String, String)> {
-    let inside = at.cmplt(stage.film.resolution).all();
-    let Some((first, placement)) = inside.then(|| stage.probe(at)).flatten() else {
-        return vec![("shape".into(), "none: the light of the sky".into())];
-    };
-    let about = |id: NodeId| {
-        let node = stage.scene.nodes.get(id.0 as usize)?;
-        Some((name(node), place(node.span, sources)))
-    };
-    let mut facts = vec![];
-    if let Some((name, place)) = about(placement.node) {
-        facts.push(("shape".to_owned(), name));
-        facts.push(("written at".to_owned(), place));
-    }
-    if let Skin::Material(material) = placement.skin
-        && let Some((name, place)) = about(stage.material_nodes[material as usize])
-    {
-        facts.push(("material".to_owned(), format!("{name}, {place}")));
-    }
-    let (p, n) = (first.surface.p, first.surface.ns);
-    facts.push(("depth".to_owned(), format!("{:.6} m", first.t)));
-    facts.push(("point".to_owned(), format!("({:.6}, {:.6}, {:.6}) m", p.x, p.y, p.z)));
-    facts.push(("normal".to_owned(), format!("({:.4}, {:.4}, {:.4})", n.x, n.y, n.z)));
-    facts
-}
-
-/// What people call an object: its class, and its name if it has one.
-fn name(node: &Node) -> String {
-    match &node.label {
-        Some(label) => format!("{} \"{label}\"", node.class),
-        None => node.class.to_string(),
-    }
-}
-
-fn place(span: Span, sources: &Sources) -> String {
-    let at = sources.line_column(span.source, span.start as usize);
-    format!("{}:{}:{}", sources.name(span.source), at.line, at.column)
-}
-
-#[cfg(test)]
-mod tests {
-    use luxel_core::files::MemoryFiles;
-    use luxel_core::registry::Registry;
-
-    use super::*;
-
-    #[test]
-    fn a_pixel_tells_its_shape_its_material_and_where_they_are_written() {
-        let text = "scene 1\n\
-            camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }\n\
-            film rgb { resolution = (9, 9) }\n\
-            light constant { scale = 1 }\n\
-            let grey = material diffuse { reflectance = 0.5 }\n\
-            shape sphere \"ball\" { radius = 1 m, material = grey }\n";
-        let mut registry = Registry::new();
-        for classes in luxel_builtin::CLASSES {
-            registry.add("builtin", classes).unwrap();
-        }
-        let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-        let settings = luxel_lang::Settings::default();
-        let read = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
-        let scene = read.scene.unwrap();
-        let stage = luxel_core::stage::build(&scene, &registry, &files, None).unwrap().stage;
-        let told = facts(&stage, &read.sources, UVec2::splat(4));
-        let of = |name: &str| told.iter().find(|fact| fact.0 == name).map(|fact| fact.1.as_str());
-        assert_eq!(of("shape"), Some("sphere \"ball\""));
-        assert_eq!(of("written at"), Some("a.scene:6:1"));
-        assert_eq!(of("depth"), Some("4.000000 m"));
-        assert!(of("material").unwrap().starts_with("diffuse, a.scene:5:"), "{told:?}");
-        for at in [UVec2::ZERO, UVec2::splat(9), UVec2::MAX] {
-            assert_eq!(facts(&stage, &read.sources, at).len(), 1, "{at}");
+impl Answering {
+    /// Until the watch has ended.
+    fn answer(&self, preview: &Preview, ended: &AtomicBool) {
+        while !ended.load(Ordering::Relaxed) {
+            let (at, side) = match preview.commands().recv_timeout(LOOK) {
+                Ok(Command::Pixel { at, side }) => (UVec2::from(at), side),
+                Ok(Command::Set { name, value }) => {
+                    self.wishes.change(|wish| wish.set(name, value));
+                    continue;
+                }
+                Ok(Command::Camera { view }) => {
+                    let to = view.as_ref().map(camera::view);
+                    // What is no view changes nothing.
+                    if to != Some(None) {
+                        self.wishes.change(|wish| wish.view = to.flatten());
+                    }
+                    continue;
+                }
+                Ok(Command::ResetParams) => {
+                    self.wishes.change(|wish| wish.set.clear());
+                    continue;
+                }
+                Err(RecvTimeoutError::Timeout) => continue,
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+            let scene = lock(&self.about).clone();
+            let found =
+                scene.map(|(stage, read)| facts(&stage, &read.sources, self.editor.as_ref(), at));
+            let Facts { told: facts, places } = found.unwrap_or_default();
+            preview.screen().pixel(&PixelReply { at, side, facts, places });
         }
     }
 }

@@ -1,6 +1,6 @@
-//! One picture of a watch, shown as it grows.
+//! One picture of a watch: measured once, and shown in whatever way is wanted by then.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use luxel_core::diag::Sources;
 use luxel_core::film::Film;
@@ -8,6 +8,7 @@ use luxel_core::render::{Control, Look, Options, Outcome, Reached};
 use luxel_core::stage::Stage;
 
 use super::Args;
+use super::edit::Edit;
 use crate::exit::Failure;
 use crate::files::DiskFiles;
 use crate::interrupt::Guard;
@@ -34,80 +35,158 @@ pub(super) struct Course<'a> {
 /// With more samples than this, a PNG of one sample per pixel comes first.
 const COARSE: u32 = 4;
 
-/// Renders and writes the picture, which `look` sees grow; one that was cancelled or failed is not
-/// written, and the last stays.
-///
-/// # Errors
-/// What stands in the way; a panic in the renderer.
-pub(super) fn render(
-    args: &Args,
-    (stage, read): (&Stage, &Read),
-    course: &Course<'_>,
-    look: &mut Look<'_>,
-) -> Result<(), Failure> {
-    let Course { control, guard, beat } = course;
-    let film_file = stage.film.file.as_deref();
-    let output = Output::choose(args.render.output.as_deref(), film_file, &args.file)?;
-    output.check(&read.files)?;
-    guard.measuring();
-    beat.phase(Phase::Rendering);
-    let options = Options { coarse: args.preview, ..args.render.options() };
-    let first = options.samples(stage) > COARSE;
-    let mut refused = None;
-    let mut seen = |film: &Film, now: Reached| {
-        look(film, now);
-        if first && now == ONE_SAMPLE && !control.is_cancelled() {
-            refused = coarse((&output, film, stage), course).err();
-            if refused.is_some() {
-                // What cannot be written is not worth more samples.
-                control.cancel();
+/// A scene of which a picture is made. While it is measured, and afterwards, another exposure may be
+/// wanted, or another file.
+pub(super) struct Sitting(Mutex<Shown>);
+
+struct Shown {
+    stage: Arc<Stage>,
+    read: Arc<Read>,
+    edit: Option<Edit>,
+    /// The picture, with the samples that it took.
+    done: Option<(Measured, u64)>,
+}
+
+impl Sitting {
+    pub(super) fn new(stage: Arc<Stage>, read: Arc<Read>, edit: Option<Edit>) -> Self {
+        Self(Mutex::new(Shown { stage, read, edit, done: None }))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Shown> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// How the picture is shown now.
+    pub(super) fn stage(&self) -> Arc<Stage> {
+        self.lock().stage.clone()
+    }
+
+    /// Whether there is a picture, all of its samples taken.
+    pub(super) fn is_done(&self) -> bool {
+        self.lock().done.is_some()
+    }
+
+    /// Renders and writes the picture, which `look` sees grow; one that was cancelled or failed is not
+    /// written, and the last stays. Returns where it is, if it is there.
+    ///
+    /// # Errors
+    /// What stands in the way; a panic in the renderer.
+    pub(super) fn render(
+        &self,
+        args: &Args,
+        course: &Course<'_>,
+        look: &mut Look<'_>,
+    ) -> Result<Option<Output>, Failure> {
+        let Course { control, guard, beat } = course;
+        let stage = self.stage();
+        self.lock().output(args)?;
+        guard.measuring();
+        beat.phase(Phase::Rendering);
+        let options =
+            Options { coarse: args.preview, courteous: args.preview, ..args.render.options() };
+        let first = options.samples(&stage) > COARSE;
+        let mut refused = None;
+        let mut seen = |film: &Film, now: Reached| {
+            look(film, now);
+            if first && now == ONE_SAMPLE && !control.is_cancelled() {
+                refused = self.lock().coarse(args, film, course).err();
+                if refused.is_some() {
+                    // What cannot be written is not worth more samples.
+                    control.cancel();
+                }
             }
+        };
+        let of = (args.file.as_path(), &*stage);
+        let measured = measure::measure(of, &options, control, !args.quiet, &mut seen)?;
+        if let Some(failure) = refused {
+            return Err(failure);
         }
-    };
-    let of = (args.file.as_path(), stage);
-    let measured = measure::measure(of, &options, control, !args.quiet, &mut seen)?;
-    if let Some(failure) = refused {
-        return Err(failure);
+        let mut shown = self.lock();
+        match measured.outcome {
+            Outcome::Cancelled => return Ok(None),
+            // A library's code failed: what was measured may be wrong.
+            Outcome::Failed => {
+                let (found, sources) = (stage.failures(), &shown.read.sources);
+                report::diagnostics(&found, sources, args.form(), Stream::Error)?;
+                return Ok(None);
+            }
+            Outcome::Complete => {}
+        }
+        shown.done = Some((measured, control.samples_done()));
+        shown.write(args, course).map(Some)
     }
-    let Measured { film, outcome, seconds } = measured;
-    match outcome {
-        Outcome::Cancelled => return Ok(()),
-        Outcome::Failed => return failed(args, stage, read),
-        Outcome::Complete => {}
-    }
-    let _whole = guard.saving();
-    beat.phase(Phase::Saving);
-    let of = (stage, &read.files);
-    let took = (seconds, control.samples_done());
-    let summary = Summary::new(of, &options, (&film, outcome), took);
-    picture::write(&output, &film, &stage.film, &summary.notes())?;
-    if args.json {
-        report::out(&format!("{}\n", summary.json(&output)))
-    } else if args.quiet {
-        Ok(())
-    } else {
-        report::out(&summary.text(&output))
+
+    /// Shows what is or will be measured in another way. Returns where the picture is, if it is there.
+    ///
+    /// # Errors
+    /// A picture that cannot be written; the one before stays.
+    pub(super) fn show_as(
+        &self,
+        (stage, read): (Arc<Stage>, Arc<Read>),
+        edit: Edit,
+        args: &Args,
+        course: &Course<'_>,
+    ) -> Result<Option<Output>, Failure> {
+        let mut shown = self.lock();
+        (shown.stage, shown.read, shown.edit) = (stage, read, Some(edit));
+        if shown.done.is_none() {
+            return Ok(None);
+        }
+        shown.write(args, course).map(Some)
     }
 }
 
 /// When every pixel has one sample.
 const ONE_SAMPLE: Reached = Reached { step: 1, samples: 1 };
 
-/// Writes the PNG of one sample per pixel; whoever waits for a picture has one.
-fn coarse(
-    (output, film, stage): (&Output, &Film, &Stage),
-    Course { guard, beat, .. }: &Course<'_>,
-) -> Result<(), Failure> {
-    let whole = guard.saving();
-    beat.phase(Phase::Saving);
-    let written = picture::preview(output, film, &stage.film);
-    drop(whole);
-    guard.measuring();
-    beat.phase(Phase::Rendering);
-    written
-}
+impl Shown {
+    /// Where the picture goes, if it can go there.
+    fn output(&self, args: &Args) -> Result<Output, Failure> {
+        let file = self.stage.film.file.as_deref();
+        let output = Output::choose(args.render.output.as_deref(), file, &args.file)?;
+        output.check(&self.read.files)?;
+        Ok(output)
+    }
 
-/// A library's code failed: what was measured may be wrong.
-fn failed(args: &Args, stage: &Stage, read: &Read) -> Result<(), Failure> {
-    report::diagnostics(&stage.failures(), &read.sources, args.form(), Stream::Error)
+    /// Writes the PNG of one sample per pixel; whoever waits for a picture has one.
+    fn coarse(
+        &self,
+        args: &Args,
+        film: &Film,
+        Course { guard, beat, .. }: &Course<'_>,
+    ) -> Result<(), Failure> {
+        let output = self.output(args)?;
+        let whole = guard.saving();
+        beat.phase(Phase::Saving);
+        let written = picture::preview(&output, film, &self.stage.film);
+        drop(whole);
+        guard.measuring();
+        beat.phase(Phase::Rendering);
+        written
+    }
+
+    /// Writes the picture and tells of it.
+    fn write(
+        &self,
+        args: &Args,
+        Course { guard, beat, .. }: &Course<'_>,
+    ) -> Result<Output, Failure> {
+        let output = self.output(args)?;
+        let Some((Measured { film, outcome, seconds }, samples)) = &self.done else {
+            return Ok(output);
+        };
+        let _whole = guard.saving();
+        beat.phase(Phase::Saving);
+        let (of, took) = ((&*self.stage, &self.read.files), (*seconds, *samples));
+        let summary = Summary::new(of, &args.render.options(), (film, *outcome), took);
+        picture::write(&output, film, &self.stage.film, &summary.notes())?;
+        if args.json {
+            let mut told = summary.json(&output);
+            told["edit"] = self.edit.as_ref().map(Edit::json).into();
+            report::out(&format!("{told}\n"))?;
+        } else if !args.quiet {
+            report::out(&summary.text(&output))?;
+        }
+        Ok(output)
+    }
 }

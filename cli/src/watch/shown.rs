@@ -7,17 +7,18 @@ use std::thread::ScopedJoinHandle;
 
 use luxel_core::diag::Diagnostic;
 use luxel_core::render::Control;
-use luxel_core::scene::Hash;
+use luxel_core::scene::Scene;
 use luxel_core::stage::Stage;
 
-use super::round::Read;
+use super::round::{Read, Sitting};
 use crate::files::{Known, Seen, Watched};
 use crate::load::Text;
 
 /// What a picture is of.
 #[derive(Clone)]
 pub(super) struct Subject {
-    pub(super) hash: Hash,
+    /// As the text says, assets not expanded.
+    pub(super) scene: Arc<Scene>,
     pub(super) stage: Arc<Stage>,
     pub(super) read: Arc<Read>,
     /// Everything that it was made of, as it was then.
@@ -34,9 +35,22 @@ impl Subject {
         let same = |(path, seen): (&PathBuf, &Seen)| {
             self.texts.contains(path) || known.look(path) == *seen
         };
-        text.scene.as_ref().is_some_and(|scene| scene.hash() == self.hash)
+        text.scene.as_ref().is_some_and(|scene| scene.hash() == self.scene.hash())
             && !self.stage.has_failed()
             && self.files.iter().all(same)
+    }
+
+    /// Whether what is measured for another subject is right for this one too: it is only shown in
+    /// another way, or written to another place.
+    pub(super) fn is_measured_by(&self, other: &Self) -> bool {
+        let files = |it: &Self| {
+            let mut files = it.files.clone();
+            files.retain(|path, _| !it.texts.contains(path));
+            files
+        };
+        self.scene.measured_hash() == other.scene.measured_hash()
+            && !other.stage.has_failed()
+            && files(self) == files(other)
     }
 
     /// Other texts say the same now.
@@ -51,6 +65,7 @@ impl Subject {
 /// A render that runs, or has ended.
 pub(super) struct Shown<'scope> {
     pub(super) subject: Subject,
+    pub(super) sitting: Arc<Sitting>,
     pub(super) control: Arc<Control>,
     pub(super) thread: ScopedJoinHandle<'scope, ()>,
 }

@@ -38,6 +38,9 @@ pub struct Options {
     /// Whether the first sample comes in steps, every eighth pixel of every eighth row first: for
     /// those who look on. Changes no bit.
     pub coarse: bool,
+    /// Whether threads let others of the machine go first, as who draws the picture for those who look
+    /// on. On Linux alone; changes no bit.
+    pub courteous: bool,
 }
 
 impl Options {
@@ -142,8 +145,10 @@ pub fn render_seen(
     let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
     let mut film = Film::new(size, window);
     let threads = options.threads.map_or(0, NonZeroUsize::get);
+    let courteous = options.courteous;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
+        .start_handler(move |_| give_way(courteous))
         .build()
         .expect("the system gives threads");
     // Before anything of the stage is asked: the sampler may fail at once.
@@ -178,6 +183,22 @@ pub fn render_seen(
     };
     (film, outcome)
 }
+
+/// Lets other threads of the machine go first: a third of the share of those that do not.
+#[cfg(target_os = "linux")]
+fn give_way(courteous: bool) {
+    if courteous {
+        // A system that refuses has its reasons.
+        let _ = rustix::process::nice(COURTESY);
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn give_way(_: bool) {}
+
+/// Steps of niceness.
+#[cfg(target_os = "linux")]
+const COURTESY: i32 = 5;
 
 /// The samples and the pixels of each pass. Passes grow: a first picture comes soon, later ones cost
 /// little to gather.
@@ -232,6 +253,20 @@ impl Control {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn courteous_threads_are_nice_and_no_others() {
+        let nice = |courteous: bool| {
+            let asked = move || {
+                give_way(courteous);
+                rustix::process::getpriority_process(None).unwrap()
+            };
+            std::thread::spawn(asked).join().unwrap()
+        };
+        let [before, courteous, after] = [false, true, false].map(nice);
+        assert_eq!((courteous, after), (19.min(before + COURTESY), before));
+    }
 
     #[test]
     fn passes_are_each_sample_of_each_pixel_once() {

@@ -6,6 +6,7 @@
 
 mod color;
 mod conform;
+mod diff;
 mod pose;
 mod print;
 mod value;
@@ -23,9 +24,13 @@ pub use color::Color;
 pub use conform::{
     DefaultUnits, Given, Misfit, conform, describe, number_words, range_words, wanted,
 };
+pub use diff::{Difference, How, called, diff};
 pub use pose::{Key, Pose, Step};
 pub use print::print;
 pub use value::{Hash, Value};
+
+/// Parameters of a film that no sample depends on.
+const SHOWN: [&str; 3] = ["exposure", "display", "file"];
 
 /// Names a node among `Scene::nodes`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -74,7 +79,7 @@ impl Node {
 }
 
 /// What stands in a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     /// A shape, a light or an asset.
     Node(NodeId),
@@ -170,7 +175,18 @@ impl Scene {
     /// Hash of everything that the scene shows: what stands where, and its settings. Labels, places
     /// in files and nodes that nothing uses do not count; nor do the contents of files by path.
     pub fn hash(&self) -> Hash {
-        value::hash_scene(self)
+        value::hash_scene(self, self.film.map(|id| self.node(id).hash))
+    }
+
+    /// The same without what decides only how a picture is shown and where it goes: equal where the
+    /// measurement is.
+    pub fn measured_hash(&self) -> Hash {
+        let film = self.film.map(|id| {
+            let mut film = self.node(id).clone();
+            film.params.retain(|argument| !SHOWN.contains(&argument.name));
+            value::hash_node(&film, |id| self.node(id).hash)
+        });
+        value::hash_scene(self, film)
     }
 
     /// Hash of a node without the parameters that the host adds to its kind: equal where the object
@@ -233,6 +249,23 @@ mod tests {
         };
         assert_ne!(placed(0.0), scene.hash());
         assert_ne!(placed(0.0), placed(1.0));
+    }
+
+    #[test]
+    fn how_a_picture_is_shown_does_not_count_for_what_is_measured() {
+        let with = |name, value: Value| {
+            let mut scene = camera("a", 0.05);
+            scene.set_resolution(UVec2::new(3, 4));
+            scene.set_film(name, value);
+            (scene.hash(), scene.measured_hash())
+        };
+        let plain = with("resolution", Value::Vector(vec![3.0, 4.0]));
+        for name in SHOWN {
+            let shown = with(name, Value::Text("x".into()));
+            assert!(shown.0 != plain.0 && shown.1 == plain.1, "{name}");
+        }
+        let time = with("shutter", Value::Text("x".into()));
+        assert!(time.0 != plain.0 && time.1 != plain.1);
     }
 
     #[test]

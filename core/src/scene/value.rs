@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 use luxel_sdk::params::{Dimension, Look};
 
-use super::{Color, Group, Node, NodeId, Pose, Scene, Step, Target};
+use super::{Color, Group, Node, NodeId, Placed, Pose, Scene, Step, Target};
 
 /// A content hash (BLAKE3).
 pub type Hash = [u8; 32];
@@ -56,36 +56,55 @@ pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
     *hasher.finalize().as_bytes()
 }
 
-/// The hash of a scene: of what stands in its places, and of its settings.
-pub(super) fn hash_scene(scene: &Scene) -> Hash {
+/// The hash of a scene: of what stands in its places, and of its settings, among them the film as it
+/// is given here.
+pub(super) fn hash_scene(scene: &Scene, film: Option<Hash>) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&hash_group(scene, &scene.root, &group_hashes(scene)));
+    hash_pose(&mut hasher, &scene.camera_pose);
+    let Scene { camera, integrator, sampler, filter, medium, .. } = scene;
+    let of = |id: &Option<NodeId>| id.map(|id| scene.node(id).hash);
+    for setting in [of(camera), film, of(integrator), of(sampler), of(filter), of(medium)] {
+        hasher.update(&setting.unwrap_or([0; 32]));
+    }
+    *hasher.finalize().as_bytes()
+}
+
+/// The hashes of a scene's groups.
+pub(super) fn group_hashes(scene: &Scene) -> Vec<Hash> {
     let mut groups: Vec<Hash> = Vec::with_capacity(scene.groups.len());
     for group in &scene.groups {
         groups.push(hash_group(scene, group, &groups));
     }
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(&hash_group(scene, &scene.root, &groups));
-    hash_pose(&mut hasher, &scene.camera_pose);
-    let Scene { camera, film, integrator, sampler, filter, medium, .. } = scene;
-    for setting in [camera, film, integrator, sampler, filter, medium] {
-        hasher.update(&setting.map_or([0; 32], |id| scene.node(id).hash));
-    }
-    *hasher.finalize().as_bytes()
+    groups
 }
 
 /// `before` holds the hashes of the groups that may stand in this one.
 fn hash_group(scene: &Scene, group: &Group, before: &[Hash]) -> Hash {
     let mut hasher = blake3::Hasher::new();
     for item in &group.items {
-        match item.target {
-            Target::Node(id) => hasher.update(&[0]).update(&scene.node(id).hash),
-            Target::Group(id) => {
-                hasher.update(&[1]).update(before.get(id.0 as usize).unwrap_or(&[0; 32]))
-            }
-        };
-        hash_pose(&mut hasher, &item.pose);
-        hasher.update(&item.material.map_or([0; 32], |id| scene.node(id).hash));
+        update_item(&mut hasher, scene, item, before);
     }
     *hasher.finalize().as_bytes()
+}
+
+/// The hash of what stands in a place, and of the place; `groups` holds those of the groups that may
+/// stand there.
+pub(super) fn hash_item(scene: &Scene, item: &Placed, groups: &[Hash]) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    update_item(&mut hasher, scene, item, groups);
+    *hasher.finalize().as_bytes()
+}
+
+fn update_item(hasher: &mut blake3::Hasher, scene: &Scene, item: &Placed, groups: &[Hash]) {
+    match item.target {
+        Target::Node(id) => hasher.update(&[0]).update(&scene.node(id).hash),
+        Target::Group(id) => {
+            hasher.update(&[1]).update(groups.get(id.0 as usize).unwrap_or(&[0; 32]))
+        }
+    };
+    hash_pose(hasher, &item.pose);
+    hasher.update(&item.material.map_or([0; 32], |id| scene.node(id).hash));
 }
 
 fn hash_pose(hasher: &mut blake3::Hasher, pose: &Pose) {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Span, nearest};
 use luxel_core::scene::NodeId;
+use luxel_sdk::params::{Dimension, Unit};
 
 use super::Evaluator;
 use super::emit::Set;
@@ -14,8 +15,8 @@ use super::finish::children;
 use super::include;
 use super::object::merged;
 use super::value::{FieldValue, ObjectValue, Value, What, show_number};
-use crate::ParamInfo;
-use crate::syntax::{self, Name, ParamDef, StmtNode, Tree};
+use crate::syntax::{self, Expr, ExprNode, Name, ParamDef, StmtNode, Tree};
+use crate::{ParamInfo, ParamLimits, ParamValue};
 
 impl Evaluator<'_> {
     /// The value of a declared parameter: from outside, or its default.
@@ -24,15 +25,19 @@ impl Evaluator<'_> {
         let own = self.eval(&def.value, env);
         let own = self.fit(&def.ty, own, def.value.span, env);
         self.in_range(def, &own, range.as_ref(), def.value.span, "E0405");
-        if env.file.is_root {
-            self.declare(def);
-        }
+        let place = env.file.is_root.then(|| self.declare(def, range.as_ref(), &own));
         let Some(given) = env.file.overrides.get(&def.name.text).cloned() else { return own };
         let before = self.sink.errors();
         let code = if env.file.is_root { Some("E0112") } else { None };
         let value = self.fit_setting(def, &given, env, code);
         self.in_range(def, &value, range.as_ref(), given.span, code.unwrap_or("E0405"));
-        if self.sink.errors() > before { Value::Poison } else { value }
+        if self.sink.errors() > before {
+            return Value::Poison;
+        }
+        if let Some(info) = place.and_then(|place| self.params.get_mut(place)) {
+            info.value = param_value(&value);
+        }
+        value
     }
 
     /// Fits a value from outside; from the command line every misfit is an E0112.
@@ -95,12 +100,21 @@ impl Evaluator<'_> {
         }
     }
 
-    fn declare(&mut self, def: &ParamDef) {
+    /// Tells of a parameter of the root file; where among them it stands.
+    fn declare(&mut self, def: &ParamDef, range: Option<&(Value, Span)>, own: &Value) -> usize {
         let text = |span: Span| {
             let text = self.sources.text(span.source);
             text.get(span.range()).unwrap_or_default().to_owned()
         };
         let dimension = super::types::dimension(&def.ty.name.text).unwrap_or_default();
+        let limits = match range {
+            Some((Value::Range(range), _)) if range.dimension == dimension => {
+                Some(ParamLimits { low: range.start, high: range.end, inclusive: range.inclusive })
+            }
+            _ => None,
+        };
+        let mut expressions = [Some(&def.value), def.range.as_ref()].into_iter().flatten();
+        let written = expressions.find_map(|expr| written_unit(expr, dimension, &text));
         let info = ParamInfo {
             name: def.name.text.to_string(),
             ty: def.ty.name.text.to_string(),
@@ -108,9 +122,13 @@ impl Evaluator<'_> {
             doc: def.doc.clone(),
             default: text(def.value.span),
             range: def.range.as_ref().map(|range| text(range.span)),
+            value: param_value(own),
+            limits,
+            written,
             span: def.name.span,
         };
         self.params.push(info);
+        self.params.len() - 1
     }
 
     /// Reads `--set name=value` against the parameters that the root file declares.
@@ -264,5 +282,39 @@ impl Evaluator<'_> {
             found = found.help(format!("did you mean `{near}`?")).fix(label.span, near);
         }
         self.tell(found.help("a label is the text after the kind: `shape sphere \"ball\" { … }`"));
+    }
+}
+
+fn param_value(value: &Value) -> ParamValue {
+    match value {
+        Value::Number(x, _) => ParamValue::Number(*x),
+        Value::Bool(b) => ParamValue::Bool(*b),
+        Value::Text(text) => ParamValue::Text(text.to_string()),
+        _ => ParamValue::Other,
+    }
+}
+
+/// The first unit of a dimension that an expression writes behind a number, and its scale.
+fn written_unit(
+    expr: &Expr,
+    dimension: Dimension,
+    text: &impl Fn(Span) -> String,
+) -> Option<(String, f64)> {
+    let inner = |expr: &Expr| written_unit(expr, dimension, text);
+    match &expr.node {
+        ExprNode::Number(_, Some(unit)) if unit.dimension == dimension => {
+            let text = text(expr.span);
+            // Behind the digits, whose exponent is a letter too, and is no unit with what follows.
+            let mut ends = text.char_indices().filter(|(_, c)| c.is_alphabetic());
+            let name = ends.find_map(|(i, _)| {
+                Unit::parse(&text[i..]).is_ok_and(|found| found == *unit).then(|| &text[i..])
+            })?;
+            Some((name.trim().to_owned(), unit.scale))
+        }
+        ExprNode::Unary { inner: of, .. } | ExprNode::Paren { inner: of, unit: None } => inner(of),
+        ExprNode::Chain { first, rest } => {
+            inner(first).or_else(|| rest.iter().find_map(|(_, _, expr)| inner(expr)))
+        }
+        _ => None,
     }
 }

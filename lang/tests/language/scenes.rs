@@ -4,7 +4,7 @@ use std::path::Path;
 
 use luxel_core::files::MemoryFiles;
 use luxel_core::scene::{Color, Scene, Value, print};
-use luxel_lang::{Loaded, Settings, load};
+use luxel_lang::{Loaded, ParamLimits, ParamValue, Settings, load};
 
 use crate::registry::registry;
 
@@ -148,6 +148,37 @@ shape sphere { radius = if q == \"final\" { 2 * r } else { r } }";
         ("r", "length", "m", "How wide.")
     );
     assert_eq!((&*info.default, info.range.as_deref()), ("1 m", Some("0.5 m..=20 m")));
+}
+
+#[test]
+fn a_param_tells_its_value_and_range_in_si_and_the_unit_of_its_author() {
+    let text = "param tilt: angle = -(30 deg) in (-90 deg)..90 deg\nparam n: int = 24 in 2..=200
+param gap: length = 2 * 1e1 cm\nparam lit: bool = true\nparam of: string = \"oak\"
+param far: length = 0.5 m in 0 m..=1e3 mm\nparam w: power = 3 W\nparam tint: color = rgb.srgb(1, 0, 0)";
+    let loaded = load_text(&format!("{HEAD}{text}"), &[("tilt", "1 rad"), ("n", "3")]);
+    assert_eq!(loaded.diagnostics, []);
+    let deg = std::f64::consts::PI / 180.0;
+    let of = |name: &str| loaded.params.iter().find(|param| param.name == name).unwrap();
+    let tilt = of("tilt");
+    assert_eq!(tilt.value, ParamValue::Number(1.0));
+    assert_eq!(
+        tilt.limits,
+        Some(ParamLimits { low: -90.0 * deg, high: 90.0 * deg, inclusive: false })
+    );
+    assert_eq!(tilt.written, Some(("deg".to_owned(), deg)));
+    let n = ParamLimits { low: 2.0, high: 200.0, inclusive: true };
+    assert_eq!((&of("n").value, of("n").limits), (&ParamValue::Number(3.0), Some(n)));
+    assert_eq!((&of("n").written, of("gap").limits), (&None, None));
+    assert_eq!(of("gap").written, Some(("cm".to_owned(), 0.01)));
+    assert_eq!(
+        (&of("lit").value, &of("of").value),
+        (&ParamValue::Bool(true), &ParamValue::Text("oak".into()))
+    );
+    assert_eq!(
+        (of("far").written.clone(), of("w").written.clone()),
+        (Some(("m".into(), 1.0)), Some(("W".into(), 1.0)))
+    );
+    assert_eq!(of("tint").value, ParamValue::Other);
 }
 
 #[test]

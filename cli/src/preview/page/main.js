@@ -1,11 +1,14 @@
 // The page: what is shown, and what follows when something changes.
 
 import { bar } from "./bar.js";
+import { Camera } from "./camera.js";
+import { copy } from "./copy.js";
 import { flat } from "./flat.js";
 import { withGl } from "./gl.js";
 import { keys } from "./keys.js";
 import { Pan } from "./pan.js";
 import { $, histogram, inspect, legend, problems } from "./panels.js";
+import { params } from "./params.js";
 import { luminance } from "./picture.js";
 import { connect } from "./wire.js";
 
@@ -28,7 +31,9 @@ const pan = new Pan(canvas, {
   tapped: (at) => hold(at),
   hovered: (at) => hover(at),
   wheeled: (notches) => act.exposureBy(notches / 3),
+  camera: () => camera,
 });
+const camera = new Camera((command) => wire.ask(command), pan);
 
 // Drawing: once for all that changed between two pictures of the screen.
 let due = false;
@@ -157,11 +162,30 @@ const act = {
   zoom(factor) { pan.zoomBy(factor); },
   histogram() { state.bins = !state.bins; redraw(); },
   help() { $("help").showModal(); },
-  release() { state.held = null; state.reply = null; redraw(); },
+  // What was done last is let go first: a pixel, then the camera.
+  release() {
+    if (!state.held) camera.reset();
+    state.held = null;
+    state.reply = null;
+    redraw();
+  },
+  camera() { camera.toggle(); },
+  params(shown = $("side").classList.contains("closed")) {
+    $("side").classList.toggle("closed", !shown);
+    $("params-on").setAttribute("aria-pressed", shown);
+  },
 };
 
 const controls = bar(state, pan, act);
 keys(act);
+// A small window shows the picture first.
+act.params(matchMedia("(min-width: 561px)").matches);
+$("camera-on").addEventListener("click", act.camera);
+$("params-on").addEventListener("click", () => act.params());
+$("camera-reset").addEventListener("click", () => camera.reset());
+$("params-reset").addEventListener("click", () => wire.ask("reset_params"));
+$("camera-copy").addEventListener("click", () => copy($("camera-text").textContent, $("camera-copy")));
+$("set-copy").addEventListener("click", () => copy($("set-text").textContent, $("set-copy")));
 
 const wire = connect({
   picture(picture, drawn) {
@@ -185,6 +209,8 @@ const wire = connect({
     if (message.title !== undefined) controls.title(message.title);
     if (message.status !== undefined) controls.status(message.status);
     if (message.problems) problems(message.problems);
+    if (message.params) params(message.params, message.line, (command) => wire.ask(command));
+    if (message.camera !== undefined) camera.tell(message.camera);
     if (message.pixel) {
       state.reply = { ...message.pixel, key: `${message.pixel.at} ${message.pixel.side}` };
       redraw();

@@ -4,18 +4,20 @@ const MARGIN = 14;
 const MOST = 128;
 
 export class Pan {
-  constructor(canvas, { changed, tapped, hovered, wheeled }) {
+  // `camera` is what some drags steer instead.
+  constructor(canvas, { changed, tapped, hovered, wheeled, camera }) {
     Object.assign(this, { canvas, changed, x: 0, y: 0, zoom: 1, fits: true, size: [1, 1] });
     const fingers = new Map();
-    let moved = 0;
+    let moved = 0, steering = false;
     const place = (event) => {
       const box = canvas.getBoundingClientRect();
       return [event.clientX - box.left, event.clientY - box.top];
     };
     canvas.addEventListener("pointerdown", (event) => {
-      if (event.button > 1) return;
+      const steers = camera().steers(event);
+      if (event.button > 1 && !steers) return;
       canvas.setPointerCapture(event.pointerId);
-      if (fingers.size === 0) moved = 0;
+      if (fingers.size === 0) [moved, steering] = [0, steers];
       fingers.set(event.pointerId, place(event));
       if (fingers.size > 1) moved = Infinity;
     });
@@ -27,10 +29,16 @@ export class Pan {
       moved += Math.hypot(now[0] - last[0], now[1] - last[1]);
       if (moved < 4) return;
       canvas.classList.add("dragged");
-      if (others.length === 0) return this.move(now[0] - last[0], now[1] - last[1]);
+      const by = [now[0] - last[0], now[1] - last[1]];
+      if (others.length === 0 && steering) return event.shiftKey ? camera().move(...by) : camera().orbit(...by);
+      if (others.length === 0) return this.move(...by);
       const away = (at) => Math.hypot(at[0] - others[0][0], at[1] - others[0][1]);
       const middle = (at) => [(at[0] + others[0][0]) / 2, (at[1] + others[0][1]) / 2];
       const [from, to] = [middle(last), middle(now)];
+      if (steering) {
+        camera().move(to[0] - from[0], to[1] - from[1]);
+        return camera().dolly(Math.max(away(last), 1) / Math.max(away(now), 1));
+      }
       this.move(to[0] - from[0], to[1] - from[1]);
       this.zoomBy(away(now) / Math.max(away(last), 1), ...to);
     });
@@ -38,18 +46,21 @@ export class Pan {
       const at = fingers.get(event.pointerId);
       if (!fingers.delete(event.pointerId)) return;
       canvas.classList.remove("dragged");
-      if (event.type === "pointerup" && moved < 4) tapped(this.pixelAt(...at));
+      if (event.type === "pointerup" && moved < 4 && event.button === 0) tapped(this.pixelAt(...at));
     };
     canvas.addEventListener("pointerup", up);
     canvas.addEventListener("pointercancel", up);
     canvas.addEventListener("pointerleave", () => fingers.size || hovered(null));
+    canvas.addEventListener("contextmenu", (event) => camera().told && event.preventDefault());
     canvas.addEventListener("dblclick", () => (this.fits ? this.oneToOne() : this.fit()));
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      if (event.altKey) return wheeled(-Math.sign(event.deltaY));
+      if (event.altKey && !camera().on) return wheeled(-Math.sign(event.deltaY));
       const lines = event.deltaMode ? 30 : 1;
       const notch = Math.max(-60, Math.min(60, event.deltaY * lines));
-      this.zoomBy(2 ** (-notch / (event.ctrlKey ? 40 : 160)), ...place(event));
+      const factor = 2 ** (-notch / (event.ctrlKey ? 40 : 160));
+      if (camera().on) return camera().dolly(1 / factor);
+      this.zoomBy(factor, ...place(event));
     }, { passive: false });
   }
 

@@ -1,5 +1,6 @@
 // What lies over the picture: a pixel's values, the histogram, the legend, what went wrong.
 
+import { copy } from "./copy.js";
 import { ERROR, LUMINANCE, MAPS, SHARE, SIGMAS } from "./maps.js";
 import { luminance } from "./picture.js";
 import { apart, relative, show } from "./shade.js";
@@ -56,7 +57,32 @@ export function inspect(state, at, side, reply, held) {
   }
   const more = (reply?.facts ?? []).filter(([name]) => !["radiance", "standard error", "samples"].includes(name));
   more.forEach(([name, text], k) => facts.push([name, text, k ? "" : "line"]));
-  $("facts").replaceChildren(...facts.flatMap(([name, text, kind]) => [element("dt", name, kind), element("dd", text, kind)]));
+  const places = new Map((reply?.places ?? []).map(([name, place, address]) => [name, { place, address }]));
+  const key = JSON.stringify([facts, [...places], held]);
+  // What did not change stays, so that it can be clicked.
+  if (key === $("facts").dataset.key) return;
+  $("facts").dataset.key = key;
+  $("facts").replaceChildren(...facts.flatMap(([name, text, kind]) => [element("dt", name, kind), fact(text, kind, places.get(name))]));
+}
+
+// A place is told without its folders. It is a link where there is an editor to open it, else it can be copied.
+const EDITOR = /^(?!(javascript|data|vbscript|https?|file|blob):)[a-z][a-z0-9+.-]*:\/\//;
+function fact(text, kind, where) {
+  const made = element("dd", where ? text.slice(0, text.length - where.place.length) : text, kind);
+  if (!where) return made;
+  const short = where.place.replace(/^.*[/\\]/, "");
+  if (where.address && EDITOR.test(where.address)) {
+    const link = element("a", short);
+    Object.assign(link, { href: where.address, title: `Open ${where.place}` });
+    made.append(link);
+  } else {
+    const button = element("button", "Copy");
+    button.title = `Copy ${where.place}`;
+    button.addEventListener("click", () => copy(where.place, button));
+    const place = Object.assign(element("span", short), { title: where.place });
+    made.append(place, button);
+  }
+  return made;
 }
 
 const BINS = 120;

@@ -16,6 +16,8 @@ mod tests;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
@@ -28,7 +30,7 @@ use hops::Hops;
 /// What ends a wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wake {
-    /// Something happened in a watched folder.
+    /// Something happened in a watched folder, or something else is wished for.
     Look,
     /// Ctrl-C.
     Stop,
@@ -37,7 +39,7 @@ pub(super) enum Wake {
 /// What came of a wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Noticed {
-    /// Contents differ from what was seen.
+    /// Contents differ from what was seen, or something else is wished for.
     Save,
     /// The end is asked for.
     Stop,
@@ -76,6 +78,8 @@ pub(super) struct Changes {
     compared: Instant,
     /// Whether files have to be looked at without being asked to.
     fresh: bool,
+    /// Whether something else is wished for than what was loaded.
+    wished: Arc<AtomicBool>,
     /// The end was asked for while something else was waited for.
     stopped: bool,
     /// When contents were last found to differ.
@@ -104,6 +108,7 @@ impl Changes {
             here: ANYWAY,
             compared: Instant::now(),
             fresh: false,
+            wished: Arc::default(),
             stopped: false,
             noticed: None,
         };
@@ -113,6 +118,11 @@ impl Changes {
     /// What is in files for sure, now and later.
     pub(super) fn known(&self) -> &Known {
         &self.known
+    }
+
+    /// Set, waits end as after a save, at once if `Wake::Look` is sent then. Whoever loads clears it.
+    pub(super) fn wished(&self) -> Arc<AtomicBool> {
+        self.wished.clone()
     }
 
     /// Watches what leads to these files too, before they are read.
@@ -177,6 +187,9 @@ impl Changes {
         if std::mem::take(&mut self.stopped) {
             return Noticed::Stop;
         }
+        if self.wished.load(Ordering::Acquire) {
+            return Noticed::Save;
+        }
         if std::mem::take(&mut self.fresh) {
             return self.decide();
         }
@@ -184,6 +197,8 @@ impl Changes {
         let next = until.min(self.compared + self.anyway);
         match self.pause(next) {
             Err(Stopped) => Noticed::Stop,
+            // What else has happened is looked for after the load.
+            Ok(true) if self.wished.load(Ordering::Acquire) => Noticed::Save,
             Ok(true) => {
                 let closed = Instant::now() + CLOSE;
                 while !self.ears.is_decided() && Instant::now() < closed {

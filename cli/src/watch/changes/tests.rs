@@ -134,3 +134,24 @@ fn several_files_that_are_saved_at_once_are_noticed_together() {
     assert!(changes.wait());
     assert!(names.iter().all(|name| changes.found[&folder.path(name)] == look(&folder.path(name))));
 }
+
+#[test]
+fn a_wish_ends_a_wait_and_hides_no_save() {
+    let folder = Folder::new("watch-wish");
+    folder.write("a.scene", b"one");
+    let (mut changes, sender) = watching(&folder, &["a.scene"]);
+    let wished = changes.wished();
+    let waiting = std::thread::spawn(move || (changes.wait(), changes));
+    wished.store(true, Ordering::Release);
+    sender.send(Wake::Look).unwrap();
+    let (noticed, mut changes) = waiting.join().unwrap();
+    assert!(noticed);
+    // It stands until whoever loads clears it, however often it is waited.
+    folder.write("a.scene", b"two");
+    assert_eq!(changes.within(LONG), Noticed::Save);
+    wished.store(false, Ordering::Release);
+    assert_eq!(changes.within(LONG), Noticed::Save, "the file");
+    let seen = BTreeMap::from([(folder.path("a.scene"), look(&folder.path("a.scene")))]);
+    changes.expect(seen);
+    assert_eq!(changes.within(Duration::ZERO), Noticed::Nothing);
+}

@@ -1,0 +1,82 @@
+//! Everybody who is shown pictures as they grow, or told when one is finished.
+
+use std::sync::Arc;
+
+use luxel_core::film::Film;
+use luxel_core::render::{Look, Reached};
+use luxel_core::stage::Stage;
+
+use super::after::After;
+use super::page::Page;
+use super::round::Read;
+use super::tev::Tev;
+use super::wishes::Wishes;
+use super::{Args, ThenArgs};
+use crate::exit::Failure;
+use crate::output::Output;
+use crate::report;
+
+/// Page, viewer and command, as far as they are wanted.
+pub(super) struct Audience {
+    page: Option<Page>,
+    tev: Option<Tev>,
+    after: Option<After>,
+}
+
+impl Audience {
+    /// # Errors
+    /// A port of the page that is taken.
+    pub(super) fn new(args: &Args, wishes: Wishes) -> Result<Self, Failure> {
+        let (file, ThenArgs { tev, exec, .. }) = (&args.file, &args.then);
+        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
+        let tev = tev.clone().map(|address| Tev::new(address, name.into_owned()));
+        let after = exec.clone().map(|command| After::new(command, file.clone()));
+        let page = args.preview.then(|| Page::start(file, &args.page, wishes)).transpose()?;
+        Ok(Self { page, tev, after })
+    }
+
+    /// The page, if there is one.
+    pub(super) fn page(&self) -> Option<&Page> {
+        self.page.as_ref()
+    }
+
+    /// Shows pictures of a scene from now on, of so many samples in the end.
+    pub(super) fn follow<'a>(
+        &'a self,
+        stage: &Arc<Stage>,
+        read: &Arc<Read>,
+        of_samples: u32,
+    ) -> impl FnMut(&Film, Reached) + Send + use<'a> {
+        let page = self.page.as_ref().map(|page| page.follow(stage, read, of_samples));
+        let mut page = page.map(|look| Box::new(look) as Box<Look<'a>>);
+        move |film: &Film, now: Reached| {
+            if let Some(look) = &mut page {
+                look(film, now);
+            }
+            if let Some(tev) = self.tev.as_ref().filter(|_| now.step == 1) {
+                tev.show(film);
+            }
+        }
+    }
+
+    /// What became of a picture: where it is, if it is whole.
+    pub(super) fn told(&self, ended: Result<Option<Output>, Failure>) {
+        match ended {
+            Ok(output) => {
+                if let (Some(output), Some(after)) = (output, &self.after) {
+                    after.picture(output);
+                }
+            }
+            Err(failure) => {
+                report::failure(&failure);
+                self.page.as_ref().inspect(|page| page.lost(&failure));
+            }
+        }
+    }
+
+    /// Something could not be done.
+    pub(super) fn failed(&self, failure: &Failure) {
+        report::failure(failure);
+        self.page.as_ref().inspect(|page| page.failed(failure));
+    }
+}

@@ -1,0 +1,354 @@
+// `luxel watch --preview` in a real browser: as `view.mjs`.
+
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { writeFileSync } from "node:fs";
+import { basename, join } from "node:path";
+import {
+  attacked, decoded, folder, isHidden, luxel, mean, open, press, readback, root, run, settled, shots, text, until,
+} from "./common.mjs";
+
+const SIZE = [48, 32];
+// Wide enough for panels beside the picture.
+const WINDOW = { width: 900, height: 560 };
+const FEW = ["--spp", "4", "--seed", "7"];
+
+const scene = ({ grey = "0.5", params = "", radius = "1 m", camera = CAMERA } = {}) => `scene 1
+${params}
+${camera}
+film rgb { resolution = (${SIZE.join(", ")}) }
+light constant { scale = 0.8 }
+let grey = material diffuse { reflectance = ${grey} }
+shape sphere "ball" { radius = ${radius}, material = grey }
+`;
+const CAMERA = "camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }";
+
+let made = 0;
+async function watch(content, ...args) {
+  const name = `w${made++}`, file = join(folder, `${name}.scene`), out = join(folder, name);
+  const save = (text) => writeFileSync(file, text);
+  if (content) save(content);
+  const words = ["watch", content ? file : args.shift(), "-o", out, "--preview", "--no-open", "-q", ...FEW, ...args];
+  const child = spawn(luxel, words, { stdio: ["ignore", "ignore", "pipe"], cwd: folder });
+  let said = "";
+  const url = await new Promise((done, failed) => {
+    child.stderr.on("data", (text) => {
+      said += text;
+      const url = /http:\/\/\S+/.exec(said)?.[0];
+      if (url) done(url);
+    });
+    child.once("exit", (code) => failed(new Error(`luxel watch ended with ${code}: ${said}`)));
+  });
+  const token = new URL(url).searchParams.get("token");
+  const end = () => new Promise((done) => {
+    child.once("exit", done);
+    child.kill("SIGINT");
+  });
+  return { url, token, port: new URL(url).port, file, out, save, end };
+}
+
+// The PNG of a scene as another run of the program renders it.
+function rendered(text, ...args) {
+  const name = join(folder, `r${made++}`);
+  writeFileSync(`${name}.scene`, text);
+  execFileSync(luxel, ["render", `${name}.scene`, "-o", name, "-q", ...FEW, ...args], { stdio: "inherit" });
+  return `${name}.png`;
+}
+
+const worst = (a, b) => (a.length === b.length ? a.reduce((worst, v, i) => Math.max(worst, Math.abs(v - b[i])), 0) : Infinity);
+// Whether the page shows that picture, but for the rounding of halves.
+async function shows(page, png) {
+  const wanted = await decoded(page, png);
+  let drawn;
+  await until("the picture", async () => {
+    drawn = await readback(page);
+    return drawn && worst(drawn.data, wanted) <= 1;
+  });
+  return drawn.data;
+}
+const done = (page) => until("the last sample", async () => /done/.test(await text(page, "status")));
+const facts = (page) => page.evaluate(() => Object.fromEntries([...document.querySelectorAll("#facts dt")].map((dt) => [dt.textContent, dt.nextElementSibling.textContent])));
+const slide = (page, name, value) => page.evaluate(({ name, value }) => {
+  const input = document.querySelector(`#rows input[name=${name}]`);
+  input.value = value;
+  input.dispatchEvent(new Event("input", { bubbles: true }));
+}, { name, value });
+// As a shell reads it.
+const words = (line) => execFileSync("sh", ["-c", `printf '%s\\n' ${line}`]).toString().trim().split("\n");
+
+// The corner of the canvas, and of the picture on it.
+async function corner(page) {
+  const { x, y } = await page.locator("#picture").boundingBox(), area = await readback(page, false);
+  return [x + area.x, y + area.y];
+}
+
+async function begun(browser, content, options = { viewport: WINDOW }, ...args) {
+  const one = await watch(content, ...args);
+  const { page, complaints, close } = await open(browser, one.url, options);
+  await done(page);
+  await press(page, "z");
+  const end = async () => {
+    assert.deepEqual(complaints, []);
+    await close();
+    await one.end();
+  };
+  return { ...one, page, end };
+}
+
+const tests = {
+  async "after twelve saves 60 ms apart the last is shown"({ browser }) {
+    const { page, save, end } = await begun(browser, scene());
+    for (let i = 1; i <= 12; i++) {
+      save(scene({ grey: String(i / 16), radius: `${1 + i / 20} m` }));
+      await page.waitForTimeout(60);
+    }
+    await shows(page, rendered(scene({ grey: String(12 / 16), radius: `${1 + 12 / 20} m` })));
+    await done(page);
+    await end();
+  },
+
+  async "a mistake lies over the last good picture until it is mended"({ browser }) {
+    const { page, save, end } = await begun(browser, scene());
+    const before = (await readback(page)).data;
+    save(scene().replace("radius", "radus"));
+    await until("the message", async () => !(await isHidden(page, "problems")));
+    assert.match(await text(page, "problems"), /radus[^]*\.scene:7:/);
+    assert.deepEqual((await readback(page)).data, before);
+    save(scene({ grey: "0.2" }));
+    await until("no message", () => isHidden(page, "problems"));
+    await shows(page, rendered(scene({ grey: "0.2" })));
+    await end();
+  },
+
+  async "a pixel tells what it shows, where that is written, and opens it"({ browser }) {
+    const editor = ["--editor", "vscode://file/{file}:{line}:{column}"];
+    const { page, file, end } = await begun(browser, scene(), { viewport: WINDOW }, ...editor);
+    const [x, y] = await corner(page);
+    await page.mouse.click(x + SIZE[0] / 2 + 0.5, y + SIZE[1] / 2 + 0.5);
+    await until("the facts", async () => (await facts(page)).shape);
+    const found = await facts(page);
+    assert.equal(found.shape, 'sphere "ball"');
+    assert.equal(found["written at"], `${basename(file)}:7:1`);
+    assert.match(found.material, /^diffuse, \w+\.scene:6:/);
+    assert.match(found.depth, /^4\.0\d+ m$/);
+    // White light on a grey ball that sees nothing else: half of it comes back.
+    assert.ok(Math.abs(Number(found.luminance) - 0.4) < 0.02, found.luminance);
+    const [href] = await page.evaluate(() => [...document.querySelectorAll("#facts a")].map((a) => a.href));
+    assert.equal(href, `vscode://file/${file.slice(1)}:7:1`);
+    await end();
+    const bare = await begun(browser, scene());
+    await bare.page.mouse.click(x + SIZE[0] / 2 + 0.5, y + SIZE[1] / 2 + 0.5);
+    await until("a button", () => bare.page.evaluate(() => document.querySelectorAll("#facts dd button").length === 2));
+    assert.equal(await bare.page.evaluate(() => document.querySelectorAll("#facts a").length), 0);
+    await bare.end();
+  },
+
+  async "the wipe shows this picture and the previous one"({ browser }) {
+    const { page, save, end } = await begun(browser, scene());
+    save(scene({ grey: "0.1" }));
+    const [now, past] = [rendered(scene({ grey: "0.1" })), rendered(scene())];
+    await shows(page, now);
+    await done(page);
+    await page.locator("#compare").selectOption("previous");
+    await until("the wipe", async () => !(await isHidden(page, "wipe")));
+    const drawn = await readback(page), [a, b] = [await decoded(page, now), await decoded(page, past)];
+    const split = Math.round(0.5 * WINDOW.width) - drawn.x;
+    for (let i = 0; i < drawn.data.length; i++) {
+      const x = Math.floor(i / 4) % SIZE[0];
+      if (Math.abs(x - split) > 1) assert.ok(Math.abs(drawn.data[i] - (x < split ? a : b)[i]) <= 1, `at ${x} of ${split}`);
+    }
+    await end();
+  },
+
+  async "a slider renders another picture and says how a command line does"({ browser }) {
+    const params = "/// How large.\nparam r: length = 90 cm in 30 cm..=2 m\nparam dark: bool = false\nparam far: angle = 40 deg in 20 deg..60 deg";
+    const camera = CAMERA.replace("40 deg", "far");
+    const content = scene({ params, camera, radius: "r", grey: 'if dark { 0.1 } else { 0.5 }' });
+    const { page, save, end } = await begun(browser, content);
+    const before = (await readback(page)).data;
+    assert.equal(await isHidden(page, "set-line"), true);
+    // As fast as a hand moves it; the last counts.
+    for (let cm = 60; cm <= 150; cm += 5) await slide(page, "r", cm);
+    await until("the line", async () => (await text(page, "set-text")) === "--set 'r=150 cm'");
+    await shows(page, rendered(content, "--set", "r=150 cm"));
+    // Beyond what the range takes there is nothing on the slider, and its open end is not reached.
+    await slide(page, "far", 60);
+    await page.locator("#rows input[name=dark]").check();
+    await until("the line", async () => /dark=true/.test(await text(page, "set-text")));
+    const line = await text(page, "set-text");
+    assert.match(line, /^--set 'r=150 cm' --set 'far=59\.9 deg' --set dark=true$/);
+    await shows(page, rendered(content, ...words(line)));
+    assert.equal(await isHidden(page, "problems"), true);
+    // A param that the file has no more is forgotten without a word.
+    const without = scene({ params: params.replace("param dark", "let dark"), camera, radius: "r", grey: 'if dark { 0.1 } else { 0.5 }' }).replace("let dark: bool", "let dark");
+    save(without);
+    await until("the line", async () => (await text(page, "set-text")) === "--set 'r=150 cm' --set 'far=59.9 deg'");
+    await shows(page, rendered(without, ...words(await text(page, "set-text"))));
+    assert.equal(await isHidden(page, "problems"), true);
+    await page.locator("#params-reset").click();
+    await until("no line", () => isHidden(page, "set-line"));
+    save(content);
+    await until("the file's picture", async () => worst((await readback(page)).data, before) === 0);
+    await done(page);
+    await end();
+  },
+
+  async "a value that the scene refuses is told as any mistake"({ browser }) {
+    const content = scene({ params: "param n: int = 1 in 1..=9\nassert n < 5, \"too many\"", radius: "n * 1 m / 2" });
+    const { page, end } = await begun(browser, content);
+    await slide(page, "n", 7);
+    await until("the message", async () => !(await isHidden(page, "problems")));
+    assert.match(await text(page, "problems"), /too many/);
+    await slide(page, "n", 2);
+    await until("no message", () => isHidden(page, "problems"));
+    await shows(page, rendered(content, "--set", "n=2"));
+    await end();
+  },
+
+  async "the camera is turned, moved and brought closer, pasted, and goes back bit for bit"({ browser }) {
+    const { page, save, end } = await begun(browser, scene({ camera: CAMERA.replace("}", ", shift = (0.1, 0) }") }));
+    const before = (await readback(page)).data;
+    await press(page, "o");
+    const middle = [600, 120];
+    const drag = async (...by) => {
+      await page.mouse.move(...middle);
+      await page.mouse.down();
+      await page.mouse.move(middle[0] + by[0] / 2, middle[1] + by[1] / 2, { steps: 4 });
+      await page.mouse.move(middle[0] + by[0], middle[1] + by[1], { steps: 4 });
+      await page.mouse.up();
+    };
+    const view = async () => (await text(page, "camera-text")).match(/look_at\(.*\)/)[0];
+    const moves = {
+      turned: () => drag(120, 40),
+      moved: async () => {
+        await page.keyboard.down("Shift");
+        await drag(6, -4);
+        await page.keyboard.up("Shift");
+      },
+      closer: async () => {
+        await page.mouse.move(...middle);
+        await page.mouse.wheel(0, -120);
+      },
+    };
+    let last = await view();
+    for (const [how, move] of Object.entries(moves)) {
+      await move();
+      await until(`the camera ${how}`, async () => (await view()) !== last);
+      last = await view();
+    }
+    // The last of what was sent has come back.
+    await page.waitForTimeout(300);
+    await done(page);
+    const block = await text(page, "camera-text");
+    assert.match(block, /fov = 40 deg\n {2}shift = \(0\.1, 0\)/);
+    await shows(page, rendered(scene({ camera: block })));
+    assert.ok(worst((await readback(page)).data, before) > 20, "another picture");
+    await press(page, "Escape");
+    await until("the file's camera", async () => worst((await readback(page)).data, before) === 0);
+    // A save of another camera takes the page's away, one of anything else does not.
+    await drag(60, 0);
+    await until("the camera", async () => !/\(0, 0, 5\)/.test(await view()));
+    await page.waitForTimeout(300);
+    await done(page);
+    const kept = await text(page, "camera-text");
+    save(scene({ camera: CAMERA.replace("}", ", shift = (0.1, 0) }"), grey: "0.3" }));
+    await shows(page, rendered(scene({ camera: kept, grey: "0.3" })));
+    const other = CAMERA.replace("(0, 0, 5)", "(1, 0, 4)");
+    save(scene({ camera: other }));
+    await shows(page, rendered(scene({ camera: other })));
+    await end();
+  },
+
+  "a foreign page that has stolen the token gets nothing": async ({ browser }) => {
+    const one = await watch(scene());
+    await attacked(browser, one);
+    await one.end();
+  },
+
+  async "it can be used on a phone with fingers"({ browser }) {
+    const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true, colorScheme: "dark" };
+    const params = "/// How large.\nparam radius_of_the_ball: length = 90 cm in 30 cm..=2 m\nparam dark: bool = false\nparam of: string = \"oak\"";
+    const content = scene({ params, radius: "radius_of_the_ball" });
+    const { page, end } = await begun(browser, content, phone);
+    await press(page, "f");
+    const roomy = async (where) => {
+      const small = await page.evaluate(() => {
+        const wide = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than its window"] : [];
+        const all = [...document.querySelectorAll("button, select, #bar input, #rows input")].filter((each) => each.checkVisibility({ visibilityProperty: true }));
+        const of = (each) => (each.type === "checkbox" ? each.closest("label") : each).getBoundingClientRect();
+        const bad = all.filter((each) => {
+          const { width, height, left, right } = of(each);
+          return width < 40 || height < 40 || left < 0 || right > innerWidth;
+        });
+        return [...wide, ...bad.map((each) => `${each.id || each.name || each.textContent} ${JSON.stringify(of(each))}`)];
+      });
+      assert.deepEqual(small, [], where);
+    };
+    await roomy("at first");
+    const tap = (id) => page.locator(`#${id}`).tap();
+    await tap("params-on");
+    await until("the params", () => page.locator("#rows").isVisible());
+    await slide(page, "radius_of_the_ball", 120);
+    await until("the line", async () => !(await isHidden(page, "set-line")));
+    await roomy("with params");
+    await page.waitForTimeout(300);
+    await page.screenshot({ path: join(shots, "watch-phone-params.png") });
+    await tap("params-reset");
+    await tap("params-on");
+    await tap("camera-on");
+    await until("the file's picture", async () => isHidden(page, "set-line"));
+    await done(page);
+    const before = (await readback(page)).data;
+    const session = await page.context().newCDPSession(page);
+    const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    await touch("touchStart", [150, 200]);
+    for (let x = 155; x <= 220; x += 13) await touch("touchMove", [x, 200 + (x - 155) / 2]);
+    await touch("touchEnd");
+    await until("another picture", async () => worst((await readback(page)).data, before) > 20);
+    await roomy("with the camera");
+    const turned = await text(page, "camera-text");
+    await touch("touchStart", [150, 200], [230, 200]);
+    for (let x = 150; x >= 100; x -= 10) await touch("touchMove", [x, 200], [380 - x, 200]);
+    await touch("touchEnd");
+    await until("closer", async () => (await text(page, "camera-text")) !== turned);
+    await page.waitForTimeout(300);
+    await page.screenshot({ path: join(shots, "watch-phone-camera.png") });
+    await tap("camera-reset");
+    await until("the file's picture", async () => worst((await readback(page)).data, before) === 0);
+    await end();
+  },
+
+  async "it can be used by light and dark"({ browser }) {
+    for (const colorScheme of ["dark", "light"]) {
+      const stair = join(root, "scenes/parametric.scene");
+      const one = await watch(null, stair, "--size", "240x320", "--editor", "vscode://file/{file}:{line}:{column}");
+      const { page, complaints, close } = await open(browser, one.url, { colorScheme, viewport: { width: 1280, height: 800 } });
+      await slide(page, "radius", 130);
+      await until("the line", async () => !(await isHidden(page, "set-line")));
+      await press(page, "o");
+      await press(page, "h");
+      await page.mouse.move(800, 300);
+      await page.mouse.down();
+      await page.mouse.move(860, 310, { steps: 6 });
+      await page.mouse.up();
+      await done(page);
+      const { x, width } = await page.locator("#picture").boundingBox();
+      await page.mouse.click(x + width / 2, 460);
+      await until("the inspector", async () => (await facts(page)).shape);
+      await page.waitForTimeout(500);
+      await done(page);
+      await page.screenshot({ path: join(shots, `watch-${colorScheme}.png`) });
+      const [back, front] = await page.evaluate(() => {
+        const of = (text) => text.match(/[\d.]+/g).slice(0, 3).map(Number);
+        const style = getComputedStyle(document.body);
+        return [of(style.backgroundColor), of(style.color)];
+      });
+      assert.ok(colorScheme === "dark" ? mean(back) < 60 && mean(front) > 180 : mean(back) > 180 && mean(front) < 60);
+      assert.deepEqual(complaints, []);
+      await close();
+      await one.end();
+    }
+  },
+};
+
+await run(tests, {});

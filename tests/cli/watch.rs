@@ -95,6 +95,7 @@ fn a_hundred_edits_leave_no_file_open_and_no_thread() {
     until("what was held before", || watching.held() == held);
     watching.interrupt();
     assert_eq!(watching.end().code, 0);
+}
 
 #[test]
 fn another_exposure_shows_what_was_measured_in_another_way() {

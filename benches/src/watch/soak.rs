@@ -13,6 +13,8 @@ const EVERY: u32 = 500;
 const WARM: u32 = 2_000;
 /// Patience with one edit, which a comment uses up.
 const STILL: Duration = Duration::from_millis(25);
+/// Patience with the end of what is in hand.
+const REST: Duration = Duration::from_secs(10);
 
 /// What a process holds.
 struct Held {
@@ -33,8 +35,7 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
     let (mut held, mut generation) = (vec![], 0);
     for n in 0..=EDITS {
         if n % EVERY == 0 {
-            std::thread::sleep(Duration::from_millis(300));
-            let now = held_by(watching.id(), n)?;
+            let now = at_rest(watching.id(), n, held.last())?;
             println!("{n:7}{:10.1}{:13}{:10}", now.kib / 1024.0, now.files, now.threads);
             held.push(now);
         }
@@ -44,6 +45,19 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
         generation = seen(&watching, generation);
     }
     verdict(&held)
+}
+
+/// What it holds once no render is in hand: what it held before, unless that takes too long.
+fn at_rest(process: u32, edits: u32, before: Option<&Held>) -> Result<Held, String> {
+    let since = Instant::now();
+    loop {
+        std::thread::sleep(Duration::from_millis(300));
+        let now = held_by(process, edits)?;
+        let same = |it: &Held| (it.files, it.threads) == (now.files, now.threads);
+        if before.is_none_or(same) || since.elapsed() > REST {
+            return Ok(now);
+        }
+    }
 }
 
 /// Waits for a picture of another edit, or for as long as a comment is waited for.

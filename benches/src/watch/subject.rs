@@ -11,6 +11,8 @@ use crate::process::scratch;
 /// Vertices along each side of the large mesh: 2 · 708² = 1,002,528 triangles.
 const LARGE: u32 = 709;
 const SMALL: u32 = 33;
+/// Instead of the large one: 2 · 64² = 8,192 triangles, whose tree takes several threads.
+const MIDDLE: u32 = 65;
 
 /// What can be edited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +71,7 @@ pub(super) struct Subject {
 }
 
 impl Subject {
-    /// Puts it into a folder of its own. Without `is_large` both meshes are small.
+    /// Puts it into a folder of its own. Without `large` the larger mesh is small too.
     ///
     /// # Errors
     /// The system's words.
@@ -82,7 +84,7 @@ impl Subject {
         let folder = scratch()?.join(name);
         let _ = std::fs::remove_dir_all(&folder);
         std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-        let meshes = [grid(if large { LARGE } else { SMALL }), grid(SMALL)];
+        let meshes = [grid(if large { LARGE } else { MIDDLE }), grid(SMALL)];
         let mut subject = Self { folder, size, samples, edits: [0; Kind::ALL.len()], meshes };
         for kind in [Kind::LargeMesh, Kind::SmallMesh, Kind::Texture, Kind::Camera] {
             subject.write(kind, Way::InPlace)?;

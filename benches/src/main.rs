@@ -21,6 +21,7 @@ mod reload;
 mod scene;
 mod series;
 mod strands;
+mod watch;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -52,8 +53,8 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
     Bench { name, runs_program: false, run }
 }
 
-/// The last is not among `all`: it takes long.
-const BENCHES: [Bench; 14] = [
+/// The last two are not among `all`: they take long.
+const BENCHES: [Bench; 16] = [
     of_crates("parse", |_| {
         parse::run();
         Ok(())
@@ -79,6 +80,8 @@ const BENCHES: [Bench; 14] = [
     }),
     of_program("reload", |plan| reload::run(&plan.luxel)),
     of_program("cornell", |plan| peer::cornell(&plan.luxel, plan.python.as_deref())),
+    of_program("watch", |plan| watch::run(&plan.luxel, plan.python.as_deref())),
+    of_program("soak", |plan| watch::soak(&plan.luxel)),
     of_crates("leaks-long", |plan| {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 1_000_000);
         Ok(())
@@ -96,7 +99,7 @@ fn usage() -> String {
 
 /// What is to be measured, and with which programs.
 fn plan() -> Result<(&'static [Bench], Plan), String> {
-    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 1).0;
+    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 2).0;
     let mut benches = ALL;
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
     let (mut python, mut embree, mut document) = (None, None, None);

@@ -102,6 +102,15 @@ pub(crate) fn write(name: &str, bytes: &[u8]) -> Result<PathBuf, String> {
     Ok(path)
 }
 
+/// The whole of a file that the benches or a build made.
+///
+/// # Errors
+/// The system's words.
+#[expect(clippy::disallowed_methods, reason = "files of our own")]
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
 /// The folder of the benches' scenes and scripts.
 pub(crate) fn here() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::process::{Luxel, scratch, write};
+use crate::process::{Luxel, read, scratch, write};
 use crate::series::Series;
 
 const RELOADS: usize = 200;
@@ -117,9 +117,4 @@ fn resident(process: u32) -> Option<f64> {
 fn put(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let part = write("reload.part", bytes)?;
     std::fs::rename(part, path).map_err(|error| error.to_string())
-}
-
-#[expect(clippy::disallowed_methods, reason = "what the build made")]
-fn read(path: &Path) -> std::io::Result<Vec<u8>> {
-    std::fs::read(path)
 }

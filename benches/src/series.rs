@@ -27,6 +27,11 @@ impl Series {
         self.0[self.0.len() / 2]
     }
 
+    /// What so many of a hundred values do not exceed.
+    pub(crate) fn percentile(&self, percent: usize) -> f64 {
+        self.0[(self.0.len() * percent).div_ceil(100).max(1) - 1]
+    }
+
     /// Range over median, in per cent.
     pub(crate) fn spread(&self) -> f64 {
         (self.0[self.0.len() - 1] - self.0[0]) / self.median() * 100.0
@@ -41,5 +46,6 @@ mod tests {
     fn the_median_and_the_range_do_not_depend_on_the_order() {
         let series = Series::from(vec![4.0, 1.0, 2.0]);
         assert_eq!((series.min(), series.median(), series.spread()), (1.0, 2.0, 150.0));
+        assert_eq!([0, 33, 34, 99].map(|percent| series.percentile(percent)), [1.0, 1.0, 2.0, 4.0]);
     }
 }

@@ -59,6 +59,8 @@ function paint() {
     $("empty").hidden = false;
     $("empty").textContent = error.message;
   }
+  // Which edit is on the screen, for whoever measures how soon.
+  canvas.dataset.generation = state.a.generation;
   legend(state);
   $("histogram").hidden = !state.bins;
   if (state.bins) histogram(state);

@@ -269,12 +269,12 @@ const tests = {
     const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true, colorScheme: "dark" };
     const params = "/// How large.\nparam radius_of_the_ball: length = 90 cm in 30 cm..=2 m\nparam dark: bool = false\nparam of: string = \"oak\"";
     const content = scene({ params, radius: "radius_of_the_ball" });
-    const { page, end } = await begun(browser, content, phone);
+    const { page, end } = await begun(browser, content, phone, "--editor", "zed://file/{file}:{line}");
     await press(page, "f");
     const roomy = async (where) => {
       const small = await page.evaluate(() => {
         const wide = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than its window"] : [];
-        const all = [...document.querySelectorAll("button, select, #bar input, #rows input")].filter((each) => each.checkVisibility({ visibilityProperty: true }));
+        const all = [...document.querySelectorAll("button, select, #bar input, #rows input, #facts a")].filter((each) => each.checkVisibility({ visibilityProperty: true }));
         const of = (each) => (each.type === "checkbox" ? each.closest("label") : each).getBoundingClientRect();
         const bad = all.filter((each) => {
           const { width, height, left, right } = of(each);
@@ -285,6 +285,14 @@ const tests = {
       assert.deepEqual(small, [], where);
     };
     await roomy("at first");
+    const { x, y, width, height } = await page.locator("#picture").boundingBox();
+    await page.touchscreen.tap(x + width / 2, y + height / 2);
+    await until("the facts", async () => (await facts(page)).shape);
+    assert.equal(await page.evaluate(() => document.querySelectorAll("#facts a").length), 2);
+    await roomy("with a pixel");
+    await page.waitForTimeout(300);
+    await page.screenshot({ path: join(shots, "watch-phone-pixel.png") });
+    await press(page, "Escape");
     const tap = (id) => page.locator(`#${id}`).tap();
     await tap("params-on");
     await until("the params", () => page.locator("#rows").isVisible());

@@ -120,11 +120,19 @@ function ask() {
 function hover(at) {
   if (String(at) === String(state.hovered)) return;
   state.hovered = at;
-  if (at) $("inspector").classList.toggle("aside", pan.x + at[0] * pan.zoom > pan.room[0] - 400 && pan.y + at[1] * pan.zoom < 260);
+  placeInspector(at);
   ask();
   redraw();
 }
+// Not over the pixel that it tells of; where it is as wide as the window, above it or below.
+function placeInspector(at) {
+  if (!at) return;
+  const [x, y] = [pan.x + at[0] * pan.zoom, pan.y + at[1] * pan.zoom];
+  $("inspector").classList.toggle("aside", x > pan.room[0] - 400 && y < 260);
+  $("inspector").classList.toggle("low", y < pan.room[1] / 2);
+}
 function hold(at) {
+  placeInspector(at);
   state.held = at && String(at) !== String(state.held) ? at : null;
   state.hovered = at;
   ask();

@@ -16,6 +16,7 @@ use super::draft::Draft;
 use super::part::{MeshParts, OWN_BITS};
 use super::patch::Patches;
 use super::shelf::{Kept, Shelf};
+use crate::accel;
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::registry::Registry;
@@ -78,6 +79,8 @@ pub struct Builder<'a> {
     before: &'a Objects,
     /// How triangles become a part of another shape; without it they cannot.
     pub mesh_parts: Option<MeshParts<'a>>,
+    /// Ends what plugins do before it is done.
+    pub watch: Option<&'a accel::Watch>,
     /// What this build made or kept.
     pub objects: Objects,
     /// Nodes with which something is wrong, which has been said.
@@ -105,6 +108,7 @@ impl<'a> Builder<'a> {
             embedded,
             before,
             mesh_parts: None,
+            watch: None,
             objects,
             refused: BTreeSet::new(),
             diagnostics: vec![],
@@ -243,7 +247,7 @@ impl<'a> Builder<'a> {
             self.fault(fault, None, node);
             return None;
         }
-        let reader = Reader::new(self.files, &self.embedded);
+        let reader = Reader::new(self.files, &self.embedded).watched(self.watch);
         let built = object.build_shared(&reader);
         (object.reads, object.warnings) = reader.finish();
         node.inspect(|node| self.tell(object, node));

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use luxel_sdk::params::BuildContext;
 
+use crate::accel::Watch;
 use crate::files::Files;
 use crate::scene::Hash;
 
@@ -25,6 +26,8 @@ pub(super) struct Read {
 pub struct Reader<'a> {
     files: &'a dyn Files,
     embedded: &'a Embedded,
+    /// Tells when the work is not wanted any more.
+    watch: Option<&'a Watch>,
     reads: Mutex<Vec<Read>>,
     warnings: Mutex<Vec<String>>,
 }
@@ -32,7 +35,14 @@ pub struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// A reader of files, and of those inside imported files.
     pub fn new(files: &'a dyn Files, embedded: &'a Embedded) -> Self {
-        Self { files, embedded, reads: Mutex::default(), warnings: Mutex::default() }
+        let (reads, warnings) = Default::default();
+        Self { files, embedded, watch: None, reads, warnings }
+    }
+
+    /// The same, that gives up when a watch is cancelled.
+    #[must_use]
+    pub fn watched(self, watch: Option<&'a Watch>) -> Self {
+        Self { watch, ..self }
     }
 
     /// What was read and warned of.
@@ -79,5 +89,9 @@ impl BuildContext for Reader<'_> {
 
     fn warn(&self, message: &str) {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(message.to_owned());
+    }
+
+    fn cancelled(&self) -> bool {
+        self.watch.is_some_and(Watch::is_cancelled)
     }
 }

@@ -60,8 +60,8 @@ pub enum Unbuilt {
     Cancelled,
 }
 
-/// The same, followed and perhaps stopped by `watch`, which tells the mesh whose tree is built. What
-/// plugins do while they are built is not reached.
+/// The same, followed and perhaps stopped by `watch`, which tells the mesh whose tree is built. Plugins
+/// that build are asked to stop.
 ///
 /// # Errors
 /// As `build`; that the watch was cancelled.
@@ -72,7 +72,7 @@ pub fn build_watched(
     before: Option<&Stage>,
     watch: &Watch,
 ) -> Result<Built, Unbuilt> {
-    let (scene, mut diagnostics) = import::expand(scene, registry, files);
+    let (scene, mut diagnostics) = import::expand(scene, registry, files, watch);
     let film = Film::of_node(scene.film.map(|id| scene.node(id)));
     let mode = features::color_mode(&scene, film.color);
     let none = Cache::default();
@@ -80,6 +80,7 @@ pub fn build_watched(
     let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(&mesh_part);
+    builder.watch = Some(watch);
     let during = film.during();
     let mut maker = Maker {
         scene: &scene,
@@ -100,6 +101,9 @@ pub fn build_watched(
         return Err(Unbuilt::Cancelled);
     }
     let settings = maker.settings();
+    if watch.is_cancelled() {
+        return Err(Unbuilt::Cancelled);
+    }
     diagnostics.append(&mut maker.builder.diagnostics);
     let (made, objects) = (maker.made, maker.builder.objects);
     let anew = Anew { objects: objects.made, shapes: made.new_shapes };

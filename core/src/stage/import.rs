@@ -6,6 +6,7 @@ use std::sync::Arc;
 use luxel_sdk::kind::{ImportNode, ImportValue, Imported, Kind};
 use luxel_sdk::params::{Dimension, Param, Type, Unit};
 
+use crate::accel::Watch;
 use crate::cast::index;
 use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
@@ -22,9 +23,10 @@ pub(super) fn expand(
     scene: &Scene,
     registry: &Registry,
     files: &dyn Files,
+    watch: &Watch,
 ) -> (Scene, Vec<Diagnostic>) {
     let (out, done, cameras) = (scene.clone(), BTreeMap::new(), BTreeMap::new());
-    let mut import = Import { registry, files, out, done, cameras };
+    let mut import = Import { registry, files, watch, out, done, cameras };
     let mut diagnostics = vec![];
     for group in 0..scene.groups.len() {
         let mut items = std::mem::take(&mut import.out.groups[group].items);
@@ -44,6 +46,7 @@ pub(super) fn expand(
 struct Import<'a> {
     registry: &'a Registry,
     files: &'a dyn Files,
+    watch: &'a Watch,
     out: Scene,
     done: BTreeMap<NodeId, Option<GroupId>>,
     /// The first camera of each group that has one, in the group's frame.
@@ -82,11 +85,12 @@ impl Import<'_> {
         let node = scene.node(id);
         let none = Objects::default();
         let mut builder = Builder::new(self.registry, scene, self.files, ColorMode::Rgb, &none);
+        builder.watch = Some(self.watch);
         let object = builder.build(id);
         diagnostics.append(&mut builder.diagnostics);
         let object = object?;
         let embedded = Embedded::new();
-        let reader = Reader::new(self.files, &embedded);
+        let reader = Reader::new(self.files, &embedded).watched(Some(self.watch));
         let imported = object.fixed().importer().import(&reader);
         let warnings = reader.into_warnings();
         match imported {

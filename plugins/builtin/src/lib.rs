@@ -1,6 +1,7 @@
 //! Every built-in plugin: one folder per kind, one file per plugin. They see the SDK alone.
 
 mod sniff;
+mod stop;
 mod shape;
 mod material;
 mod texture;

@@ -48,7 +48,7 @@ impl Build<Sky> for Environment<'_> {
     fn build(&self, context: &dyn BuildContext) -> Result<Sky, Vec<Fault>> {
         let fault = |message: String| vec![Fault::file("file", message)];
         let bytes = context.read(self.file.path.get()).map_err(fault)?;
-        let mut pixels = decode(&bytes).map_err(fault)?;
+        let mut pixels = decode(&bytes, context).map_err(fault)?;
         pixels.decode_srgb(pixels.is_integer());
         let odd = pixels.replace(|v| v >= 0.0);
         if odd > 0 {
@@ -150,6 +150,7 @@ mod tests {
     use luxel_sdk::sampling::Rng;
 
     use super::*;
+    use crate::stop::testing::Patience;
 
     /// A dim sky with one bright pixel at the left edge.
     fn sky() -> Sky {
@@ -159,7 +160,7 @@ mod tests {
         let mut out = std::io::Cursor::new(vec![]);
         let picture = image::DynamicImage::ImageRgb32F(picture);
         picture.write_to(&mut out, image::ImageFormat::OpenExr).unwrap();
-        Sky::new(decode(&out.into_inner()).unwrap()).unwrap()
+        Sky::new(decode(&out.into_inner(), &Patience::endless()).unwrap()).unwrap()
     }
 
     fn light(sky: &Sky, rotation: f64) -> Environment<'_> {

@@ -76,7 +76,7 @@ impl Build<Arc<TriangleMesh>> for Heightfield<'_> {
         } else {
             let bytes = context.read(path).map_err(|message| Fault::file("file", message));
             let fault = |message| Fault::file("file", format!("{path}: {message}"));
-            bytes.and_then(|bytes| self.of_picture(&bytes).map_err(fault))
+            bytes.and_then(|bytes| self.of_picture(&bytes, context).map_err(fault))
         };
         let field = if path.is_empty() { "heights" } else { "file" };
         grid.and_then(|grid| self.triangles(&grid, field))
@@ -103,8 +103,8 @@ impl Heightfield<'_> {
         Ok(Grid { heights: heights.to_vec(), columns })
     }
 
-    fn of_picture(&self, bytes: &[u8]) -> Result<Grid, String> {
-        let picture = decode(bytes)?;
+    fn of_picture(&self, bytes: &[u8], context: &dyn BuildContext) -> Result<Grid, String> {
+        let picture = decode(bytes, context)?;
         let (columns, rows) = (picture.width(), picture.height());
         if columns < 2 || rows < 2 {
             return Err(format!("{columns} × {rows} pixels: a landscape takes two each way"));

@@ -1,15 +1,17 @@
 //! Picture files, kept as compactly as they are.
 
 use std::error::Error;
-use std::io::{self, Cursor};
+use std::io;
 use std::ops::{Add, Mul};
 
 use ::image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
 use glam::Vec3;
 use luxel_sdk::Choice;
 use luxel_sdk::color::{RgbSpace, srgb_decode};
+use luxel_sdk::params::BuildContext;
 
 use crate::sniff;
+use crate::stop::Stoppable;
 
 /// The largest side that is read, pixels.
 const MAX_SIDE: u32 = 1 << 16;
@@ -89,8 +91,9 @@ pub(crate) struct Pixels {
 /// Decodes PNG, JPEG, HDR or EXR.
 ///
 /// # Errors
-/// What the file is and what is wrong with it; the decoder's own words stand in brackets.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
+/// What the file is and what is wrong with it; the decoder's own words stand in brackets. That it is not
+/// wanted any more: the pixels of a JPEG are not waited for either way, they come in one piece.
+pub(crate) fn decode(bytes: &[u8], context: &dyn BuildContext) -> Result<Pixels, String> {
     let format = ::image::guess_format(bytes).ok();
     let name = match format {
         Some(ImageFormat::Png) => "PNG",
@@ -105,7 +108,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
     if name == "JPEG" && !has_end(bytes) {
         return Err(format!("a JPEG picture that {CUT}"));
     }
-    let mut reader = ImageReader::new(Cursor::new(bytes));
+    let mut reader = ImageReader::new(Stoppable::new(bytes, context));
     reader.set_format(format.expect("it has just been named"));
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
@@ -304,7 +307,10 @@ impl Pixels {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
     use super::*;
+    use crate::stop::testing::Patience;
 
     fn encoded(format: ImageFormat) -> Vec<u8> {
         let picture = ::image::Rgb32FImage::from_fn(17, 5, |x, y| {
@@ -329,7 +335,7 @@ mod tests {
     fn every_format_gives_its_pixels_back() {
         // Half a step of each: 16 bits, JPEG's quantisation, a shared exponent, exact.
         for (format, error) in FORMATS.into_iter().zip([8e-6, 0.08, 0.01, 1e-7]) {
-            let pixels = decode(&encoded(format)).unwrap();
+            let pixels = decode(&encoded(format), &Patience::endless()).unwrap();
             assert_eq!((pixels.width(), pixels.height()), (17, 5));
             let off = pixels.rgb(12, 3) - Vec3::new(0.75, 0.75, 0.5);
             assert!(off.abs().max_element() <= error, "{format:?} {off}");
@@ -342,12 +348,12 @@ mod tests {
         for format in FORMATS {
             let whole = encoded(format);
             for cut in (0..whole.len()).step_by(whole.len() / 40 + 1) {
-                let read = decode(&whole[..cut]);
+                let read = decode(&whole[..cut], &Patience::endless());
                 let told = read.err().unwrap_or_else(|| panic!("{format:?} {cut}"));
                 assert!(told.contains("picture"), "{told}");
                 let mut changed = whole.clone();
                 changed[cut] ^= 0x55;
-                drop(decode(&changed));
+                drop(decode(&changed, &Patience::endless()));
             }
         }
     }
@@ -356,14 +362,14 @@ mod tests {
     fn what_is_wrong_with_a_picture_is_said_in_words() {
         for (format, name) in FORMATS.into_iter().zip(["a PNG", "a JPEG", "an HDR", "an EXR"]) {
             let whole = encoded(format);
-            let cut = decode(&whole[..whole.len() * 3 / 4]).err().unwrap();
+            let cut = decode(&whole[..whole.len() * 3 / 4], &Patience::endless()).err().unwrap();
             assert!(cut.starts_with(&format!("{name} picture that ends too early")), "{cut}");
         }
         let mut damaged = encoded(ImageFormat::Png);
         damaged[20] ^= 0x55;
-        let told = decode(&damaged).err().unwrap();
+        let told = decode(&damaged, &Patience::endless()).err().unwrap();
         assert!(told.starts_with("a PNG picture that is damaged ("), "{told}");
-        let told = |bytes: &[u8]| decode(bytes).err().unwrap();
+        let told = |bytes: &[u8]| decode(bytes, &Patience::endless()).err().unwrap();
         assert!(told(b"v 0 0 0\n").contains("but text; PNG, JPEG"), "{}", told(b"v 0 0 0\n"));
         assert!(told(b"GIF89a..").contains("a GIF picture"), "{}", told(b"GIF89a.."));
     }
@@ -372,14 +378,14 @@ mod tests {
     fn a_small_file_cannot_claim_a_large_picture() {
         for size in [100_000, 60_000] {
             let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {size} +X {size}\n");
-            let told = decode(header.as_bytes()).err().unwrap();
+            let told = decode(header.as_bytes(), &Patience::endless()).err().unwrap();
             assert!(told.contains("more pixels than are read: at most 65536"), "{told}");
         }
     }
 
     #[test]
     fn pixels_blend_around_their_centres() {
-        let pixels = decode(&encoded(ImageFormat::OpenExr)).unwrap();
+        let pixels = decode(&encoded(ImageFormat::OpenExr), &Patience::endless()).unwrap();
         let red = |u: f64, wrap| pixels.bilinear([u, 0.5], [wrap; 2], |c, r| pixels.rgb(c, r).x);
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
             // Red runs from 0 at the centre of the first pixel to 1 at that of the last.
@@ -393,5 +399,27 @@ mod tests {
             assert!(red(odd, Wrap::Mirror).is_finite() && red(odd, Wrap::Repeat).is_finite());
         }
         assert!((pixels.nearest([0.999, 0.0], Wrap::Clamp, |c, _| c) == 16));
+    }
+
+    #[test]
+    fn decoding_ends_soon_after_it_is_not_wanted_any_more() {
+        let mut noise = 1u32;
+        let mut byte = || {
+            noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            noise.to_be_bytes()[0]
+        };
+        let picture = ::image::RgbImage::from_fn(512, 512, |_, _| [byte(), byte(), byte()].into());
+        let mut out = Cursor::new(vec![]);
+        picture.write_to(&mut out, ImageFormat::Png).unwrap();
+        let png = out.into_inner();
+        let whole = Patience::endless();
+        decode(&png, &whole).unwrap();
+        let looks = whole.looks.get();
+        assert!(looks >= png.len() >> 16, "{looks} looks while {} bytes are read", png.len());
+        for most in [0, 1, looks / 2] {
+            let patience = Patience::of(most);
+            assert!(decode(&png, &patience).is_err());
+            assert!(patience.looks.get() <= most + 2, "went on after {most} looks");
+        }
     }
 }

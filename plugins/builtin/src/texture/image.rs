@@ -90,7 +90,8 @@ impl Build<Pixels> for Image<'_> {
         let path = self.file.path.get();
         let fault = |message: String| vec![Fault::file("file", message)];
         let bytes = context.read(path).map_err(fault)?;
-        let mut pixels = decode(&bytes).map_err(|message| fault(format!("{path}: {message}")))?;
+        let mut pixels =
+            decode(&bytes, context).map_err(|message| fault(format!("{path}: {message}")))?;
         pixels.decode_srgb(match self.space {
             Space::Auto => pixels.is_integer(),
             Space::Srgb => true,
@@ -153,6 +154,7 @@ mod tests {
     use luxel_sdk::params::Text;
 
     use super::*;
+    use crate::stop::testing::Patience;
 
     /// A file system with one file in it.
     struct One(Vec<u8>);
@@ -196,7 +198,7 @@ mod tests {
 
     #[test]
     fn v_runs_up_and_colours_are_decoded_but_opacity_is_not() {
-        let empty = decode(&files().0).unwrap();
+        let empty = decode(&files().0, &Patience::endless()).unwrap();
         let pixels = texture(&empty, Space::Auto, Channel::Rgb).build(&files()).unwrap();
         let colour = texture(&pixels, Space::Auto, Channel::Rgb);
         assert_eq!(colour.eval(&at(0.75, 0.75)).rgb(), glam::Vec3::X);
@@ -212,7 +214,7 @@ mod tests {
 
     #[test]
     fn raw_numbers_stay_and_missing_files_are_told() {
-        let empty = decode(&files().0).unwrap();
+        let empty = decode(&files().0, &Patience::endless()).unwrap();
         let mut raw = texture(&empty, Space::Raw, Channel::G);
         let pixels = raw.build(&files()).unwrap();
         let value = texture(&pixels, Space::Raw, Channel::G).eval(&at(0.25, 0.25)).lane(0);

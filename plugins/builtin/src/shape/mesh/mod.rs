@@ -231,21 +231,21 @@ impl Mesh<'_> {
     fn read<T>(
         &self,
         context: &dyn BuildContext,
-        ply: fn(&[u8], Axes) -> Result<T, String>,
-        obj: fn(&[u8], Axes) -> Result<T, String>,
+        ply: fn(&[u8], Axes, &dyn BuildContext) -> Result<T, String>,
+        obj: fn(&[u8], Axes, &dyn BuildContext) -> Result<T, String>,
     ) -> Result<T, Vec<Fault>> {
         let path = self.file.path.get();
         let bytes = context.read(path).map_err(|message| vec![Fault::file("file", message)])?;
         let axes = Axes { turn: self.up.turn(), unit: self.unit };
         let found = if bytes.starts_with(b"ply") {
-            ply(&bytes, axes)
+            ply(&bytes, axes, context)
         } else if has_extension(path, "ply") {
             let found = sniff::what(&bytes);
             Err(format!("not a PLY file, which begins with `ply`, but {found}"))
         } else if let Some(told) = stranger(&bytes) {
             Err(told)
         } else {
-            obj(&bytes, axes)
+            obj(&bytes, axes, context)
         };
         found.map_err(|message| vec![Fault::file("file", format!("{path}: {message}"))])
     }

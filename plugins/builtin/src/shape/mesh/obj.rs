@@ -5,10 +5,12 @@ use std::borrow::Cow;
 use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::color::srgb_decode;
 use luxel_sdk::kind::TriangleMesh;
+use luxel_sdk::params::BuildContext;
 use tobj::LoadOptions;
 
 use super::assemble::{Axes, MOST_POINTS};
 use super::inline::unit_color;
+use crate::stop::{STRIDE, Stoppable, go_on};
 
 const OPTIONS: LoadOptions =
     LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
@@ -17,15 +19,21 @@ const OPTIONS: LoadOptions =
 ///
 /// # Errors
 /// What is wrong, with its line where `tobj` would not tell it.
-pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
+pub(super) fn read(
+    bytes: &[u8],
+    axes: Axes,
+    context: &dyn BuildContext,
+) -> Result<TriangleMesh, String> {
     // Names and comments may be in any old encoding; numbers are not.
     let text = String::from_utf8_lossy(bytes);
-    check(&text, Most::OF_MESH)?;
+    check(&text, Most::OF_MESH, context)?;
     let text: Cow<'_, [u8]> = match text {
         Cow::Borrowed(text) => Cow::Borrowed(text.as_bytes()),
         Cow::Owned(text) => Cow::Owned(text.into_bytes()),
     };
-    let loaded = tobj::load_obj_buf(&mut &text[..], &OPTIONS, |_| Ok(Default::default()));
+    let loaded = tobj::load_obj_buf(&mut Stoppable::new(&text, context), &OPTIONS, |_| {
+        Ok(Default::default())
+    });
     let (models, _) = loaded.map_err(|error| error.to_string().to_lowercase())?;
     let meshes: Vec<_> = models.into_iter().map(|model| model.mesh).collect();
     let points = meshes.iter().flat_map(|m| m.positions.as_chunks().0);
@@ -117,13 +125,16 @@ impl Most {
 
 /// Finds the first face that names a corner which does not exist, and more lines or corners than can
 /// be told apart.
-pub(super) fn check(text: &str, most: Most) -> Result<(), String> {
+pub(super) fn check(text: &str, most: Most, context: &dyn BuildContext) -> Result<(), String> {
     const NAMES: [&str; 3] = ["v", "vt", "vn"];
     let mut counts = [0i64; 3];
     let mut n_corners = 0u64;
     // For each list the greatest index, and the line that has it.
     let mut greatest = [(0i64, 0usize); 3];
     for (i, line) in text.lines().enumerate() {
+        if i.is_multiple_of(STRIDE) {
+            go_on(context)?;
+        }
         let mut words = line.split_ascii_whitespace();
         let word = words.next();
         if let Some(k) = NAMES.iter().position(|name| word == Some(name)) {
@@ -165,19 +176,21 @@ pub(super) fn check(text: &str, most: Most) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stop::testing::Patience;
 
     #[test]
     fn more_lines_or_corners_than_can_be_told_apart_are_refused_with_their_line() {
         let most = Most { lines: 3, corners: 6 };
         let points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
         let face = "f 1 2 3\n";
-        assert_eq!(check(&format!("{points}{face}{face}"), most), Ok(()));
+        let patience = Patience::endless();
+        assert_eq!(check(&format!("{points}{face}{face}"), most, &patience), Ok(()));
         for (text, expected) in [
             (format!("{points}v 0 0 1\n{face}"), "line 4: more than 3 lines `v`"),
             (format!("{points}{}", "vt 0 0\n".repeat(4)), "line 7: more than 3 lines `vt`"),
             (format!("{points}{}", face.repeat(3)), "line 6: more than 6 corners"),
         ] {
-            assert_eq!(check(&text, most), Err(expected.to_owned()));
+            assert_eq!(check(&text, most, &patience), Err(expected.to_owned()));
         }
     }
 

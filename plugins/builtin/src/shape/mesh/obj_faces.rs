@@ -3,21 +3,31 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use luxel_sdk::params::BuildContext;
+
 use super::assemble::Axes;
 use super::inline::finite_uv;
 use super::obj::{Most, TOO_MANY, check, color_of};
 use super::polygons::Polygons;
+use crate::stop::{STRIDE, go_on};
 
 /// All groups of the file as one mesh.
 ///
 /// # Errors
 /// What is wrong, with its line.
-pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<Polygons, String> {
+pub(super) fn read(
+    bytes: &[u8],
+    axes: Axes,
+    context: &dyn BuildContext,
+) -> Result<Polygons, String> {
     // Names and comments may be in any old encoding; numbers are not.
     let text = String::from_utf8_lossy(bytes);
-    check(&text, Most::OF_MESH)?;
+    check(&text, Most::OF_MESH, context)?;
     let mut file = Lists { axes, ..Lists::default() };
     for (i, line) in text.lines().enumerate() {
+        if i.is_multiple_of(STRIDE) {
+            go_on(context)?;
+        }
         file.line(line).map_err(|message| format!("line {}: {message}", i + 1))?;
     }
     let Lists { mut faces, lines, colors, .. } = file;

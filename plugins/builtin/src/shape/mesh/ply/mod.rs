@@ -8,6 +8,7 @@ mod value;
 use glam::{DVec2, DVec3, Vec3};
 use luxel_sdk::color::srgb_decode;
 use luxel_sdk::kind::TriangleMesh;
+use luxel_sdk::params::BuildContext;
 
 use self::header::{Element, Header};
 use self::value::{Encoding, Reader, Scalar};
@@ -19,9 +20,13 @@ use super::polygons::Polygons;
 ///
 /// # Errors
 /// What does not fit together, with its vertex or face.
-pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
+pub(super) fn read(
+    bytes: &[u8],
+    axes: Axes,
+    context: &dyn BuildContext,
+) -> Result<TriangleMesh, String> {
     let mut indices = vec![];
-    let mesh = parse(bytes, axes, &mut indices, None)?;
+    let mesh = parse((bytes, context), axes, &mut indices, None)?;
     if indices.is_empty() {
         return Err(EMPTY.to_owned());
     }
@@ -29,10 +34,14 @@ pub(super) fn read(bytes: &[u8], axes: Axes) -> Result<TriangleMesh, String> {
 }
 
 /// The same, with faces as they were given and points in double precision.
-pub(super) fn polygons(bytes: &[u8], axes: Axes) -> Result<Polygons, String> {
+pub(super) fn polygons(
+    bytes: &[u8],
+    axes: Axes,
+    context: &dyn BuildContext,
+) -> Result<Polygons, String> {
     let mut out = Polygons { starts: vec![0], ..Polygons::default() };
     let mut points = vec![];
-    let mesh = parse(bytes, axes, &mut out, Some(&mut points))?;
+    let mesh = parse((bytes, context), axes, &mut out, Some(&mut points))?;
     if out.n_faces() == 0 {
         return Err(EMPTY.to_owned());
     }
@@ -82,13 +91,13 @@ const EMPTY: &str = "a mesh without a triangle";
 
 /// Vertices as a mesh without triangles, and faces one by one; `exact` takes the points as they are.
 fn parse(
-    bytes: &[u8],
+    (bytes, context): (&[u8], &dyn BuildContext),
     axes: Axes,
     out: &mut impl Faces,
     mut exact: Exact<'_>,
 ) -> Result<TriangleMesh, String> {
     let header = Header::parse(bytes)?;
-    let mut reader = Reader::new(&bytes[header.length..], header.encoding);
+    let mut reader = Reader::new(&bytes[header.length..], header.encoding, context);
     let n_points = header.elements.iter().find(|e| e.name == "vertex").map_or(0, |e| e.count);
     check_n_points(n_points)?;
     let mut mesh = None;
@@ -191,6 +200,7 @@ fn listed(
     let (mut normals, mut uvs, mut colors) = (vec![], vec![], vec![]);
     let mut row = vec![0.0; element.properties.len()];
     for i in 0..element.count {
+        reader.go_on(i)?;
         for (value, property) in row.iter_mut().zip(&element.properties) {
             let read = match property.list {
                 Some(count) => reader.skip_list(count, property.value).map(|()| 0.0),
@@ -242,6 +252,7 @@ fn faces(
     out.expect(element.count.min(reader.rest().len() / 4));
     let mut corners = vec![];
     for i in 0..element.count {
+        reader.go_on(i)?;
         let located = |error| format!("face {i} of {}: {error}", element.count);
         for (k, property) in element.properties.iter().enumerate() {
             let read = match property.list {
@@ -264,6 +275,7 @@ fn skip(element: &Element, reader: &mut Reader<'_>) -> Result<(), String> {
         return Ok(());
     }
     for i in 0..element.count {
+        reader.go_on(i)?;
         for property in &element.properties {
             match property.list {
                 Some(count) => reader.skip_list(count, property.value),

@@ -1,6 +1,9 @@
 //! Numbers of a PLY file, one after the other.
 
+use luxel_sdk::params::BuildContext;
+
 use super::super::inline::index;
+use crate::stop::{STRIDE, go_on};
 
 /// How the data are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,15 +90,21 @@ impl Encoding {
 }
 
 /// A place in the data.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(super) struct Reader<'a> {
     bytes: &'a [u8],
     pub(super) encoding: Encoding,
+    context: &'a dyn BuildContext,
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(bytes: &'a [u8], encoding: Encoding) -> Self {
-        Self { bytes, encoding }
+    pub(super) fn new(bytes: &'a [u8], encoding: Encoding, context: &'a dyn BuildContext) -> Self {
+        Self { bytes, encoding, context }
+    }
+
+    /// Before element `i` of many: whether the file is still wanted.
+    pub(super) fn go_on(&self, i: usize) -> Result<(), String> {
+        if i.is_multiple_of(STRIDE) { go_on(self.context) } else { Ok(()) }
     }
 
     /// What has not been read.

@@ -1,0 +1,120 @@
+//! Giving up what is not wanted any more, in the middle of a file.
+
+use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
+
+use luxel_sdk::params::BuildContext;
+
+/// Lines or elements of a file between two looks at whether it is still wanted: a millisecond's work
+/// at most.
+pub(crate) const STRIDE: usize = 1 << 12;
+
+/// Bytes that are handed on between two looks.
+const PIECE: usize = 1 << 16;
+
+const STOPPED: &str = "it is not wanted any more";
+
+/// # Errors
+/// If the work is not wanted any more.
+pub(crate) fn go_on(context: &dyn BuildContext) -> Result<(), String> {
+    if context.cancelled() { Err(STOPPED.to_owned()) } else { Ok(()) }
+}
+
+/// Bytes in memory, for decoders that read piece by piece: they end with an error once they are not
+/// wanted any more.
+pub(crate) struct Stoppable<'a> {
+    bytes: Cursor<&'a [u8]>,
+    context: &'a dyn BuildContext,
+}
+
+impl<'a> Stoppable<'a> {
+    pub(crate) fn new(bytes: &'a [u8], context: &'a dyn BuildContext) -> Self {
+        Self { bytes: Cursor::new(bytes), context }
+    }
+}
+
+impl Read for Stoppable<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        go_on(self.context).map_err(io::Error::other)?;
+        let n = to.len().min(PIECE);
+        self.bytes.read(&mut to[..n])
+    }
+}
+
+impl BufRead for Stoppable<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        go_on(self.context).map_err(io::Error::other)?;
+        let left = self.bytes.fill_buf()?;
+        Ok(&left[..left.len().min(PIECE)])
+    }
+
+    fn consume(&mut self, n: usize) {
+        self.bytes.consume(n);
+    }
+}
+
+impl Seek for Stoppable<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.bytes.seek(to)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use std::cell::Cell;
+    use std::sync::Arc;
+
+    use luxel_sdk::params::BuildContext;
+
+    /// Reads one file whatever is asked for, and is cancelled after so many looks.
+    pub(crate) struct Patience {
+        pub(crate) bytes: Arc<[u8]>,
+        pub(crate) looks: Cell<usize>,
+        pub(crate) most: usize,
+    }
+
+    impl Patience {
+        pub(crate) fn endless() -> Self {
+            Self::of(usize::MAX)
+        }
+
+        pub(crate) fn of(most: usize) -> Self {
+            Self { bytes: Arc::default(), looks: Cell::new(0), most }
+        }
+    }
+
+    impl BuildContext for Patience {
+        fn read(&self, _: &str) -> Result<Arc<[u8]>, String> {
+            Ok(self.bytes.clone())
+        }
+
+        fn read_beside(&self, _: &str, path: &str) -> Result<Arc<[u8]>, String> {
+            self.read(path)
+        }
+
+        fn warn(&self, _: &str) {}
+
+        fn cancelled(&self) -> bool {
+            self.looks.set(self.looks.get() + 1);
+            self.looks.get() > self.most
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::Patience;
+    use super::*;
+
+    #[test]
+    fn bytes_come_piece_by_piece_and_end_when_they_are_not_wanted() {
+        let bytes = vec![7; 3 * PIECE];
+        let (endless, short) = (Patience::endless(), Patience::of(2));
+        let mut all = vec![];
+        assert_eq!(Stoppable::new(&bytes, &endless).read_to_end(&mut all).unwrap(), bytes.len());
+        assert!(endless.looks.get() > 3, "asked only {} times", endless.looks.get());
+        let stopped = Stoppable::new(&bytes, &short).read_to_end(&mut all).unwrap_err();
+        assert_eq!(stopped.to_string(), STOPPED);
+        let mut lines = Stoppable::new(&bytes, &endless);
+        assert_eq!(lines.fill_buf().unwrap().len(), PIECE);
+    }
+}

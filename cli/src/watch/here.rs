@@ -221,6 +221,7 @@ impl Watching<'_, '_> {
             if !self.args.quiet && !self.args.json {
                 report::aside(&edit.words());
             }
+            self.audience.page().inspect(|page| page.changed(edit.words()));
             let (scene, stage) = (Arc::new(scene), Arc::new(stage));
             let read = Arc::new(Read { files, sources });
             let warnings = diagnostics.split_off(n_told.min(diagnostics.len()));

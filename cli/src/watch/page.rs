@@ -38,7 +38,7 @@ pub(super) struct Page {
     wishes: Arc<Wishes>,
     generation: AtomicU64,
     /// How far the picture is.
-    standing: Arc<Mutex<String>>,
+    standing: Arc<Mutex<Standing>>,
     /// Why the picture of the scene is not what it should be.
     broken: Mutex<Vec<Problem>>,
     ended: Arc<AtomicBool>,
@@ -74,9 +74,14 @@ impl Page {
         self.screen.status("reading");
     }
 
+    /// Tells what the last save changed.
+    pub(super) fn changed(&self, words: String) {
+        lock(&self.standing).changed = words;
+    }
+
     /// Tells how far the picture is.
     pub(super) fn has_read(&self) {
-        self.screen.status(&lock(&self.standing));
+        self.screen.status(&lock(&self.standing).line());
     }
 
     /// What the page asks for beyond the file.
@@ -127,6 +132,7 @@ impl Page {
     pub(super) fn shows(&self, stage: &Arc<Stage>, read: &Arc<Read>) {
         *lock(&self.about) = Some((stage.clone(), read.clone()));
         self.screen.shown_as(&stage.film);
+        self.has_read();
     }
 
     /// Shows pictures of a scene from now on, of so many samples in the end.
@@ -141,7 +147,8 @@ impl Page {
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
         let (screen, about) = (self.screen.clone(), self.about.clone());
         let (standing, settings) = (self.standing.clone(), stage.film.clone());
-        "rendering".clone_into(&mut lock(&standing));
+        "rendering".clone_into(&mut lock(&standing).reached);
+        self.has_read();
         let mut last = None;
         move |film: &Film, now: Reached| {
             let is_last = now.step == 1 && now.samples >= of_samples;
@@ -153,11 +160,24 @@ impl Page {
             let settings = shown.as_ref().unwrap_or(&settings);
             let frame = Frame::of_film(film, settings, (now, of_samples));
             screen.show(&Frame { generation, ..frame });
-            let status = status(now, of_samples);
-            screen.status(&status);
-            *lock(&standing) = status;
+            let mut standing = lock(&standing);
+            standing.reached = status(now, of_samples);
+            screen.status(&standing.line());
             last = Some(Instant::now());
         }
+    }
+}
+
+/// How far the picture is, and what it shows that the one before did not.
+#[derive(Default)]
+struct Standing {
+    reached: String,
+    changed: String,
+}
+
+impl Standing {
+    fn line(&self) -> String {
+        format!("{} · {}", self.reached, self.changed)
     }
 }
 

@@ -9,7 +9,7 @@ use super::subject::{Kind, Subject, Way};
 use crate::series::Series;
 
 /// Edits of each kind.
-const ROUNDS: u32 = 24;
+const ROUNDS: usize = 24;
 /// So long after an edit of a comment nothing may begin.
 const STILL: Duration = Duration::from_millis(300);
 /// What the page is told when a save is noticed.
@@ -38,7 +38,7 @@ pub(super) fn run(watching: &Watching, subject: &mut Subject) -> Result<(), Stri
             // Anywhere between two pictures.
             let pause = 50.0 + 200.0 * rng.f64();
             watching.until(Instant::now() + Duration::from_secs_f64(pause / 1e3)).for_each(drop);
-            let way = if (round + i as u32) % 2 == 0 { Way::InPlace } else { Way::Renamed };
+            let way = if (round + i).is_multiple_of(2) { Way::InPlace } else { Way::Renamed };
             let saved = subject.edit(kind, way)?;
             let times = &mut times[i];
             if kind == Kind::Comment {

@@ -42,6 +42,13 @@ impl Heard {
         self.open.contains(file) || !done
     }
 
+    /// What was whole before is so still, unless somebody has begun to write it again.
+    pub(super) fn after(mut self, before: &Self) -> Self {
+        let whole = before.done.difference(&self.open).cloned().collect::<Vec<_>>();
+        self.done.extend(whole);
+        self
+    }
+
     fn note(&mut self, kind: EventKind, files: Option<&BTreeSet<PathBuf>>, is_way: bool) {
         let files = || files.into_iter().flatten().cloned();
         self.files.extend(files());
@@ -215,4 +222,28 @@ impl Ears {
 
 fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use notify::event::DataChange;
+
+    use super::*;
+
+    #[test]
+    fn what_was_closed_stays_whole_until_it_is_written_again() {
+        let file = Path::new("a.scene");
+        let files = BTreeSet::from([file.to_path_buf()]);
+        let heard = |kind: EventKind| {
+            let mut heard = Heard::default();
+            heard.note(kind, Some(&files), false);
+            heard
+        };
+        let closed = heard(EventKind::Access(AccessKind::Close(AccessMode::Write)));
+        assert!(!closed.may_go_on(file));
+        let later = Heard::default().after(&closed);
+        assert!(!later.may_go_on(file));
+        let written = heard(EventKind::Modify(ModifyKind::Data(DataChange::Any)));
+        assert!(written.after(&later).may_go_on(file));
+    }
 }

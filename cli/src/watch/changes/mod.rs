@@ -251,10 +251,11 @@ impl Changes {
     /// Looks until every file is whole and still.
     fn decide(&mut self) -> Noticed {
         let since = Instant::now();
+        let mut heard = Heard::default();
         loop {
             // Before the look: what is half in the end is so after all the patience.
             let waited = since.elapsed();
-            let heard = self.ears.take();
+            heard = self.ears.take().after(&heard);
             if heard.moved {
                 self.listen();
             }

@@ -143,7 +143,6 @@ pub fn render_seen(
 ) -> (Film, Outcome) {
     let size = stage.film.resolution;
     let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
-    let mut film = Film::new(size, window);
     let threads = options.threads.map_or(0, NonZeroUsize::get);
     let courteous = options.courteous;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -151,6 +150,7 @@ pub fn render_seen(
         .start_handler(move |_| give_way(courteous))
         .build()
         .expect("the system gives threads");
+    let mut film = pool.install(|| Film::new(size, window));
     // Before anything of the stage is asked: the sampler may fail at once.
     let failures = AtomicU64::new(stage.alarm().count());
     let stop = Stop { control, stage, failures: &failures, first: false };

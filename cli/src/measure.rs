@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use luxel_core::film::{Film, Rect};
@@ -15,6 +15,9 @@ use crate::progress;
 
 /// Pixels of one film, at most: 56 bytes each, 7.5 GB.
 const MAX_PIXELS: usize = 1 << 27;
+
+/// Between two looks at how wrong the picture is, for the line.
+const PACE: Duration = Duration::from_secs(1);
 
 /// A film with what it took.
 pub(crate) struct Measured {
@@ -58,10 +61,12 @@ pub(crate) fn measure(
     let total = window.area() as u64 * u64::from(options.samples(stage));
     let start = Instant::now();
     let (shown, error) = (progress::is_shown(line), Mutex::new(None));
+    let mut told = start;
     let mut seen = |film: &Film, now: Reached| {
-        if shown && now.samples >= 2 {
-            let found = Errors::of_film(film).map(|errors| errors.median);
+        if shown && now.samples >= 2 && told.elapsed() >= PACE {
+            let found = Errors::about(film).map(|errors| errors.median);
             *error.lock().unwrap_or_else(PoisonError::into_inner) = found;
+            told = Instant::now();
         }
         look(film, now);
     };

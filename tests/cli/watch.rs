@@ -146,3 +146,30 @@ fn a_hundred_edits_leave_no_file_open_and_no_thread() {
     watching.interrupt();
     assert_eq!(watching.end().code, 0);
 }
+
+#[test]
+fn a_picture_that_could_not_be_written_comes_once_it_can() {
+    let to = |file: &str| SCENE.replace("film rgb {", &format!("film rgb {{ file = \"{file}\","));
+    let folder = Folder::new("watch-unwritable").with("a.scene", &to("no/a"));
+    let mut watching = folder.start(&["watch", "a.scene"]);
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    folder.write("a.scene", &to("b"));
+    until("the picture that was never measured", || folder.names().contains(&"b.png".to_owned()));
+    folder.write("a.scene", &to("no/c"));
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    folder.write("a.scene", &to("d"));
+    until("the picture that was measured", || folder.names().contains(&"d.png".to_owned()));
+    assert_eq!(folder.read("b.png"), folder.read("d.png"));
+    watching.interrupt();
+    let done = watching.end();
+    assert_eq!((done.code, done.err.matches("cannot write").count()), (0, 2), "{done:?}");
+}
+
+#[test]
+fn once_stable_without_a_picture_on_the_disk_is_no_success() {
+    let scene = SCENE.replace("film rgb {", "film rgb { file = \"no/a\",");
+    let folder = Folder::new("watch-once-unwritable").with("a.scene", &scene);
+    let done = folder.luxel(&["watch", "a.scene", "--once-stable"]);
+    assert_eq!(done.code, 1, "{done:?}");
+    assert!(done.err.contains("cannot write"), "{done:?}");
+}

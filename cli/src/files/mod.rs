@@ -87,7 +87,8 @@ impl DiskFiles {
     }
 
     fn note(&self, path: &Path, seen: Seen) {
-        lock(&self.asked).insert(path.to_path_buf(), seen);
+        // What was there first counts: who saw another is told of a change.
+        lock(&self.asked).entry(path.to_path_buf()).or_insert(seen);
     }
 }
 

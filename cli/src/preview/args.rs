@@ -15,13 +15,18 @@ pub(crate) struct PageArgs {
     /// Answer under this name too, as at the near end of a tunnel
     #[arg(long, value_name = "HOST[:PORT]")]
     pub(crate) allow_host: Vec<String>,
-    /// What opens a line in the editor, as `vscode://file/{file}:{line}:{column}`; a click on a
-    /// place in the page goes there [default: `LUXEL_EDITOR`]
-    #[arg(long, value_name = "ADDRESS", value_parser = Editor::of)]
-    pub(crate) editor: Option<Editor>,
 }
 
-impl PageArgs {
+/// How places in the page are opened.
+#[derive(clap::Args, Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct EditorArgs {
+    /// What opens a line in the editor, as `vscode://file/{file}:{line}:{column}`; a click on a
+    /// place in the page goes there [default: `LUXEL_EDITOR`]
+    #[arg(long, value_name = "ADDRESS", value_parser = Editor::of, requires = "preview")]
+    editor: Option<Editor>,
+}
+
+impl EditorArgs {
     /// What opens a line in the editor: as was said here, or in the environment.
     ///
     /// # Errors
@@ -49,14 +54,17 @@ mod tests {
     #[derive(Parser)]
     struct Line {
         #[command(flatten)]
-        page: PageArgs,
+        editor: EditorArgs,
+        #[arg(long)]
+        preview: bool,
     }
 
     #[test]
     fn an_editor_is_an_address_or_a_mistake_of_the_command_line() {
-        let of = |address: &str| Line::try_parse_from(["luxel", "--editor", address]);
-        let page = of("vscode://file/{file}:{line}").map(|line| line.page).ok().unwrap();
-        assert_eq!(page.editor().unwrap(), Editor::of("vscode://file/{file}:{line}").ok());
+        let of = |address: &str| Line::try_parse_from(["luxel", "--preview", "--editor", address]);
+        let line = of("vscode://file/{file}:{line}").ok().unwrap();
+        assert!(line.preview && Line::try_parse_from(["luxel", "--editor", "a://{file}"]).is_err());
+        assert_eq!(line.editor.editor().unwrap(), Editor::of("vscode://file/{file}:{line}").ok());
         let told = of("javascript://{file}").err().unwrap().to_string();
         assert!(told.contains("`javascript` opens no editor"), "{told}");
     }

@@ -31,7 +31,7 @@ use crate::exit::{Exit, Failure};
 use board::{Board, Topic};
 use guard::Gate;
 
-pub(crate) use args::PageArgs;
+pub(crate) use args::{EditorArgs, PageArgs};
 pub(crate) use editor::Editor;
 pub(crate) use frame::{Frame, Pixels, Side};
 pub(crate) use offer::{Camera, Field, Param};

@@ -17,6 +17,11 @@ impl After {
         Self(Mailbox::new(move |output| run(&command, &scene, &output)))
     }
 
+    /// Begins nothing more.
+    pub(super) fn end(&self) {
+        self.0.clear();
+    }
+
     /// There is a picture.
     pub(super) fn picture(&self, output: Output) {
         self.0.put(output);

@@ -25,13 +25,14 @@ pub(super) struct Audience {
 
 impl Audience {
     /// # Errors
-    /// A port of the page that is taken.
+    /// A port of the page that is taken; no address of an editor.
     pub(super) fn new(args: &Args, wishes: Wishes) -> Result<Self, Failure> {
         let (file, ThenArgs { tev, exec, .. }) = (&args.file, &args.then);
         let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
         let tev = tev.clone().map(|address| Tev::new(address, name.into_owned()));
         let after = exec.clone().map(|command| After::new(command, file.clone()));
-        let page = args.preview.then(|| Page::start(file, &args.page, wishes)).transpose()?;
+        let start = || Page::start(file, &args.page, args.editor.editor()?, wishes);
+        let page = args.preview.then(start).transpose()?;
         Ok(Self { page, tev, after })
     }
 
@@ -72,6 +73,11 @@ impl Audience {
                 self.page.as_ref().inspect(|page| page.lost(&failure));
             }
         }
+    }
+
+    /// Nothing more is begun for pictures that are there.
+    pub(super) fn end(&self) {
+        self.after.as_ref().inspect(|after| after.end());
     }
 
     /// Something could not be done.

@@ -28,6 +28,14 @@ impl Edit {
         Self { changes, anew, seconds }
     }
 
+    /// Both, of one picture.
+    pub(super) fn then(self, next: Self) -> Self {
+        let Self { mut changes, anew: Anew { objects, shapes }, seconds } = self;
+        changes.extend(next.changes);
+        let anew = Anew { objects: objects + next.anew.objects, shapes: shapes + next.anew.shapes };
+        Self { changes, anew, seconds: seconds + next.seconds }
+    }
+
     /// `sphere "ball": radius · made anew: 1 object, 1 shape · 3.2 ms`
     pub(super) fn words(&self) -> String {
         let Self { changes, anew: Anew { objects, shapes }, seconds } = self;

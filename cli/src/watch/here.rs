@@ -92,6 +92,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
         if args.then.once_stable {
             return if has_picture { Exit::Fine } else { Exit::Input };
         }
+        audience.end();
         report::note("watching has ended");
         Exit::Fine
     })
@@ -208,6 +209,9 @@ impl Watching<'_, '_> {
         if loaded.stage.is_some() || !self.changes.more_to_come() {
             report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
             let told = [(&loaded.diagnostics, &loaded.sources)];
+            if loaded.stage.is_some() {
+                self.audience.page().inspect(|page| page.begins());
+            }
             self.audience.page().inspect(|page| page.problems(&told));
         }
         let Loaded { scene, stage, files, sources, mut diagnostics, anew } = loaded;
@@ -261,7 +265,7 @@ impl Watching<'_, '_> {
     /// Goes on with the picture before if only how it is shown has changed, else begins one.
     fn turn_to(&mut self, subject: Subject, edit: Edit) {
         let Some(shown) = &mut self.shown else { return self.show(subject, edit) };
-        if !subject.is_measured_by(&shown.subject) {
+        if shown.sitting.is_lost() || !subject.is_measured_by(&shown.subject) {
             return self.show(subject, edit);
         }
         let of = (subject.stage.clone(), subject.read.clone());
@@ -303,7 +307,7 @@ impl Watching<'_, '_> {
             shown.control.cancel();
             let sitting = shown.sitting.clone();
             shown.ended();
-            sitting.is_done()
+            sitting.is_written()
         })
     }
 

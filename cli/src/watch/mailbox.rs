@@ -36,6 +36,11 @@ impl<T: Send + 'static> Mailbox<T> {
 }
 
 impl<T> Mailbox<T> {
+    /// Nobody wants to know any more what has not been dealt with.
+    pub(super) fn clear(&self) {
+        self.shared.lock().latest = None;
+    }
+
     /// Takes the place of a letter that has not been dealt with.
     pub(super) fn put(&self, letter: T) {
         self.shared.lock().latest = Some(letter);

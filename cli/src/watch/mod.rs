@@ -23,7 +23,7 @@ use std::path::PathBuf;
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
 use crate::exit::{Exit, Failure};
 use crate::isolate::IsolateArgs;
-use crate::preview::PageArgs;
+use crate::preview::{EditorArgs, PageArgs};
 use crate::report::Form;
 
 /// Render a scene again whenever it, or a file that it reads, is saved
@@ -55,6 +55,8 @@ pub(crate) struct Args {
     preview: bool,
     #[command(flatten)]
     page: PageArgs,
+    #[command(flatten)]
+    editor: EditorArgs,
     #[command(flatten)]
     then: ThenArgs,
     /// Say nothing but errors

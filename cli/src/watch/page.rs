@@ -19,7 +19,7 @@ use super::camera;
 use super::facts::{Facts, facts};
 use super::round::Read;
 use super::wishes::Wishes;
-use crate::exit::Failure;
+use crate::exit::{Failure, blaming};
 use crate::preview::{
     Command, Editor, Frame, PACE, PageArgs, Param, PixelReply, Preview, Problem, Screen,
 };
@@ -49,9 +49,13 @@ impl Page {
     /// Serves it, and tells where; what it asks for beyond the file is wished for.
     ///
     /// # Errors
-    /// A port that is taken; no address of an editor.
-    pub(super) fn start(file: &Path, args: &PageArgs, wishes: Wishes) -> Result<Self, Failure> {
-        let editor = args.editor()?;
+    /// A port that is taken.
+    pub(super) fn start(
+        file: &Path,
+        args: &PageArgs,
+        editor: Option<Editor>,
+        wishes: Wishes,
+    ) -> Result<Self, Failure> {
         let title = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
         let mut preview = Preview::start(args, &title)?;
         report::note(&format!("preview: {}", preview.url()));
@@ -96,8 +100,9 @@ impl Page {
 
     /// Tells where the camera of a scene stands that is shown from now on.
     pub(super) fn stands_at(&self, stage: &Stage, registry: &Registry, read: &Read) {
-        let told = camera::told(stage, (registry, &read.sources), self.wishes.is_moved());
-        self.screen.camera(told.as_ref());
+        let told = || camera::told(stage, (registry, &read.sources), self.wishes.is_moved());
+        // Shapes are asked what the middle shows; one that panics is told of by the render.
+        self.screen.camera(blaming("", told).ok().flatten().as_ref());
     }
 
     /// Lays messages over the last good picture, each list with the texts that it is about; none
@@ -106,6 +111,11 @@ impl Page {
         let told = found.iter().flat_map(|(found, sources)| problems(found, sources));
         let broken = self.broken.lock().unwrap_or_else(PoisonError::into_inner).clone();
         self.screen.problems(&told.chain(broken).collect::<Vec<_>>());
+    }
+
+    /// There is a scene whose picture is still to be written: what was told of the one before is over.
+    pub(super) fn begins(&self) {
+        lock(&self.broken).clear();
     }
 
     /// Why something could not be done, over the last good picture.
@@ -130,8 +140,10 @@ impl Page {
 
     /// The picture shows this from now on, which differs only in how it is shown.
     pub(super) fn shows(&self, stage: &Arc<Stage>, read: &Arc<Read>) {
-        *lock(&self.about) = Some((stage.clone(), read.clone()));
+        let mut about = lock(&self.about);
+        *about = Some((stage.clone(), read.clone()));
         self.screen.shown_as(&stage.film);
+        drop(about);
         self.has_read();
     }
 
@@ -156,10 +168,12 @@ impl Page {
             if !is_last && (is_soon || !screen.is_watched()) {
                 return;
             }
-            let shown = lock(&about).as_ref().map(|(stage, _)| stage.film.clone());
-            let settings = shown.as_ref().unwrap_or(&settings);
+            // Held until it is shown, so that another exposure comes after it and not in between.
+            let about = lock(&about);
+            let settings = about.as_ref().map_or(&settings, |(stage, _)| &stage.film);
             let frame = Frame::of_film(film, settings, (now, of_samples));
             screen.show(&Frame { generation, ..frame });
+            drop(about);
             let mut standing = lock(&standing);
             standing.reached = status(now, of_samples);
             screen.status(&standing.line());
@@ -177,7 +191,8 @@ struct Standing {
 
 impl Standing {
     fn line(&self) -> String {
-        format!("{} · {}", self.reached, self.changed)
+        let parts = [&*self.reached, &self.changed];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ")
     }
 }
 
@@ -237,9 +252,12 @@ impl Answering {
                 Err(RecvTimeoutError::Disconnected) => return,
             };
             let scene = lock(&self.about).clone();
-            let found =
-                scene.map(|(stage, read)| facts(&stage, &read.sources, self.editor.as_ref(), at));
-            let Facts { told: facts, places } = found.unwrap_or_default();
+            let told = |(stage, read): (Arc<Stage>, Arc<Read>)| {
+                let told = || facts(&stage, &read.sources, self.editor.as_ref(), at);
+                // A shape that panics is told of by the render.
+                blaming("", told).unwrap_or_default()
+            };
+            let Facts { told: facts, places } = scene.map(told).unwrap_or_default();
             preview.screen().pixel(&PixelReply { at, side, facts, places });
         }
     }

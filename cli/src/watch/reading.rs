@@ -1,7 +1,9 @@
 //! Reading the scene as the page wishes it.
 
+use luxel_core::scene::{Hash, Scene, Value};
 use luxel_core::stage::Stage;
 use luxel_lang::ParamInfo;
+use luxel_sdk::kind::Kind;
 
 use super::Args;
 use super::camera;
@@ -10,6 +12,7 @@ use super::params;
 use super::wishes::{Wish, Wishes};
 use crate::args::LoadArgs;
 use crate::exit::Failure;
+use crate::files::Known;
 use crate::libraries::Plugins;
 use crate::load::{self, Course, Text};
 
@@ -31,7 +34,7 @@ pub(super) fn read(
     };
     let Some(page) = page else { return read(args.load.set.clone()) };
     let (mut text, set) = wished(&read, &args.load.set, page.wishes())?;
-    stand(&mut text, page.wishes(), before);
+    stand(&mut text, page.wishes(), before, &course.known);
     if text.scene.is_some() || !text.params.is_empty() {
         let line = params::line(&joined(&args.load.set, &set));
         page.params(&params::offered(&text.params, &set), &line);
@@ -60,12 +63,27 @@ fn wished(
     Ok((text, set))
 }
 
-fn stand(text: &mut Text, wishes: &Wishes, before: Option<&Stage>) {
+fn stand(text: &mut Text, wishes: &Wishes, before: Option<&Stage>, known: &Known) {
     let Some(scene) = &mut text.scene else { return };
-    let hash = scene.camera.map(|id| scene.node(id).hash);
+    let own = scene.camera.map(|id| scene.node(id).hash);
+    let hash = own.or_else(|| Some(hash_of_assets(scene, known)));
     if let Some(view) = wishes.view((hash, scene.camera_pose.clone())) {
         camera::stand(scene, before, &view);
     }
+}
+
+/// Of everything that may bring a camera: how it is asked for, and what its file holds.
+fn hash_of_assets(scene: &Scene, known: &Known) -> Hash {
+    let mut hasher = blake3::Hasher::new();
+    for asset in scene.nodes.iter().filter(|node| node.kind == Kind::Importer) {
+        hasher.update(&asset.hash);
+        for argument in &asset.params {
+            if let Value::Path(path) = &argument.value {
+                hasher.update(known.look(path).as_ref().map_or(&[], |seen| seen.as_bytes()));
+            }
+        }
+    }
+    *hasher.finalize().as_bytes()
 }
 
 /// What is set on the command line, then what is set on the page in its place.
@@ -88,7 +106,6 @@ mod tests {
 
     use glam::DVec3;
     use luxel_core::registry::Registry;
-    use luxel_core::scene::{Scene, Value};
     use luxel_sdk::params::Look;
 
     use super::*;
@@ -165,7 +182,7 @@ mod tests {
         let now = |text: &str| {
             folder.write("a.scene", text.as_bytes());
             let mut text = read(&path, vec![]);
-            stand(&mut text, &wishes, None);
+            stand(&mut text, &wishes, None, &Known::default());
             from(&text.scene.unwrap())
         };
         let file = scene("param a: float = 1", "(0, 0, 5)");

@@ -32,7 +32,8 @@ pub(super) struct Course<'a> {
     pub(super) beat: &'a Beat,
 }
 
-/// With more samples than this, a PNG of one sample per pixel comes first.
+/// With more samples than this, a PNG of one sample per pixel comes first, unless a page shows that
+/// sooner: the next picture would have to wait while the file is written.
 const COARSE: u32 = 4;
 
 /// A scene of which a picture is made. While it is measured, and afterwards, another exposure may be
@@ -45,11 +46,15 @@ struct Shown {
     edit: Option<Edit>,
     /// The picture, with the samples that it took.
     done: Option<(Measured, u64)>,
+    /// Whether it is on the disk as it is shown now.
+    written: bool,
+    /// Whether nothing more comes of the render.
+    ended: bool,
 }
 
 impl Sitting {
     pub(super) fn new(stage: Arc<Stage>, read: Arc<Read>, edit: Option<Edit>) -> Self {
-        Self(Mutex::new(Shown { stage, read, edit, done: None }))
+        Self(Mutex::new(Shown { stage, read, edit, done: None, written: false, ended: false }))
     }
 
     fn lock(&self) -> MutexGuard<'_, Shown> {
@@ -61,9 +66,15 @@ impl Sitting {
         self.lock().stage.clone()
     }
 
-    /// Whether there is a picture, all of its samples taken.
-    pub(super) fn is_done(&self) -> bool {
-        self.lock().done.is_some()
+    /// Whether there is a picture on the disk, all of its samples taken.
+    pub(super) fn is_written(&self) -> bool {
+        self.lock().written
+    }
+
+    /// Whether the render has ended without a picture.
+    pub(super) fn is_lost(&self) -> bool {
+        let shown = self.lock();
+        shown.ended && shown.done.is_none()
     }
 
     /// Renders and writes the picture, which `look` sees grow; one that was cancelled or failed is not
@@ -77,6 +88,17 @@ impl Sitting {
         course: &Course<'_>,
         look: &mut Look<'_>,
     ) -> Result<Option<Output>, Failure> {
+        let rendered = self.measure(args, course, look);
+        self.lock().ended = true;
+        rendered
+    }
+
+    fn measure(
+        &self,
+        args: &Args,
+        course: &Course<'_>,
+        look: &mut Look<'_>,
+    ) -> Result<Option<Output>, Failure> {
         let Course { control, guard, beat } = course;
         let stage = self.stage();
         self.lock().output(args)?;
@@ -84,7 +106,7 @@ impl Sitting {
         beat.phase(Phase::Rendering);
         let options =
             Options { coarse: args.preview, courteous: args.preview, ..args.render.options() };
-        let first = options.samples(&stage) > COARSE;
+        let first = !args.preview && options.samples(&stage) > COARSE;
         let mut refused = None;
         let mut seen = |film: &Film, now: Reached| {
             look(film, now);
@@ -128,6 +150,11 @@ impl Sitting {
         course: &Course<'_>,
     ) -> Result<Option<Output>, Failure> {
         let mut shown = self.lock();
+        let told_of = shown.edit.take().filter(|_| shown.done.is_none());
+        let edit = match told_of {
+            Some(before) => before.then(edit),
+            None => edit,
+        };
         (shown.stage, shown.read, shown.edit) = (stage, read, Some(edit));
         if shown.done.is_none() {
             return Ok(None);
@@ -167,10 +194,11 @@ impl Shown {
 
     /// Writes the picture and tells of it.
     fn write(
-        &self,
+        &mut self,
         args: &Args,
         Course { guard, beat, .. }: &Course<'_>,
     ) -> Result<Output, Failure> {
+        self.written = false;
         let output = self.output(args)?;
         let Some((Measured { film, outcome, seconds }, samples)) = &self.done else {
             return Ok(output);
@@ -180,6 +208,7 @@ impl Shown {
         let (of, took) = ((&*self.stage, &self.read.files), (*seconds, *samples));
         let summary = Summary::new(of, &args.render.options(), (film, *outcome), took);
         picture::write(&output, film, &self.stage.film, &summary.notes())?;
+        self.written = true;
         if args.json {
             let mut told = summary.json(&output);
             told["edit"] = self.edit.as_ref().map(Edit::json).into();

@@ -35,7 +35,7 @@ impl Wish {
     }
 }
 
-/// The camera as the file says: its hash, and how it stands.
+/// The camera as the files say: its hash, or that of the assets that may bring one, and how it stands.
 pub(super) type Written = (Option<Hash>, Pose);
 
 /// What is asked for now, between the page and the watch.

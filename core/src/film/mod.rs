@@ -6,7 +6,6 @@
 mod rect;
 
 use glam::{DVec3, UVec2};
-use rayon::prelude::*;
 
 pub use rect::Rect;
 
@@ -73,8 +72,7 @@ pub struct Film {
 pub(crate) const TILE: u32 = 16;
 
 impl Film {
-    /// An empty film for the part `window` of a picture. Its memory is cleared on all threads of the
-    /// pool in which it is made: whoever waits for a first picture waits for that.
+    /// An empty film for the part `window` of a picture.
     pub fn new(size: UVec2, window: Rect) -> Self {
         let window = window.intersection(Rect::new(UVec2::ZERO, size));
         let (columns, rows) = (window.size.x.div_ceil(TILE), window.size.y.div_ceil(TILE));
@@ -83,8 +81,7 @@ impl Film {
             let rect = Rect::new(min, UVec2::splat(TILE)).intersection(window);
             Tile { rect, pixels: vec![Pixel::default(); rect.area()] }
         };
-        let tiles = (0..columns * rows).into_par_iter().map(tile).collect();
-        Self { size, window, tiles, columns }
+        Self { size, window, tiles: (0..columns * rows).map(tile).collect(), columns }
     }
 
     pub(crate) fn tiles(&self) -> &[Tile] {

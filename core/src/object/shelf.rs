@@ -56,7 +56,7 @@ impl<K: Ord + Copy, V: Kept> Shelf<K, V> {
     }
 
     /// Takes over what an earlier build left and this one has not used: no longer than two builds,
-    /// and no more than so many bytes; what is oldest goes first. Returns how many bytes are kept.
+    /// and no more than so many bytes, which what is latest has first. Returns how many bytes are kept.
     pub fn inherit(&mut self, before: &Self, most: usize) -> usize {
         let last =
             before.now.iter().map(|(key, thing)| Past { key: *key, thing: thing.clone(), age: 1 });
@@ -65,12 +65,13 @@ impl<K: Ord + Copy, V: Kept> Shelf<K, V> {
             |past: &Past<K, V>| self.now.get(&past.key).is_some_and(|it| it.is(&past.thing));
         let mut bytes = 0usize;
         let fits = |past: &Past<K, V>| {
-            bytes = bytes.saturating_add(past.thing.bytes());
-            bytes <= most
+            let with = bytes.saturating_add(past.thing.bytes());
+            bytes = if with <= most { with } else { bytes };
+            with <= most
         };
         let left = last.chain(older).filter(|past| past.age <= PATIENCE && !is_used(past));
-        self.past = left.take_while(fits).collect();
-        self.past.iter().map(|past| past.thing.bytes()).sum()
+        self.past = left.filter(fits).collect();
+        bytes
     }
 }
 

@@ -150,9 +150,9 @@ pub fn render_seen(
         .start_handler(move |_| give_way(courteous))
         .build()
         .expect("the system gives threads");
-    let mut film = pool.install(|| Film::new(size, window));
-    // Before anything of the stage is asked: the sampler may fail at once.
-    let failures = AtomicU64::new(stage.alarm().count());
+    let mut film = Film::new(size, window);
+    // No count of failures is known: the stage may have failed before, when it was asked for a pixel.
+    let failures = AtomicU64::new(u64::MAX);
     let stop = Stop { control, stage, failures: &failures, first: false };
     let (spp, seed) = (options.samples(stage), options.seed(stage));
     let turns = options.turns.unwrap_or_else(|| stage.is_for_turns());

@@ -188,7 +188,11 @@ impl Changes {
             return Noticed::Stop;
         }
         if self.wished.load(Ordering::Acquire) {
-            return Noticed::Save;
+            // However fast wishes come, Ctrl-C is heard; what else woke is looked for afterwards.
+            let mut woken = self.wakes.try_iter();
+            let stop = woken.any(|wake| wake == Wake::Stop);
+            self.fresh = true;
+            return if stop { Noticed::Stop } else { Noticed::Save };
         }
         if std::mem::take(&mut self.fresh) {
             return self.decide();

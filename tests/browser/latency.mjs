@@ -2,7 +2,7 @@
 //
 //   cargo build --release && cd tests/browser && npm ci && LUXEL=../../target/release/luxel node latency.mjs
 //
-// LUXEL and CHROMIUM as for run.mjs; EDITS is how many of each kind.
+// LUXEL and CHROMIUM as for view.mjs; EDITS is how many of each kind.
 
 import { spawn } from "node:child_process";
 import { mkdtempSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -19,24 +19,53 @@ const EDITS = Number(process.env.EDITS ?? 40);
 const SIZE = [960, 540];
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
-const scene = ({ z = 3, rho = 0.5, x = 0 }) => `scene 1
+// A wavy ball of so many rows and columns as PLY: 2 rows × columns triangles.
+function ball(rows, columns) {
+  const points = (rows + 1) * columns, faces = 2 * rows * columns;
+  const head = `ply\nformat binary_little_endian 1.0\nelement vertex ${points}\nproperty float x\nproperty float y\nproperty float z\nelement face ${faces}\nproperty list uchar int vertex_indices\nend_header\n`;
+  const bytes = Buffer.alloc(head.length + points * 12 + faces * 13);
+  let at = bytes.write(head, "latin1");
+  for (let i = 0; i <= rows; i++) for (let j = 0; j < columns; j++) {
+    const theta = (Math.PI * (i + 0.5)) / (rows + 1), phi = (2 * Math.PI * j) / columns, r = 0.5 + 0.02 * Math.sin(9 * phi) * Math.sin(9 * theta);
+    for (const v of [r * Math.sin(theta) * Math.cos(phi), r * Math.cos(theta), r * Math.sin(theta) * Math.sin(phi)]) at = bytes.writeFloatLE(v, at);
+  }
+  for (let i = 0; i < rows; i++) for (let j = 0; j < columns; j++) {
+    const a = i * columns + j, b = i * columns + ((j + 1) % columns);
+    for (const face of [[a, b, a + columns], [b, b + columns, a + columns]]) {
+      at = bytes.writeUInt8(3, at);
+      for (const corner of face) at = bytes.writeInt32LE(corner, at);
+    }
+  }
+  return bytes;
+}
+// A picture of 2 × 2 pixels, Radiance: mantissas and an exponent of 1.
+const picture = (n) => Buffer.concat([Buffer.from("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n"), Buffer.from([0, 1, 2, 3].flatMap((i) => [40 + (n + i * 50) % 200, 90, 60, 128]))]);
+const triangle = (n) => Buffer.from(`v -1 0 0\nv 1 0 0\nv 0 ${1 + 0.01 * n} 0\nf 1 2 3\n`);
+
+const scene = ({ z = 3, rho = 0.5, x = 0, comment = "" }) => `scene 1 // ${comment}
 camera perspective { look = look_at(from = (0, 2, ${z}) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }
 film rgb { resolution = (${SIZE.join(", ")}) }
 sampler sobol { samples = 4096 }
 light constant { radiance = 0.5 W/m^2/sr }
-shape sphere { radius = 50 cm, transform = move((${x}, 0.5, 0) m), material = material diffuse { reflectance = ${rho} } }
-shape rectangle { u = (4, 0, 0) m, v = (0, 0, -4) m }
+shape mesh { file = "ball.ply", unit = 1 m, transform = move((${x}, 0.5, 0) m), material = material diffuse { reflectance = ${rho} } }
+shape mesh { file = "small.obj", unit = 1 m, transform = move((0, 0, -1.5) m) }
+shape rectangle { u = (4, 0, 0) m, v = (0, 0, -4) m, material = material diffuse { reflectance = texture image { file = "paint.hdr" } } }
 `;
 const edits = {
-  camera: (n) => ({ z: 3 + 0.01 * n }),
-  material: (n) => ({ rho: 0.3 + 0.01 * n }),
-  transform: (n) => ({ x: 0.01 * n }),
+  camera: (n) => ["a.scene", scene({ z: 3 + 0.01 * n })],
+  material: (n) => ["a.scene", scene({ rho: 0.3 + 0.01 * n })],
+  transform: (n) => ["a.scene", scene({ x: 0.01 * n })],
+  texture: (n) => ["paint.hdr", picture(n)],
+  mesh: (n) => ["small.obj", triangle(n)],
+  // After the transform, so that the text is what it was but for the comment.
+  comment: (n) => ["a.scene", scene({ x: 0.01 * n, comment: n })],
 };
 
-function save(text) {
-  writeFileSync(`${file}.part`, text);
+function save([name, text]) {
+  const to = join(folder, name);
+  writeFileSync(`${to}.part`, text);
   const at = Date.now();
-  renameSync(`${file}.part`, file);
+  renameSync(`${to}.part`, to);
   return at;
 }
 
@@ -53,7 +82,7 @@ const watched = () => {
 };
 const latest = (page) => page.evaluate(() => [...window.seen].filter(([, at]) => at > 0).at(-1) ?? [0, 0]);
 
-save(scene({}));
+[["ball.ply", ball(708, 708)], ["paint.hdr", picture(0)], ["small.obj", triangle(0)], ["a.scene", scene({})]].forEach(save);
 const child = spawn(luxel, ["watch", file, "--preview", "--no-open", "--quiet", "-o", join(folder, "out")], { stdio: ["ignore", "ignore", "pipe"] });
 const url = await new Promise((done, failed) => {
   createInterface(child.stderr).on("line", (line) => line.includes("preview: ") && done(line.split("preview: ")[1].trim()));
@@ -73,7 +102,12 @@ try {
     for (const [kind, edit] of Object.entries(edits)) {
       await pause(150 + 200 * Math.random());
       const [before] = await latest(page);
-      const saved = save(scene(edit(n)));
+      const saved = save(edit(n));
+      if (kind === "comment") {
+        await pause(750);
+        if ((await latest(page))[0] > before) throw new Error("a comment made another picture");
+        continue;
+      }
       // Asking often would slow down what is measured.
       for (let tries = 0; ; tries++) {
         await pause(250);
@@ -88,6 +122,8 @@ try {
   }
   const of = (ms, percent) => ms[Math.ceil((ms.length * percent) / 100) - 1];
   console.log(`save to drawn in the browser, ${SIZE.join(" x ")}, ms (goal: p95 100)`);
+  console.log(`comment    n ${EDITS}  no other picture`);
+  delete times.comment;
   for (const [kind, unsorted] of Object.entries(times)) {
     const ms = unsorted.toSorted((a, b) => a - b);
     console.log(`${kind.padEnd(10)} n ${ms.length}  p50 ${of(ms, 50)}  p95 ${of(ms, 95)}  p99 ${of(ms, 99)}`);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use notify::event::{AccessKind, AccessMode, ModifyKind};
+use notify::event::{AccessKind, AccessMode, ModifyKind, RenameMode};
 use notify::{Event, EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 
 use super::Wake;
@@ -42,9 +42,9 @@ impl Heard {
         self.open.contains(file) || !done
     }
 
-    /// What was whole before is so still, unless somebody has begun to write it again.
+    /// What was whole before is so still, unless something has happened to it since.
     pub(super) fn after(mut self, before: &Self) -> Self {
-        let whole = before.done.difference(&self.open).cloned().collect::<Vec<_>>();
+        let whole = before.done.difference(&self.files).cloned().collect::<Vec<_>>();
         self.done.extend(whole);
         self
     }
@@ -60,6 +60,11 @@ impl Heard {
             // Its bytes come next, or it is a link and done; who watches looks a little later.
             EventKind::Create(_) => {
                 self.moved = true;
+                false
+            }
+            // What was here before has gone; what comes in its place begins anew.
+            EventKind::Modify(ModifyKind::Name(RenameMode::From | RenameMode::Both)) => {
+                (self.moved, self.decided) = (true, true);
                 false
             }
             EventKind::Modify(ModifyKind::Name(_)) => {
@@ -226,7 +231,7 @@ fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
 
 #[cfg(test)]
 mod tests {
-    use notify::event::DataChange;
+    use notify::event::{CreateKind, DataChange};
 
     use super::*;
 
@@ -245,5 +250,13 @@ mod tests {
         assert!(!later.may_go_on(file));
         let written = heard(EventKind::Modify(ModifyKind::Data(DataChange::Any)));
         assert!(written.after(&later).may_go_on(file));
+        // Renamed away, as vim does: the half that is then written is not taken for the whole.
+        let named = |mode| heard(EventKind::Modify(ModifyKind::Name(mode)));
+        for gone in [named(RenameMode::From), named(RenameMode::Both)] {
+            assert!(gone.decided && gone.may_go_on(file));
+            let created = heard(EventKind::Create(CreateKind::File)).after(&closed);
+            assert!(created.after(&gone).may_go_on(file));
+        }
+        assert!(!named(RenameMode::To).may_go_on(file));
     }
 }

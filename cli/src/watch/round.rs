@@ -110,7 +110,7 @@ impl Sitting {
         let mut refused = None;
         let mut seen = |film: &Film, now: Reached| {
             look(film, now);
-            if first && now == ONE_SAMPLE && !control.is_cancelled() {
+            if first && (now.step, now.samples) == ONE_SAMPLE && !control.is_cancelled() {
                 refused = self.lock().coarse(args, film, course).err();
                 if refused.is_some() {
                     // What cannot be written is not worth more samples.
@@ -119,7 +119,8 @@ impl Sitting {
             }
         };
         let of = (args.file.as_path(), &*stage);
-        let measured = measure::measure(of, &options, control, !args.quiet, &mut seen)?;
+        let film = measure::empty(&stage, &options)?;
+        let measured = measure::measure(of, film, &options, control, !args.quiet, &mut seen)?;
         if let Some(failure) = refused {
             return Err(failure);
         }
@@ -163,8 +164,8 @@ impl Sitting {
     }
 }
 
-/// When every pixel has one sample.
-const ONE_SAMPLE: Reached = Reached { step: 1, samples: 1 };
+/// When every pixel has one sample: pixels from one that has some to the next, and those.
+const ONE_SAMPLE: (u32, u32) = (1, 1);
 
 impl Shown {
     /// Where the picture goes, if it can go there.

@@ -10,6 +10,7 @@ mod libraries;
 mod plugin;
 #[cfg(test)]
 mod program;
+mod verify;
 mod watch;
 
 use std::time::{Duration, Instant};

@@ -23,9 +23,8 @@ mod edits;
 #[cfg(test)]
 mod extremes;
 #[cfg(test)]
+#[path = "../cli/src/verify/generated.rs"]
 mod generated;
-#[cfg(test)]
-mod generated_tests;
 #[cfg(test)]
 mod house;
 #[cfg(test)]

@@ -9,7 +9,7 @@ mod judged;
 mod libraries;
 mod plugin;
 #[cfg(test)]
-mod program;
+pub(crate) mod program;
 mod verify;
 mod watch;
 

@@ -70,6 +70,17 @@ impl Row {
         Self { id: id.into(), case: case.into(), expected, measured, tolerance, verdict }
     }
 
+    /// A value without noise, and the tolerance as a share of it and as an amount.
+    pub(super) fn exact(
+        id: &str,
+        case: &str,
+        (expected, value): (f64, f64),
+        (rel, abs): (f64, f64),
+    ) -> Self {
+        let tolerance = abs.max(rel * expected.abs());
+        Self::new((id, case), expected, Measured { value, error: 0.0 }, tolerance)
+    }
+
     /// The same, known to lack samples that were not finite, if there are any.
     pub(super) fn without(self, bad: u64) -> Self {
         if bad == 0 { self } else { Self { verdict: Verdict::NotFinite, ..self } }
@@ -118,6 +129,13 @@ fn verdict(expected: f64, Measured { value, error }: Measured, tolerance: f64) -
 /// What the columns are.
 const HEAD: [&str; 7] = ["truth", "case", "expected", "measured", "SE", "z", "verdict"];
 
+/// The rows as a table of a document.
+pub(super) fn document(rows: &[Row]) -> String {
+    let line = |cells: &[String; 7]| format!("| {} |\n", cells.join(" | "));
+    let rows: String = rows.iter().map(|row| line(&row.cells())).collect();
+    format!("{}|{}\n{rows}", line(&HEAD.map(str::to_owned)), "---|".repeat(HEAD.len()))
+}
+
 /// The rows in columns, for the terminal.
 pub(super) fn columns(rows: &[Row]) -> String {
     let all: Vec<_> =
@@ -163,11 +181,15 @@ mod tests {
     }
 
     #[test]
-    fn columns_show_every_figure() {
-        let rows = [
-            row(1.01, 0.003),
-            Row::new(("c", ""), 1e-9, Measured { value: 1e-9, error: 0.0 }, 0.0),
-        ];
+    fn tables_show_every_figure() {
+        let rows = [row(1.01, 0.003), Row::exact("c", "", (1e-9, 1e-9), (1e-3, 0.0))];
+        let told = "\
+| truth | case | expected | measured | SE | z | verdict |
+|---|---|---|---|---|---|---|
+| a | b | 1.0000000 | 1.0100000 | 3.0e-3 | +3.3 | ok |
+| c |  | 1.000000e-9 | 1.000000e-9 | 0.0e0 | – | ok |
+";
+        assert_eq!(document(&rows), told);
         let told = "\
 truth  case  expected     measured     SE      z     verdict
 a      b     1.0000000    1.0100000    3.0e-3  +3.3  ok

@@ -25,9 +25,8 @@ mod edits;
 #[cfg(test)]
 mod extremes;
 #[cfg(test)]
+#[path = "../cli/src/verify/generated.rs"]
 mod generated;
-#[cfg(test)]
-mod generated_tests;
 #[cfg(test)]
 mod goals;
 #[cfg(test)]

@@ -18,6 +18,7 @@ impl Evaluator<'_> {
                     .help(format!("known are {}", known.join(", "))),
             );
         }
+        self.expectations_fit();
         let errors = self.sink.errors();
         let scene = (errors == 0 && !self.damaged).then(|| {
             self.scene.root = self.open_groups.pop().unwrap_or_default().group;
@@ -57,7 +58,21 @@ fn compact(old: &Scene) -> Scene {
     let slots = slots.map(|slot| slot.map(|id| compactor.node(id)));
     let [camera, film, integrator, sampler, filter, medium] = slots;
     let camera_pose = old.camera_pose.clone();
-    Scene { root, camera, camera_pose, film, integrator, sampler, filter, medium, ..compactor.new }
+    let expectations = old.expectations.clone();
+    let Scene { nodes, groups, .. } = compactor.new;
+    Scene {
+        nodes,
+        groups,
+        root,
+        camera,
+        camera_pose,
+        film,
+        integrator,
+        sampler,
+        filter,
+        medium,
+        expectations,
+    }
 }
 
 struct Compactor<'a> {

@@ -33,6 +33,7 @@ mod goals;
 mod house;
 #[cfg(test)]
 mod lamps;
+mod layers;
 #[cfg(test)]
 mod load;
 #[cfg(test)]

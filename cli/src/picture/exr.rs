@@ -18,19 +18,27 @@ pub(crate) struct Notes {
 }
 
 /// Writes channels R, G, B (the mean), SE.R, SE.G, SE.B (standard error of the mean, infinite below
-/// two samples) and N (samples). The data window is the film's window, the display window the whole
+/// two samples) and N (samples), and those of the film's layers. The data window is the film's window, the display window the whole
 /// picture. The notes are the attribute `luxel`: one attribute, so that the same picture has the
 /// same bytes.
 ///
 /// # Errors
 /// The writer's.
-#[expect(clippy::cast_possible_truncation, reason = "the file holds 32-bit floats")]
+#[expect(clippy::cast_possible_truncation, reason = "the file holds 32 bits")]
+#[expect(clippy::cast_sign_loss, reason = "numbers of things are not negative")]
 pub(super) fn write(to: impl Write + Seek, film: &Film, notes: &Notes) -> io::Result<()> {
     let floats = |name: &str, value: &dyn Fn(&Pixel) -> f64| {
         let samples = film.pixels().map(|(_, pixel)| value(pixel) as f32).collect();
         AnyChannel::new(name, FlatSamples::F32(samples))
     };
     let counts = film.pixels().map(|(_, pixel)| pixel.n).collect();
+    let layers = film.channels().into_iter().map(|(channel, values)| {
+        let numbers = match channel.is_number() {
+            true => FlatSamples::U32(values.iter().map(|v| *v as u32).collect()),
+            false => FlatSamples::F32(values.iter().map(|v| *v as f32).collect()),
+        };
+        AnyChannel::new(channel.name, numbers)
+    });
     let channels = AnyChannels::sort(
         [
             floats("R", &|pixel| pixel.mean.x),
@@ -42,6 +50,7 @@ pub(super) fn write(to: impl Write + Seek, film: &Film, notes: &Notes) -> io::Re
             AnyChannel::new("N", FlatSamples::U32(counts)),
         ]
         .into_iter()
+        .chain(layers)
         .collect(),
     );
     let corner = |v: glam::UVec2| (v.x as usize, v.y as usize);

@@ -8,6 +8,7 @@ mod lattice;
 mod light;
 mod path;
 mod picture;
+mod record;
 mod shadow;
 mod tile;
 mod watched;
@@ -155,7 +156,8 @@ pub fn render_seen(
 ) -> (Film, Outcome) {
     let size = stage.film.resolution;
     let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
-    let mut film = Film::new(size, window);
+    let layers = if can_go_on(stage) { &*stage.film.layers } else { &[] };
+    let mut film = Film::with_layers(size, window, layers);
     let outcome = render_on(&mut film, stage, options, control, look);
     (film, outcome)
 }
@@ -198,9 +200,12 @@ pub fn render_on(
             assert!(film.samples() == 0, "a film that an integrator owns is begun anew");
             return picture::render(owner, stage, (plan, seed), (film, look), (stop, end));
         }
+        let layers = film.layers.clone();
         let worker = || {
             let output = integrator.output();
-            tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output).in_turns(turns)
+            tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output)
+                .in_turns(turns)
+                .recording(&layers)
         };
         passes(film, &plan, options.coarse, &mut |film, lattice, reached| {
             // Until each pixel has a sample no time is over.

@@ -19,6 +19,7 @@ use luxel_sdk::kind::Kind;
 
 use crate::accel::Precision;
 use crate::diag::{SourceId, Span};
+use crate::film::Layer;
 use crate::registry::common_params;
 
 pub use color::Color;
@@ -157,6 +158,11 @@ impl Scene {
     /// Replaces how rays meet the triangles of meshes.
     pub fn set_precision(&mut self, precision: Precision) {
         self.set_film("precision", Value::Text(precision.word().into()));
+    }
+
+    /// Records a layer beside colour.
+    pub fn add_layer(&mut self, layer: Layer) {
+        self.set_film(layer.name(), Value::Bool(true));
     }
 
     fn set_film(&mut self, name: &'static str, value: Value) {

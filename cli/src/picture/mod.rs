@@ -3,6 +3,7 @@
 mod display;
 mod exr;
 mod png;
+mod read;
 
 use std::io::{self, BufWriter, Write};
 
@@ -14,6 +15,7 @@ use crate::output::{Draft, Output, unwritable};
 
 pub(crate) use display::scale;
 pub(crate) use exr::Notes;
+pub(crate) use read::Picture;
 
 /// Writes both files. They take their places only when both are whole on the disk.
 ///

@@ -3,6 +3,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod describe;
 mod errors;
 mod exit;
@@ -48,6 +49,7 @@ Examples:
   luxel render scenes/cornell.scene
   luxel watch scenes/cornell.scene --spp 16
   luxel view cornell.exr
+  luxel compare cornell.exr reference.exr
   luxel describe material diffuse";
 
 #[derive(Subcommand)]
@@ -55,6 +57,7 @@ enum Command {
     Render(render::Args),
     Watch(watch::Args),
     View(view::Args),
+    Compare(compare::Args),
     Check(check::Args),
     List(list::Args),
     Describe(describe::Args),
@@ -77,6 +80,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Watch(args) => watch::run(args),
         Command::View(args) => view::run(args),
+        Command::Compare(args) => compare::run(args),
         Command::Check(args) => check::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),

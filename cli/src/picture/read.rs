@@ -89,6 +89,11 @@ impl Picture {
         Ok(Self { size, window, rgb, se, n, notes: notes.unwrap_or_default() })
     }
 
+    /// Whether its values were smoothed after they were measured; its errors are of before.
+    pub(crate) fn is_denoised(&self) -> bool {
+        self.notes["denoised"] == true
+    }
+
     /// How it is to be shown.
     pub(crate) fn settings(&self) -> stage::Film {
         stage::Film {

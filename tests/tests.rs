@@ -9,6 +9,8 @@ mod builder;
 #[cfg(test)]
 mod cli;
 #[cfg(test)]
+mod coverage;
+#[cfg(test)]
 mod curvature;
 #[cfg(test)]
 mod curves;
@@ -26,6 +28,8 @@ mod extremes;
 mod generated;
 #[cfg(test)]
 mod generated_tests;
+#[cfg(test)]
+mod goals;
 #[cfg(test)]
 mod house;
 #[cfg(test)]

@@ -3,11 +3,12 @@
 
 mod args;
 mod check;
+mod checkpoint;
 mod compare;
 mod describe;
-mod errors;
 mod exit;
 mod files;
+mod goal;
 mod interrupt;
 mod isolate;
 mod libraries;

@@ -12,6 +12,7 @@ mod libraries;
 mod plugin;
 #[cfg(test)]
 mod program;
+mod resume;
 mod watch;
 
 use std::time::{Duration, Instant};

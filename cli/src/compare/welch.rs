@@ -4,6 +4,7 @@
 //! JCGT 9(2), 2020.
 
 use glam::{DVec3, DVec4};
+use luxel_core::film::degrees_of_freedom;
 use luxel_sdk::color::RgbSpace;
 
 use super::pair::Value;
@@ -93,15 +94,11 @@ impl Tested {
     }
 }
 
-/// Degrees of freedom of a pixel's standard error.
-fn degrees_of_freedom(n: u32) -> f64 {
-    f64::from(n.max(2) - 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Of a pixel of 16 samples, which have 15.
     fn value(v: f64, se: f64, n: u32) -> Value {
         Value { rgb: DVec3::splat(v), se: DVec3::splat(se), n }
     }

@@ -5,6 +5,7 @@ mod args;
 mod check;
 mod checkpoint;
 mod compare;
+mod denoise;
 mod describe;
 mod exit;
 mod files;
@@ -59,6 +60,7 @@ enum Command {
     Watch(watch::Args),
     View(view::Args),
     Compare(compare::Args),
+    Denoise(denoise::Args),
     Check(check::Args),
     List(list::Args),
     Describe(describe::Args),
@@ -82,6 +84,7 @@ fn main() -> ExitCode {
         Command::Watch(args) => watch::run(args),
         Command::View(args) => view::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod compare;
 #[cfg(test)]
+mod denoise;
+#[cfg(test)]
 mod faulty;
 mod grown;
 mod hostile;

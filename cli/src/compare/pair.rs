@@ -117,8 +117,8 @@ pub(super) mod tests {
     /// A picture with one value in each pixel of its window.
     pub(in crate::compare) fn flat(size: UVec2, window: Rect, value: f32, se: f32) -> Picture {
         let all = |v: f32| vec![v; window.area() * 3];
-        let n = vec![16; window.area()];
-        Picture { size, window, rgb: all(value), se: all(se), n, notes: Json::Null }
+        let (n, others) = (vec![16; window.area()], vec![]);
+        Picture { size, window, rgb: all(value), se: all(se), n, others, notes: Json::Null }
     }
 
     fn rect(x: u32, y: u32, w: u32, h: u32) -> Rect {

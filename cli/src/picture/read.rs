@@ -6,13 +6,14 @@ use std::path::Path;
 
 use exr::image::FlatSamples;
 use exr::meta::attribute::{AttributeValue, Text};
-use exr::prelude::{AnyChannels, Layer, LayerAttributes, ReadChannels, ReadLayers};
+use exr::prelude::{AnyChannel, AnyChannels, Layer, LayerAttributes, ReadChannels, ReadLayers};
 use glam::UVec2;
 use luxel_core::film::Rect;
 use luxel_core::registry::Display;
 use luxel_core::stage;
 use serde_json::Value;
 
+use super::exr::Plane;
 use crate::exit::{Exit, Failure};
 
 /// Values of the largest picture, all channels together: 4 GiB of them.
@@ -30,6 +31,8 @@ pub(crate) struct Picture {
     pub(crate) se: Vec<f32>,
     /// Samples, or empty.
     pub(crate) n: Vec<u32>,
+    /// All other channels.
+    pub(crate) others: Vec<(String, Plane)>,
     /// What the file says about itself; null if nothing.
     pub(crate) notes: Value,
 }
@@ -72,6 +75,7 @@ impl Picture {
         let rgb = interleaved(&colour.ok_or("it has no channels R, G and B")?);
         let se = three(["SE.R", "SE.G", "SE.B"]).map_or(vec![], |planes| interleaved(&planes));
         let n = plane("N").map_or(vec![], counts);
+        let others = others(&layer.channel_data.list);
         let extent = UVec2::new(side(layer.size.0)?, side(layer.size.1)?);
         let area = extent.x as usize * extent.y as usize;
         if rgb.len() != area * 3 || ![0, area * 3].contains(&se.len()) {
@@ -86,7 +90,7 @@ impl Picture {
         let window = Rect::new(min, extent);
         let size = display.0.max(min + extent);
         let n = if n.len() == area { n } else { vec![] };
-        Ok(Self { size, window, rgb, se, n, notes: notes.unwrap_or_default() })
+        Ok(Self { size, window, rgb, se, n, others, notes: notes.unwrap_or_default() })
     }
 
     /// Whether its values were smoothed after they were measured; its errors are of before.
@@ -157,6 +161,17 @@ fn interleaved(planes: &[&FlatSamples]) -> Vec<f32> {
     all
 }
 
+/// The channels that are neither colour nor what is known of its error.
+fn others(list: &[AnyChannel<FlatSamples>]) -> Vec<(String, Plane)> {
+    const KNOWN: [&str; 7] = ["R", "G", "B", "SE.R", "SE.G", "SE.B", "N"];
+    let others = list.iter().filter(|channel| KNOWN.iter().all(|name| channel.name != **name));
+    let plane = |samples: &FlatSamples| match samples {
+        FlatSamples::U32(values) => Plane::Counts(values.clone()),
+        floats => Plane::Floats(floats.values_as_f32().collect()),
+    };
+    others.map(|channel| (channel.name.to_string(), plane(&channel.sample_data))).collect()
+}
+
 fn counts(plane: &FlatSamples) -> Vec<u32> {
     match plane {
         FlatSamples::U32(counts) => counts.clone(),
@@ -170,7 +185,7 @@ fn counts(plane: &FlatSamples) -> Vec<u32> {
 mod tests {
     use std::io::Cursor;
 
-    use exr::prelude::{AnyChannel, Encoding, Image, Vec2, WritableImage, f16};
+    use exr::prelude::{Encoding, Image, Vec2, WritableImage, f16};
 
     use super::*;
     use crate::testing::Folder;

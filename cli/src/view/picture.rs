@@ -45,6 +45,7 @@ pub(super) fn about(picture: &Picture) -> String {
     parts.extend(spp);
     let words = ["color", "integrator"].map(|key| picture.notes[key].as_str().map(str::to_owned));
     parts.extend(words.into_iter().flatten());
+    parts.extend(picture.is_denoised().then(|| "denoised, errors of before".to_owned()));
     parts.join(" · ")
 }
 

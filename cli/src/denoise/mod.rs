@@ -7,7 +7,6 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use luxel_sdk::color::RgbSpace;
 use serde_json::{Value, json};
 
 use crate::exit::{Exit, Failure};
@@ -15,7 +14,7 @@ use crate::output::Output;
 use crate::picture::{self, Picture, Plane};
 use crate::report;
 use guide::Guide;
-use nlm::{Noisy, Smooth};
+use nlm::Noisy;
 
 /// Smooth the noise of a finished picture into another one
 ///
@@ -23,8 +22,7 @@ use nlm::{Noisy, Smooth};
 /// explain, guided by albedo, normal and depth where the EXR has them. What was measured stays as it
 /// is: the result is another pair of files. A denoised picture is an estimate with a bias that nobody
 /// knows. Its EXR says so (`denoised` in the attribute `luxel`), and its channels SE.R … and N are
-/// those of the measured picture; `luxel compare` gives no verdict on it. What is told of its error is
-/// an estimate for the whole picture (Stein's, weights taken as fixed).
+/// those of the measured picture; `luxel compare` gives no verdict on it.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -50,9 +48,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let noisy = noisy(&picture);
     let guides = noisy.guide.names();
     let smooth = nlm::smooth(&noisy);
-    let [before, after] = estimates(&noisy, &smooth);
     let notes = notes(&picture, &guides).to_string();
-    let rgb = |i: usize| Plane::Floats(smooth.iter().map(|smooth| smooth.rgb[i]).collect());
+    let rgb = |i: usize| Plane::Floats(smooth.iter().map(|rgb| rgb[i]).collect());
     let mut planes: Vec<(String, Plane)> =
         ["R", "G", "B"].into_iter().enumerate().map(|(i, name)| (name.into(), rgb(i))).collect();
     for (i, name) in ["SE.R", "SE.G", "SE.B"].into_iter().enumerate() {
@@ -64,7 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let place = (picture.size, picture.window);
     let settings = picture.settings();
     let scale = picture::scale(settings.exposure);
-    let shown = smooth.iter().map(|s| picture::show(s.rgb.as_dvec3() * scale, settings.display));
+    let shown = smooth.iter().map(|rgb| picture::show(rgb.as_dvec3() * scale, settings.display));
     picture::write_both(
         &output,
         |to| picture::write_planes(to, place, planes, &notes),
@@ -75,15 +72,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             "exr": output.exr,
             "png": output.png,
             "guides": guides,
-            "estimated_rel_mse": { "before": before, "after": after },
         });
         format!("{told}\n")
     } else {
         let by = if guides.is_empty() { "its noise alone".into() } else { guides.join(", ") };
         format!(
             "wrote {} and {}, guided by {by}\n\
-             estimated relMSE: {before:.2e} before, {after:.2e} after\n\
-             standard errors in the EXR are those of the measured picture\n",
+             how wrong it is, is not known: standard errors in the EXR are those of the measured picture\n",
             output.exr.display(),
             output.png.display(),
         )
@@ -120,28 +115,6 @@ fn noisy(picture: &Picture) -> Noisy {
     Noisy { width, rgb, variance, valid, guide: Guide::of(picture) }
 }
 
-/// Stein's estimate of the mean squared error relative to luminance, before and after.
-///
-/// # Source
-/// Stein 1981, eq. 2.10 as for linear filters: squared change, less variance, and twice the variance
-/// times the pixel's share in its own mean. Weights depend on values a little, which is left out.
-fn estimates(noisy: &Noisy, smooth: &[Smooth]) -> [f64; 2] {
-    let weights = RgbSpace::LinearSrgb.luminance_weights();
-    let luminance = |s: &Smooth| weights.dot(s.rgb.as_dvec3()).max(0.0);
-    let pixels = || smooth.iter().enumerate().filter(|(i, _)| noisy.valid[*i]);
-    let n = f64::max(pixels().count() as f64, 1.0);
-    let floor = 0.01 * pixels().map(|(_, s)| luminance(s)).sum::<f64>() / n;
-    let mut sums = [0.0; 2];
-    for (i, s) in pixels() {
-        let scale = luminance(s).max(floor).max(f64::MIN_POSITIVE).powi(2) * 3.0 * n;
-        let change = (s.rgb - noisy.rgb[i]).as_dvec3().length_squared();
-        let variance = noisy.variance[i].as_dvec3().element_sum();
-        sums[0] += variance / scale;
-        sums[1] += (change - variance + 2.0 * f64::from(s.own) * variance) / scale;
-    }
-    sums
-}
-
 /// What the EXR says about itself: all that the measured one did, and by what it was changed.
 fn notes(picture: &Picture, guides: &[&str]) -> Value {
     let mut notes = if picture.notes.is_object() { picture.notes.clone() } else { json!({}) };
@@ -159,38 +132,21 @@ fn notes(picture: &Picture, guides: &[&str]) -> Value {
 mod tests {
     use glam::UVec2;
     use luxel_core::film::Rect;
-    use luxel_sdk::sampling::Rng;
 
     use super::*;
 
-    /// Grey with noise of a standard error of 0.1.
+    /// Grey, with its errors.
     fn grey() -> Picture {
         let size = UVec2::splat(40);
-        let mut rng = Rng::new(5);
-        let mut normal = || (0..12).map(|_| rng.f32()).sum::<f32>() - 6.0;
-        let rgb: Vec<f32> = (0..4800).map(|_| 1.0 + 0.1 * normal()).collect();
         Picture {
             size,
             window: Rect::new(UVec2::ZERO, size),
-            se: vec![0.1; rgb.len()],
+            rgb: vec![1.0; 4800],
+            se: vec![0.1; 4800],
             n: vec![16; 1600],
-            rgb,
             notes: json!({ "seed": 3 }),
             others: vec![],
         }
-    }
-
-    #[test]
-    fn the_estimate_of_the_error_is_near_the_error() {
-        let noisy = noisy(&grey());
-        let smooth = nlm::smooth(&noisy);
-        let squares = smooth.iter().map(|s| (s.rgb - Vec3::ONE).as_dvec3().length_squared());
-        let truth = squares.sum::<f64>() / 4800.0;
-        let [before, after] = estimates(&noisy, &smooth);
-        assert!((before / 0.01 - 1.0).abs() < 0.05, "{before}");
-        // Its standard error is that of the mean of 4800 squares of noise: 0.01·√(2/4800).
-        assert!((after - truth).abs() < 4.0 * 0.01 * (2.0 / 4800.0_f64).sqrt(), "{after} {truth}");
-        assert!(after < before / 5.0);
     }
 
     #[test]

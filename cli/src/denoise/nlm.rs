@@ -29,13 +29,6 @@ pub(super) struct Noisy {
     pub(super) guide: Guide,
 }
 
-/// A pixel, and its share in its own mean.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Smooth {
-    pub(super) rgb: Vec3,
-    pub(super) own: f32,
-}
-
 /// Rows of one thread.
 struct Band {
     from: usize,
@@ -43,7 +36,7 @@ struct Band {
 }
 
 /// Smooths all rows, on as many threads as there are cores; the values do not depend on how many.
-pub(super) fn smooth(noisy: &Noisy) -> Vec<Smooth> {
+pub(super) fn smooth(noisy: &Noisy) -> Vec<Vec3> {
     let width = noisy.width;
     let height = noisy.rgb.len() / width;
     let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -60,9 +53,7 @@ pub(super) fn smooth(noisy: &Noisy) -> Vec<Smooth> {
     let sums = bands.into_iter().flat_map(|band| band.sums).enumerate();
     sums.map(|(i, (sum, weight))| {
         // A pixel without any neighbour that counts stays as it is.
-        let rgb = if weight > 0.0 { sum / weight } else { noisy.rgb[i] };
-        let own = if noisy.valid[i] && weight > 0.0 { 1.0 / weight } else { 0.0 };
-        Smooth { rgb, own }
+        if weight > 0.0 { sum / weight } else { noisy.rgb[i] }
     })
     .collect()
 }
@@ -164,9 +155,8 @@ mod tests {
         (Noisy { width: SIDE, rgb, variance, valid, guide }, truth)
     }
 
-    fn mse(found: &[Smooth], truth: &[f32]) -> f32 {
-        let squares =
-            found.iter().zip(truth).map(|(f, t)| (f.rgb - Vec3::splat(*t)).length_squared());
+    fn mse(found: &[Vec3], truth: &[f32]) -> f32 {
+        let squares = found.iter().zip(truth).map(|(f, t)| (*f - Vec3::splat(*t)).length_squared());
         squares.sum::<f32>() / (3 * truth.len()) as f32
     }
 
@@ -176,7 +166,7 @@ mod tests {
         let found = smooth(&noisy);
         let left = mse(&found, &truth);
         assert!(left < NOISE * NOISE / 20.0, "{left}");
-        let at = |x: usize| found[SIDE / 2 * SIDE + x].rgb.x;
+        let at = |x: usize| found[SIDE / 2 * SIDE + x].x;
         // Beside the edge, half of the step would be five standard errors.
         assert!((at(SIDE / 2 - 1) - 1.0).abs() < NOISE && (at(SIDE / 2) - 2.0).abs() < NOISE);
     }
@@ -199,14 +189,5 @@ mod tests {
         (noisy.rgb[at], noisy.valid[at]) = (Vec3::NAN, false);
         let found = smooth(&noisy);
         assert!(mse(&found, &truth) < NOISE * NOISE / 20.0);
-        assert!(found[at].own <= 0.0);
-    }
-
-    #[test]
-    fn the_median_of_own_shares_tells_how_much_is_smoothed() {
-        let (noisy, _) = noisy(1.0, 1.0, Guide::default());
-        let found = smooth(&noisy);
-        // Between one pixel and all of the window.
-        assert!(found.iter().all(|smooth| smooth.own > 1.0 / 442.0 && smooth.own < 0.2));
     }
 }

@@ -33,6 +33,7 @@ mod goals;
 mod house;
 #[cfg(test)]
 mod lamps;
+#[cfg(test)]
 mod layers;
 #[cfg(test)]
 mod load;

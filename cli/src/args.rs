@@ -22,8 +22,8 @@ pub(crate) struct LoadArgs {
     /// How rays meet the triangles of meshes: fast, standard or exact [default: as the film says]
     #[arg(long, value_name = "HOW", value_parser = precision)]
     pub(crate) precision: Option<Precision>,
-    /// Record this beside colour, as the film's parameters of these names do: albedo, normal,
-    /// position, depth, material_id, object_id, motion, cost
+    /// Record this beside colour, as the film's parameters of these names do: `albedo`, `normal`,
+    /// `position`, `depth`, `material_id`, `object_id`, `motion`, `cost`
     #[arg(long = "aov", value_name = "LAYER,…", value_delimiter = ',', value_parser = layer)]
     pub(crate) layers: Vec<Layer>,
 }

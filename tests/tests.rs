@@ -9,11 +9,17 @@ mod builder;
 #[cfg(test)]
 mod cli;
 #[cfg(test)]
+mod coverage;
+#[cfg(test)]
 mod curvature;
 #[cfg(test)]
 mod curves;
 mod determinism;
 mod diff;
+#[cfg(test)]
+mod document;
+#[cfg(test)]
+mod document_tests;
 #[cfg(test)]
 mod dynamic;
 #[cfg(test)]
@@ -25,6 +31,8 @@ mod extremes;
 #[cfg(test)]
 #[path = "../cli/src/verify/generated.rs"]
 mod generated;
+#[cfg(test)]
+mod goals;
 #[cfg(test)]
 mod house;
 #[cfg(test)]

@@ -52,9 +52,7 @@ enum Phase {
     Measuring,
     /// There is nothing of it yet: the scene is being read or made ready.
     Loading,
-    /// It is on its way to the disk.
-    Saving,
-    /// It is on the disk.
+    /// It is on the disk, or on its way there.
     Saved,
 }
 
@@ -71,6 +69,8 @@ enum Answer {
 #[derive(Debug, Default)]
 struct State {
     phase: Phase,
+    /// Pictures on their way to the disk. The next one may be measured meanwhile.
+    writing: usize,
     /// Of the scene that is made ready.
     loading: Arc<Watch>,
     first: Option<Instant>,
@@ -78,7 +78,7 @@ struct State {
 
 impl State {
     fn answer(&mut self, now: Instant) -> Answer {
-        if self.phase == Phase::Loading {
+        if self.phase == Phase::Loading && self.writing == 0 {
             return Answer::Leave;
         }
         let Some(first) = self.first else {
@@ -86,7 +86,7 @@ impl State {
             return Answer::First;
         };
         match self.phase {
-            Phase::Saving => Answer::Wait,
+            _ if self.writing > 0 => Answer::Wait,
             _ if now.duration_since(first) < SAME => Answer::Again,
             Phase::Measuring | Phase::Loading => Answer::GiveUp(
                 "interrupted again: what was measured is lost, the files are as they were",
@@ -110,8 +110,15 @@ impl Guard {
 
     /// The picture is about to be written.
     pub(crate) fn saving(&self) -> Saving<'_> {
-        self.state().phase = Phase::Saving;
+        let mut state = self.state();
+        state.phase = Phase::Saved;
+        state.writing += 1;
         Saving(self)
+    }
+
+    /// Whether a picture is on its way to the disk.
+    pub(crate) fn is_saving(&self) -> bool {
+        self.state().writing > 0
     }
 
     /// A scene is about to be read and made ready, followed by `watch`: there is nothing to be saved.
@@ -170,7 +177,7 @@ fn leave(word: &str) -> ! {
 
 impl Drop for Saving<'_> {
     fn drop(&mut self) {
-        self.0.state().phase = Phase::Saved;
+        self.0.state().writing -= 1;
     }
 }
 
@@ -195,5 +202,21 @@ mod tests {
         assert!(lost(after(9), "lost"));
         guard.loading(&Arc::default());
         assert_eq!(after(0), Answer::Leave);
+    }
+
+    #[test]
+    fn no_interrupt_gives_up_while_any_picture_is_being_written() {
+        let (guard, now) = (Guard::default(), Instant::now());
+        let after = |seconds| guard.state().answer(now + Duration::from_secs(seconds));
+        assert_eq!(after(0), Answer::First);
+        let (one, two) = (guard.saving(), guard.saving());
+        guard.measuring();
+        drop(one);
+        assert_eq!(after(9), Answer::Wait);
+        guard.loading(&Arc::default());
+        assert_eq!(after(9), Answer::Wait);
+        guard.measuring();
+        drop(two);
+        assert!(matches!(after(9), Answer::GiveUp(word) if word.contains("lost")));
     }
 }

@@ -3,10 +3,11 @@
 
 mod args;
 mod check;
+mod checkpoint;
 mod describe;
-mod errors;
 mod exit;
 mod files;
+mod goal;
 mod interrupt;
 mod isolate;
 mod libraries;

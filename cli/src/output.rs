@@ -93,6 +93,16 @@ pub(crate) struct Draft {
     pub(crate) file: fs::File,
 }
 
+/// So many drafts of one file may there be at a time, of this process or left by one of its number.
+const MOST_DRAFTS: u32 = 8;
+
+fn temporary(place: &Path, n: u32) -> OsString {
+    let mut name = OsString::from(".");
+    name.push(place.file_name().unwrap_or_default());
+    name.push(format!(".{}.{n}.tmp", std::process::id()));
+    name
+}
+
 impl Draft {
     /// Opens a temporary file in the folder of `path`.
     ///
@@ -109,11 +119,20 @@ impl Draft {
                 return Err(io::Error::other("the file in its place is read-only"));
             }
         }
-        let mut name = OsString::from(".");
-        name.push(place.file_name().unwrap_or_default());
-        name.push(format!(".{}.tmp", std::process::id()));
-        let temporary = place.with_file_name(name);
-        let file = fs::OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        let open = |n| {
+            let temporary = place.with_file_name(temporary(&place, n));
+            let file = fs::OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+            Ok::<_, io::Error>((temporary, file))
+        };
+        // Whether a file can be written is asked while a picture before is being written to it.
+        let mut opened = open(0);
+        for n in 1..MOST_DRAFTS {
+            match opened {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => opened = open(n),
+                _ => break,
+            }
+        }
+        let (temporary, file) = opened?;
         Ok(Self { temporary, place, file })
     }
 
@@ -161,6 +180,18 @@ mod tests {
         draft.finish().unwrap();
         assert_eq!(folder.names(), ["a.exr"]);
         assert_eq!(bytes(&folder.path("a.exr")), b"new");
+    }
+
+    #[test]
+    fn two_drafts_of_one_file_leave_each_other_alone() {
+        let folder = Folder::new("two-drafts");
+        let begin = || Draft::begin(&folder.path("a.exr")).unwrap();
+        let mut first = begin();
+        first.file.write_all(b"first").unwrap();
+        drop(begin());
+        first.finish().unwrap();
+        assert_eq!(folder.names(), ["a.exr"]);
+        assert_eq!(bytes(&folder.path("a.exr")), b"first");
     }
 
     #[test]

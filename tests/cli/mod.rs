@@ -10,6 +10,7 @@ mod libraries;
 mod plugin;
 #[cfg(test)]
 pub(crate) mod program;
+mod resume;
 mod verify;
 mod watch;
 

@@ -64,6 +64,25 @@ pub(super) fn run(watching: &Watching, subject: &mut Subject) -> Result<(), Stri
     Ok(())
 }
 
+/// Edits the camera while the finished picture before is being written.
+///
+/// # Errors
+/// The program's words.
+pub(super) fn writing(watching: &Watching, subject: &mut Subject) -> Result<(), String> {
+    let mut generation = first(watching)?;
+    let (mut times, mut rng) = (Times::default(), Rng::new(10));
+    for _ in 0..ROUNDS {
+        // It is shown when it is finished, and then written.
+        let pause = 50.0 * rng.f64();
+        watching.until(Instant::now() + Duration::from_secs_f64(pause / 1e3)).for_each(drop);
+        let saved = subject.edit(Kind::Camera, Way::Renamed)?;
+        generation = follow(watching, (saved, generation), &mut times)?;
+    }
+    let [noticed, coarse] = [times.noticed, times.coarse].map(|ms| told(&Series::from(ms)));
+    println!("camera, while a finished picture is written: noticed {noticed}, coarse {coarse}");
+    Ok(())
+}
+
 fn told(ms: &Series) -> String {
     format!("{:.1} / {:.1} / {:.1}", ms.percentile(50), ms.percentile(95), ms.percentile(99))
 }

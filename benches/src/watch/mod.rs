@@ -34,6 +34,9 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
     let watching = Watching::start(luxel, &subject.scene(), &[])?;
     latency::run(&watching, &mut subject)?;
     drop(watching);
+    let watching = Watching::start(luxel, &subject.scene(), &["--spp", "1"])?;
+    latency::writing(&watching, &mut subject)?;
+    drop(watching);
     let ends = cancel::run(&subject)?;
     let [p50, p95, p99] = [50, 95, 99].map(|percent| ends.percentile(percent));
     println!("end of a render after it is asked (goal p99 10): {p50:.1} / {p95:.1} / {p99:.1} ms");

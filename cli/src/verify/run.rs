@@ -82,7 +82,9 @@ impl Run {
         if let Some(failure) = self.interrupted() {
             return Err(failure);
         }
-        let measured = measure::measure((name, stage), options, &control, true, &mut |_, _| {})?;
+        let of = (name, stage);
+        let film = measure::empty(stage, options)?;
+        let measured = measure::measure(of, film, options, &control, true, &mut |_, _| {})?;
         match measured.outcome {
             Outcome::Complete => Ok(measured.film),
             Outcome::Cancelled => Err(Failure::new(Exit::Incomplete, INTERRUPTED)),

@@ -44,7 +44,10 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     beat.rendering(&control, interrupt);
     let course = Course { control: &control, guard: &guard, beat };
     let read = Arc::new(Read { files, sources });
-    Sitting::new(Arc::new(stage), read, None).render(args, &course, &mut |_, _| {})?;
+    let sitting = Sitting::new(Arc::new(stage), read, None);
+    sitting.render(args, &course, &mut |_, _| {})?;
+    let _whole = guard.saving();
+    sitting.to_print().map(|print| print.write(args, beat)).transpose()?;
     Ok(Exit::Fine)
 }
 

@@ -60,19 +60,15 @@ impl Audience {
         }
     }
 
-    /// What became of a picture: where it is, if it is whole.
-    pub(super) fn told(&self, ended: Result<Option<Output>, Failure>) {
-        match ended {
-            Ok(output) => {
-                if let (Some(output), Some(after)) = (output, &self.after) {
-                    after.picture(output);
-                }
-            }
-            Err(failure) => {
-                report::failure(&failure);
-                self.page.as_ref().inspect(|page| page.lost(&failure));
-            }
-        }
+    /// A picture is whole.
+    pub(super) fn written(&self, output: Output) {
+        self.after.as_ref().inspect(|after| after.picture(output));
+    }
+
+    /// There is no picture of the scene that is shown.
+    pub(super) fn lost(&self, failure: &Failure) {
+        report::failure(failure);
+        self.page.as_ref().inspect(|page| page.lost(failure));
     }
 
     /// Nothing more is begun for pictures that are there.

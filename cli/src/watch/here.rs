@@ -13,6 +13,7 @@ use super::Args;
 use super::audience::Audience;
 use super::changes::{Changes, Noticed, Wake};
 use super::edit::{self, Edit};
+use super::press::Press;
 use super::reading;
 use super::round::{Course, Read, Sitting};
 use super::shown::{Shown, Subject};
@@ -83,6 +84,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
             shown: None,
             impatient: true,
             is_good: false,
+            press: Press::start(scope, args, &audience),
         };
         let ended = watching.rounds(&mut session, &surroundings);
         let has_picture = watching.end();
@@ -115,6 +117,7 @@ struct Watching<'scope, 'env> {
     impatient: bool,
     /// Whether the last load gave a scene.
     is_good: bool,
+    press: Press<'scope, 'env>,
 }
 
 impl Watching<'_, '_> {
@@ -142,7 +145,7 @@ impl Watching<'_, '_> {
     fn wait(&mut self) -> Next {
         loop {
             let noticed = self.changes.within(STILL);
-            let is_done = || self.shown.as_ref().is_some_and(|it| it.thread.is_finished());
+            let is_done = || self.shown.as_ref().is_some_and(Shown::is_done);
             match noticed {
                 Noticed::Save => return Next::Read,
                 Noticed::Stop => return Next::End,
@@ -269,17 +272,18 @@ impl Watching<'_, '_> {
             return self.show(subject, edit);
         }
         let of = (subject.stage.clone(), subject.read.clone());
-        let course = Course { control: &shown.control, guard: self.guard, beat: &Beat::silent() };
-        let written = shown.sitting.show_as(of, edit, self.args, &course);
+        if shown.sitting.show_as(of, edit) {
+            self.press.tray().put(shown.sitting.clone(), self.guard.saving());
+        }
         shown.subject = subject;
         self.audience.page().inspect(|page| page.shows(&shown.subject.stage, &shown.subject.read));
-        self.audience.told(written);
     }
 
-    /// Ends the picture before, and begins one.
+    /// Ends the render before, but not the writing of its picture, and begins one.
     fn show(&mut self, subject: Subject, edit: Edit) {
         if let Some(before) = self.shown.take() {
             before.control.supersede();
+            before.sitting.pass();
             before.ended();
         }
         let control = Arc::new(Control::default());
@@ -290,10 +294,14 @@ impl Watching<'_, '_> {
         let of_samples = args.render.options().samples(&stage);
         let mut look = audience.follow(&stage, &read, of_samples);
         let sitting = Arc::new(Sitting::new(stage.clone(), read.clone(), Some(edit)));
-        let sits = sitting.clone();
+        let (sits, tray) = (sitting.clone(), self.press.tray().clone());
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
-            audience.told(sits.render(args, &course, &mut look));
+            match sits.render(args, &course, &mut look) {
+                Ok(true) => tray.put(sits, guard.saving()),
+                Ok(false) => {}
+                Err(failure) => audience.lost(&failure),
+            }
             if let Some(page) = audience.page().filter(|_| stage.has_failed()) {
                 page.broke(&stage.failures(), &read.sources);
             }
@@ -301,14 +309,16 @@ impl Watching<'_, '_> {
         self.shown = Some(Shown { subject, sitting, control, thread });
     }
 
-    /// Ends the picture in hand: whether it was whole.
-    fn end(&mut self) -> bool {
-        self.shown.take().is_some_and(|shown| {
+    /// Ends the picture in hand, and what is still to be written: whether it was whole.
+    fn end(self) -> bool {
+        let sitting = self.shown.map(|shown| {
             shown.control.cancel();
             let sitting = shown.sitting.clone();
             shown.ended();
-            sitting.is_written()
-        })
+            sitting
+        });
+        self.press.end();
+        sitting.is_some_and(|sitting| sitting.is_written())
     }
 
     /// Opens libraries anew if one has changed, or what is trusted has.

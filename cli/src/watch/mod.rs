@@ -11,6 +11,7 @@ mod here;
 mod mailbox;
 mod page;
 mod params;
+mod press;
 mod reading;
 mod round;
 mod shown;

@@ -32,7 +32,7 @@ pub(super) struct Course<'a> {
     pub(super) beat: &'a Beat,
 }
 
-/// With more samples than this, a PNG of one sample per pixel comes first, unless a page shows that
+/// With more samples than this, a PNG of the first comes before the picture, unless a page shows that
 /// sooner: the next picture would have to wait while the file is written.
 const COARSE: u32 = 4;
 
@@ -43,18 +43,42 @@ pub(super) struct Sitting(Mutex<Shown>);
 struct Shown {
     stage: Arc<Stage>,
     read: Arc<Read>,
+    /// What has not been told yet.
     edit: Option<Edit>,
     /// The picture, with the samples that it took.
-    done: Option<(Measured, u64)>,
-    /// Whether it is on the disk as it is shown now.
-    written: bool,
+    done: Option<Arc<(Measured, u64)>>,
+    ink: Ink,
     /// Whether nothing more comes of the render.
     ended: bool,
+    /// Whether another picture has taken its place.
+    past: bool,
+}
+
+/// How far the finished picture has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ink {
+    /// It could not be written, or there is nothing to write yet.
+    None,
+    /// It is to be written.
+    Due,
+    /// It is being written as it is to be shown.
+    Wet,
+    /// It is on the disk as it is to be shown.
+    Dry,
+}
+
+/// A picture as it is to be written.
+pub(super) struct Print {
+    stage: Arc<Stage>,
+    read: Arc<Read>,
+    edit: Option<Edit>,
+    done: Arc<(Measured, u64)>,
 }
 
 impl Sitting {
     pub(super) fn new(stage: Arc<Stage>, read: Arc<Read>, edit: Option<Edit>) -> Self {
-        Self(Mutex::new(Shown { stage, read, edit, done: None, written: false, ended: false }))
+        let (ended, past) = (false, false);
+        Self(Mutex::new(Shown { stage, read, edit, done: None, ink: Ink::None, ended, past }))
     }
 
     fn lock(&self) -> MutexGuard<'_, Shown> {
@@ -62,13 +86,19 @@ impl Sitting {
     }
 
     /// How the picture is shown now.
-    pub(super) fn stage(&self) -> Arc<Stage> {
-        self.lock().stage.clone()
+    fn subject(&self) -> (Arc<Stage>, Arc<Read>) {
+        let shown = self.lock();
+        (shown.stage.clone(), shown.read.clone())
     }
 
     /// Whether there is a picture on the disk, all of its samples taken.
     pub(super) fn is_written(&self) -> bool {
-        self.lock().written
+        self.lock().ink == Ink::Dry
+    }
+
+    /// Whether the picture is still to be written, or being written.
+    pub(super) fn is_in_press(&self) -> bool {
+        matches!(self.lock().ink, Ink::Due | Ink::Wet)
     }
 
     /// Whether the render has ended without a picture.
@@ -77,8 +107,18 @@ impl Sitting {
         shown.ended && shown.done.is_none()
     }
 
-    /// Renders and writes the picture, which `look` sees grow; one that was cancelled or failed is not
-    /// written, and the last stays. Returns where it is, if it is there.
+    /// Another picture takes its place.
+    pub(super) fn pass(&self) {
+        self.lock().past = true;
+    }
+
+    /// Whether another picture has taken its place.
+    pub(super) fn is_past(&self) -> bool {
+        self.lock().past
+    }
+
+    /// Renders the picture, which `look` sees grow. Returns whether there is one to be written: one
+    /// that was cancelled or failed is not, and the last stays.
     ///
     /// # Errors
     /// What stands in the way; a panic in the renderer.
@@ -87,7 +127,7 @@ impl Sitting {
         args: &Args,
         course: &Course<'_>,
         look: &mut Look<'_>,
-    ) -> Result<Option<Output>, Failure> {
+    ) -> Result<bool, Failure> {
         let rendered = self.measure(args, course, look);
         self.lock().ended = true;
         rendered
@@ -98,20 +138,24 @@ impl Sitting {
         args: &Args,
         course: &Course<'_>,
         look: &mut Look<'_>,
-    ) -> Result<Option<Output>, Failure> {
+    ) -> Result<bool, Failure> {
         let Course { control, guard, beat } = course;
-        let stage = self.stage();
-        self.lock().output(args)?;
+        let (stage, read) = self.subject();
+        output((&stage, &read), args)?;
         guard.measuring();
         beat.phase(Phase::Rendering);
         let options =
             Options { coarse: args.preview, courteous: args.preview, ..args.render.options() };
-        let first = !args.preview && options.samples(&stage) > COARSE;
+        let of_samples = options.samples(&stage);
+        let mut first = !args.preview && of_samples > COARSE;
         let mut refused = None;
         let mut seen = |film: &Film, now: Reached| {
             look(film, now);
-            if first && now == ONE_SAMPLE && !control.is_cancelled() {
-                refused = self.lock().coarse(args, film, course).err();
+            let is_some = now.step == 1 && now.samples < of_samples;
+            // The picture before may still be on its way to the same file: it comes first.
+            if first && is_some && !guard.is_saving() && !control.is_cancelled() {
+                first = false;
+                refused = self.coarse(args, film, course).err();
                 if refused.is_some() {
                     // What cannot be written is not worth more samples.
                     control.cancel();
@@ -119,99 +163,108 @@ impl Sitting {
             }
         };
         let of = (args.file.as_path(), &*stage);
-        let measured = measure::measure(of, &options, control, !args.quiet, &mut seen)?;
+        let measured = measure::measure(
+            of,
+            measure::empty(&stage, &options)?,
+            &options,
+            control,
+            !args.quiet,
+            &mut seen,
+        )?;
         if let Some(failure) = refused {
             return Err(failure);
         }
         let mut shown = self.lock();
         match measured.outcome {
-            Outcome::Cancelled => return Ok(None),
+            Outcome::Cancelled => return Ok(false),
             // A library's code failed: what was measured may be wrong.
             Outcome::Failed => {
                 let (found, sources) = (stage.failures(), &shown.read.sources);
                 report::diagnostics(&found, sources, args.form(), Stream::Error)?;
-                return Ok(None);
+                return Ok(false);
             }
             Outcome::Complete => {}
         }
-        shown.done = Some((measured, control.samples_done()));
-        shown.write(args, course).map(Some)
+        (shown.done, shown.ink) = (Some(Arc::new((measured, control.samples_done()))), Ink::Due);
+        Ok(true)
     }
 
-    /// Shows what is or will be measured in another way. Returns where the picture is, if it is there.
-    ///
-    /// # Errors
-    /// A picture that cannot be written; the one before stays.
-    pub(super) fn show_as(
-        &self,
-        (stage, read): (Arc<Stage>, Arc<Read>),
-        edit: Edit,
-        args: &Args,
-        course: &Course<'_>,
-    ) -> Result<Option<Output>, Failure> {
-        let mut shown = self.lock();
-        let told_of = shown.edit.take().filter(|_| shown.done.is_none());
-        let edit = match told_of {
-            Some(before) => before.then(edit),
-            None => edit,
-        };
-        (shown.stage, shown.read, shown.edit) = (stage, read, Some(edit));
-        if shown.done.is_none() {
-            return Ok(None);
-        }
-        shown.write(args, course).map(Some)
-    }
-}
-
-/// When every pixel has one sample.
-const ONE_SAMPLE: Reached = Reached { step: 1, samples: 1 };
-
-impl Shown {
-    /// Where the picture goes, if it can go there.
-    fn output(&self, args: &Args) -> Result<Output, Failure> {
-        let file = self.stage.film.file.as_deref();
-        let output = Output::choose(args.render.output.as_deref(), file, &args.file)?;
-        output.check(&self.read.files)?;
-        Ok(output)
-    }
-
-    /// Writes the PNG of one sample per pixel; whoever waits for a picture has one.
+    /// Writes the PNG of the first samples; whoever waits for a picture has one.
     fn coarse(
         &self,
         args: &Args,
         film: &Film,
         Course { guard, beat, .. }: &Course<'_>,
     ) -> Result<(), Failure> {
-        let output = self.output(args)?;
+        let (stage, read) = self.subject();
+        let output = output((&stage, &read), args)?;
         let whole = guard.saving();
         beat.phase(Phase::Saving);
-        let written = picture::preview(&output, film, &self.stage.film);
+        let written = picture::preview(&output, film, &stage.film);
         drop(whole);
         guard.measuring();
         beat.phase(Phase::Rendering);
         written
     }
 
-    /// Writes the picture and tells of it.
-    fn write(
-        &mut self,
-        args: &Args,
-        Course { guard, beat, .. }: &Course<'_>,
-    ) -> Result<Output, Failure> {
-        self.written = false;
-        let output = self.output(args)?;
-        let Some((Measured { film, outcome, seconds }, samples)) = &self.done else {
-            return Ok(output);
+    /// Shows what is or will be measured in another way. Returns whether it has to be brought to
+    /// whoever writes it: whoever has it, or comes to have it, sees this.
+    pub(super) fn show_as(&self, (stage, read): (Arc<Stage>, Arc<Read>), edit: Edit) -> bool {
+        let mut shown = self.lock();
+        let edit = match shown.edit.take() {
+            Some(before) => before.then(edit),
+            None => edit,
         };
-        let _whole = guard.saving();
+        (shown.stage, shown.read, shown.edit) = (stage, read, Some(edit));
+        let at_rest = matches!(shown.ink, Ink::None | Ink::Dry);
+        if shown.done.is_some() {
+            shown.ink = Ink::Due;
+        }
+        shown.done.is_some() && at_rest
+    }
+
+    /// What is to be written, if it is not on the disk by now.
+    pub(super) fn to_print(&self) -> Option<Print> {
+        let mut shown = self.lock();
+        let done = shown.done.clone().filter(|_| shown.ink == Ink::Due)?;
+        shown.ink = Ink::Wet;
+        let edit = shown.edit.take();
+        Some(Print { stage: shown.stage.clone(), read: shown.read.clone(), edit, done })
+    }
+
+    /// What was to be written is on the disk, or cannot be.
+    pub(super) fn printed(&self, well: bool) {
+        let mut shown = self.lock();
+        if shown.ink == Ink::Wet {
+            shown.ink = if well { Ink::Dry } else { Ink::None };
+        }
+    }
+}
+
+/// Where the picture goes, if it can go there.
+fn output((stage, read): (&Stage, &Read), args: &Args) -> Result<Output, Failure> {
+    let file = stage.film.file.as_deref();
+    let output = Output::choose(args.render.output.as_deref(), file, &args.file)?;
+    output.check(&read.files)?;
+    Ok(output)
+}
+
+impl Print {
+    /// Writes the picture and tells of it. Returns where it is.
+    ///
+    /// # Errors
+    /// A picture that cannot be written; the one before stays.
+    pub(super) fn write(&self, args: &Args, beat: &Beat) -> Result<Output, Failure> {
+        let Self { stage, read, edit, done } = self;
+        let (Measured { film, outcome, seconds }, samples) = &**done;
+        let output = output((stage, read), args)?;
         beat.phase(Phase::Saving);
-        let (of, took) = ((&*self.stage, &self.read.files), (*seconds, *samples));
+        let (of, took) = ((&**stage, &read.files), (*seconds, *samples));
         let summary = Summary::new(of, &args.render.options(), (film, *outcome), took);
-        picture::write(&output, film, &self.stage.film, &summary.notes())?;
-        self.written = true;
+        picture::write(&output, film, &stage.film, &summary.notes())?;
         if args.json {
             let mut told = summary.json(&output);
-            told["edit"] = self.edit.as_ref().map(Edit::json).into();
+            told["edit"] = edit.as_ref().map(Edit::json).into();
             report::out(&format!("{told}\n"))?;
         } else if !args.quiet {
             report::out(&summary.text(&output))?;
@@ -219,3 +272,6 @@ impl Shown {
         Ok(output)
     }
 }
+
+#[cfg(test)]
+mod tests;

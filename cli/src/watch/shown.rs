@@ -71,6 +71,11 @@ pub(super) struct Shown<'scope> {
 }
 
 impl Shown<'_> {
+    /// Whether nothing more comes of it, on the disk either.
+    pub(super) fn is_done(&self) -> bool {
+        self.thread.is_finished() && !self.sitting.is_in_press()
+    }
+
     /// Waits for the end of the render. What it had to say it has said; a panic was caught and told
     /// inside.
     pub(super) fn ended(self) {

@@ -1,4 +1,5 @@
-//! Documents that a measurement writes a part of.
+//! Documents that a measurement writes a part of. Shared by the tests and the benches, as a file that
+//! both take in.
 
 use std::path::Path;
 

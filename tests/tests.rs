@@ -17,10 +17,6 @@ mod curves;
 mod determinism;
 mod diff;
 #[cfg(test)]
-mod document;
-#[cfg(test)]
-mod document_tests;
-#[cfg(test)]
 mod dynamic;
 #[cfg(test)]
 mod disk;

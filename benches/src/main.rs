@@ -8,7 +8,6 @@
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
 
 mod boundary;
-#[path = "../../tests/document.rs"]
 mod document;
 mod errors;
 #[path = "../../cli/src/verify/generated.rs"]

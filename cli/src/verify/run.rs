@@ -82,9 +82,9 @@ impl Run {
         if let Some(failure) = self.interrupted() {
             return Err(failure);
         }
+        let empty = measure::empty(stage, options)?;
         let of = (name, stage);
-        let film = measure::empty(stage, options)?;
-        let measured = measure::measure(of, film, options, &control, true, &mut |_, _| {})?;
+        let measured = measure::measure(of, empty, options, &control, true, &mut |_, _| {})?;
         match measured.outcome {
             Outcome::Complete => Ok(measured.film),
             Outcome::Cancelled => Err(Failure::new(Exit::Incomplete, INTERRUPTED)),

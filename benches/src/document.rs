@@ -1,5 +1,4 @@
-//! Documents that a measurement writes a part of. Shared by the tests and the benches, as a file that
-//! both take in.
+//! Documents that a measurement writes a part of.
 
 use std::path::Path;
 

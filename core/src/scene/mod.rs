@@ -132,6 +132,8 @@ pub struct Scene {
     pub filter: Option<NodeId>,
     /// What fills the space that no shape encloses.
     pub medium: Option<NodeId>,
+    /// Of each node the hash without what every node of its kind may have.
+    own: Vec<Hash>,
 }
 
 impl Scene {
@@ -192,7 +194,10 @@ impl Scene {
     /// Hash of a node without the parameters that the host adds to its kind: equal where the object
     /// itself is equal, whatever its surface or what fills it.
     pub fn own_hash(&self, id: NodeId) -> Hash {
-        let node = self.node(id);
+        self.own[id.0 as usize]
+    }
+
+    fn new_own_hash(&self, node: &Node) -> Hash {
         let added = |name: &str| common_params(node.kind).iter().any(|param| param.name == name);
         if !node.params.iter().any(|argument| added(argument.name)) {
             return node.hash;
@@ -208,7 +213,14 @@ impl Scene {
     /// From 2³² nodes on: the budget is far below.
     pub fn add(&mut self, mut node: Node) -> NodeId {
         node.hash = value::hash_node(&node, |id| self.node(id).hash);
+        let own = self.new_own_hash(&node);
+        self.add_hashed(node, own)
+    }
+
+    /// The same of a node whose hashes are known.
+    pub(crate) fn add_hashed(&mut self, node: Node, own: Hash) -> NodeId {
         self.nodes.push(node);
+        self.own.push(own);
         NodeId(u32::try_from(self.nodes.len() - 1).expect("the node budget is far below 2^32"))
     }
 }

@@ -129,10 +129,18 @@ fn text(hasher: &mut blake3::Hasher, text: &str) {
     hasher.update(text.as_bytes());
 }
 
+/// Numbers that are hashed at a time.
+const PIECE: usize = 256;
+
 fn numbers(hasher: &mut blake3::Hasher, numbers: &[f64]) {
     hasher.update(&numbers.len().to_le_bytes());
-    for x in numbers {
-        hasher.update(&x.to_bits().to_le_bytes());
+    // Many at a time: what is hashed is the same, and takes a fraction of the time.
+    let mut bytes = [0; 8 * PIECE];
+    for piece in numbers.chunks(PIECE) {
+        for (to, x) in bytes.chunks_exact_mut(8).zip(piece) {
+            to.copy_from_slice(&x.to_bits().to_le_bytes());
+        }
+        hasher.update(&bytes[..8 * piece.len()]);
     }
 }
 

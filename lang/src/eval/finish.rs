@@ -55,9 +55,11 @@ fn compact(old: &Scene) -> Scene {
     let root = compactor.items(&old.root);
     let slots = [old.camera, old.film, old.integrator, old.sampler, old.filter, old.medium];
     let slots = slots.map(|slot| slot.map(|id| compactor.node(id)));
-    let [camera, film, integrator, sampler, filter, medium] = slots;
-    let camera_pose = old.camera_pose.clone();
-    Scene { root, camera, camera_pose, film, integrator, sampler, filter, medium, ..compactor.new }
+    let mut new = compactor.new;
+    [new.camera, new.film, new.integrator, new.sampler, new.filter, new.medium] = slots;
+    new.camera_pose = old.camera_pose.clone();
+    new.root = root;
+    new
 }
 
 struct Compactor<'a> {

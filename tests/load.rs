@@ -21,12 +21,17 @@ pub(crate) enum Builtins {
     Loaded,
 }
 
-/// Every class that a scene may name. With `LUXEL_TEST_BUILTINS=loaded` in the environment all tests
-/// take the built-ins from their dynamic library.
-pub(crate) fn registry() -> Registry {
+/// With `LUXEL_TEST_BUILTINS=loaded` in the environment all tests take the built-ins from their dynamic
+/// library.
+pub(crate) fn takes_loaded_builtins() -> bool {
     #[expect(clippy::disallowed_methods, reason = "one run of the tests takes the other way")]
     let wanted = std::env::var("LUXEL_TEST_BUILTINS");
-    let loaded = wanted.is_ok_and(|wanted| wanted == "loaded");
+    wanted.is_ok_and(|wanted| wanted == "loaded")
+}
+
+/// Every class that a scene may name.
+pub(crate) fn registry() -> Registry {
+    let loaded = takes_loaded_builtins();
     registry_of(if loaded { Builtins::Loaded } else { Builtins::Linked })
 }
 

@@ -9,6 +9,8 @@ mod builder;
 #[cfg(test)]
 mod cli;
 #[cfg(test)]
+mod coverage;
+#[cfg(test)]
 mod curvature;
 #[cfg(test)]
 mod curves;
@@ -23,9 +25,10 @@ mod edits;
 #[cfg(test)]
 mod extremes;
 #[cfg(test)]
+#[path = "../cli/src/verify/generated.rs"]
 mod generated;
 #[cfg(test)]
-mod generated_tests;
+mod goals;
 #[cfg(test)]
 mod house;
 #[cfg(test)]

@@ -10,7 +10,7 @@ use luxel_sdk::num::Ray;
 use luxel_sdk::sampling::{sobol_owen_2d, uniform_sphere};
 use twofloat::TwoFloat;
 
-use crate::{generated, scene};
+use crate::{document, scene};
 
 /// Rays of each case.
 const RAYS: u32 = 20_000;
@@ -38,10 +38,10 @@ struct Worst {
 ///
 /// # Errors
 /// If a scene of this program does not build; if the document has no place for them.
-pub(crate) fn run(document: Option<&Path>) -> Result<(), String> {
+pub(crate) fn run(path: Option<&Path>) -> Result<(), String> {
     let tables = tables()?;
     println!("{tables}");
-    document.map_or(Ok(()), |path| generated::write(path, "errors", &tables))
+    path.map_or(Ok(()), |path| document::write(path, "errors", &tables))
 }
 
 fn tables() -> Result<String, String> {

@@ -8,8 +8,9 @@
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
 
 mod boundary;
+mod document;
 mod errors;
-#[path = "../../tests/generated.rs"]
+#[path = "../../cli/src/verify/generated.rs"]
 mod generated;
 mod parse;
 mod peer;

@@ -116,7 +116,8 @@ fn crop(text: &str) -> Result<Rect, String> {
 /// More threads than any machine has cost memory and gain nothing.
 const MAX_THREADS: usize = 4096;
 
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
+/// Reads a number of threads.
+pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let found = text.parse().ok().filter(|n: &NonZeroUsize| n.get() <= MAX_THREADS);
     found.ok_or_else(|| format!("expected a whole number from 1 to {MAX_THREADS}"))
 }

@@ -3,10 +3,11 @@
 
 mod args;
 mod check;
+mod checkpoint;
 mod describe;
-mod errors;
 mod exit;
 mod files;
+mod goal;
 mod interrupt;
 mod isolate;
 mod libraries;
@@ -23,6 +24,7 @@ mod report;
 mod summary;
 #[cfg(test)]
 mod testing;
+mod verify;
 mod view;
 mod watch;
 mod words;
@@ -56,6 +58,7 @@ enum Command {
     Watch(watch::Args),
     View(view::Args),
     Check(check::Args),
+    Verify(verify::Args),
     List(list::Args),
     Describe(describe::Args),
     Plugin(plugin::Args),
@@ -78,6 +81,7 @@ fn main() -> ExitCode {
         Command::Watch(args) => watch::run(args),
         Command::View(args) => view::run(args),
         Command::Check(args) => check::run(args),
+        Command::Verify(args) => verify::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),
         Command::Plugin(args) => plugin::run(args),

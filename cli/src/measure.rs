@@ -5,16 +5,15 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use luxel_core::film::{Film, Rect};
-use luxel_core::render::{Control, Look, Options, Outcome, Reached, render_seen};
+use luxel_core::film::{Errors, Film, Rect};
+use luxel_core::render::{Control, Look, Options, Outcome, Reached, render_on};
 use luxel_core::stage::Stage;
 
-use crate::errors::Errors;
 use crate::exit::{Exit, Failure, blaming};
 use crate::progress;
 
-/// Pixels of one film, at most: 56 bytes each, 7.5 GB.
-const MAX_PIXELS: usize = 1 << 27;
+/// Pixels of one film, at most: 176 bytes each, 11.8 GB.
+const MAX_PIXELS: usize = 1 << 26;
 
 /// Between two looks at how wrong the picture is, for the line.
 const PACE: Duration = Duration::from_secs(1);
@@ -46,37 +45,62 @@ pub(crate) fn window(stage: &Stage, options: &Options) -> Result<Rect, Failure> 
     Ok(window)
 }
 
-/// Renders, with a line of progress if wanted; `look` sees the picture grow.
+/// An empty film for what will be measured.
 ///
 /// # Errors
-/// As `window`; a panic in the renderer or a plugin, with the scene's name.
+/// As `window`.
+pub(crate) fn empty(stage: &Stage, options: &Options) -> Result<Film, Failure> {
+    Ok(Film::new(stage.film.resolution, window(stage, options)?))
+}
+
+/// Renders on a film, with a line of progress if wanted; `look` sees the picture grow.
+///
+/// # Errors
+/// A panic in the renderer or a plugin, with the scene's name.
 pub(crate) fn measure(
     (scene, stage): (&Path, &Stage),
+    mut film: Film,
     options: &Options,
     control: &Control,
     line: bool,
     look: &mut Look<'_>,
 ) -> Result<Measured, Failure> {
-    let window = window(stage, options)?;
-    let total = window.area() as u64 * u64::from(options.samples(stage));
     let start = Instant::now();
-    let (shown, error) = (progress::is_shown(line), Mutex::new(None));
+    let shown = progress::is_shown(line);
+    let at_first = film.window.area() as u64 * u64::from(options.samples(stage));
+    let before = film.samples();
+    let reached = Mutex::new(Standing { total: at_first.saturating_sub(before), error: None });
+    let standing = || *reached.lock().unwrap_or_else(PoisonError::into_inner);
     let mut told = start;
     let mut seen = |film: &Film, now: Reached| {
-        if shown && now.samples >= 2 && told.elapsed() >= PACE {
-            let found = Errors::about(film).map(|errors| errors.median);
-            *error.lock().unwrap_or_else(PoisonError::into_inner) = found;
-            told = Instant::now();
+        if shown {
+            let mut found = Standing { total: control.samples_done() + now.left, ..standing() };
+            if now.samples >= 2 && told.elapsed() >= PACE {
+                found.error = Errors::about(film).map(|errors| errors.median);
+                told = Instant::now();
+            }
+            *reached.lock().unwrap_or_else(PoisonError::into_inner) = found;
         }
         look(film, now);
     };
     let rendered = blaming(&scene.display().to_string(), || {
         let told = |seconds| {
-            let error = *error.lock().unwrap_or_else(PoisonError::into_inner);
-            progress::line(control.samples_done(), total, error, seconds)
+            let Standing { total, error } = standing();
+            let time = options.goal.time.map(|time| time.as_secs_f64());
+            progress::line((control.samples_done(), total), error, (seconds, time))
         };
-        progress::shown_while(told, line, || render_seen(stage, options, control, &mut seen))
+        let work = || render_on(&mut film, stage, options, control, &mut seen);
+        progress::shown_while(told, line, work)
     });
-    let (film, outcome) = rendered?;
+    let outcome = rendered?;
     Ok(Measured { film, outcome, seconds: start.elapsed().as_secs_f64() })
+}
+
+/// How far a render is.
+#[derive(Clone, Copy)]
+struct Standing {
+    /// Samples in the end, as far as one can tell.
+    total: u64,
+    /// Median of the pixels' relative errors.
+    error: Option<f64>,
 }

@@ -109,19 +109,33 @@ pub(crate) fn is_shown(wanted: bool) -> bool {
 }
 
 /// ` 42 %  3.20 Msamples/s  110.1 of 262.1 Msamples  ±1.3 %  48 s left`; the error, if it is known, is
-/// the median of pixels' relative standard errors.
-pub(crate) fn line(done: u64, total: u64, error: Option<f64>, seconds: f64) -> String {
+/// the median of pixels' relative standard errors. Where a time was given, that is what is left of it.
+pub(crate) fn line(
+    (done, total): (u64, u64),
+    error: Option<f64>,
+    (seconds, time): (f64, Option<f64>),
+) -> String {
     let share = if total == 0 { 1.0 } else { done as f64 / total as f64 };
     let rate = done as f64 / seconds.max(f64::MIN_POSITIVE);
-    let left =
-        if done == 0 { "…".into() } else { duration((total - done.min(total)) as f64 / rate) };
+    let by_rate = (done > 0).then(|| (total - done.min(total)) as f64 / rate);
+    let by_time = time.map(|time| (time - seconds).max(0.0));
+    let left = match (by_rate, by_time) {
+        (Some(a), Some(b)) => duration(a.min(b)),
+        (Some(left), None) | (None, Some(left)) => duration(left),
+        (None, None) => "…".into(),
+    };
+    let share = time.map_or(share, |time| share.max(seconds / time));
+    let of = if by_time < by_rate && time.is_some() {
+        String::new()
+    } else {
+        format!(" of {:.1}", total as f64 / 1e6)
+    };
     let error = error.map_or_else(String::new, |error| format!("  ±{:.2} %", error * 100.0));
     format!(
-        "{:3.0} %  {:.2} Msamples/s  {:.1} of {:.1} Msamples{error}  {left} left",
+        "{:3.0} %  {:.2} Msamples/s  {:.1}{of} Msamples{error}  {left} left",
         (share * 100.0).min(100.0),
         rate / 1e6,
         done as f64 / 1e6,
-        total as f64 / 1e6,
     )
 }
 
@@ -144,10 +158,13 @@ mod tests {
 
     #[test]
     fn the_line_tells_rate_share_error_and_time_left() {
-        let told = line(1_000_000, 4_000_000, Some(0.0131), 2.0);
+        let told = line((1_000_000, 4_000_000), Some(0.0131), (2.0, None));
         assert_eq!(told, " 25 %  0.50 Msamples/s  1.0 of 4.0 Msamples  ±1.31 %  6.00 s left");
-        assert!(line(0, 10, None, 0.0).contains("Msamples  … left"));
-        assert!(line(11, 10, None, 1.0).starts_with("100 %"));
+        assert!(line((0, 10), None, (0.0, None)).contains("Msamples  … left"));
+        assert!(line((11, 10), None, (1.0, None)).starts_with("100 %"));
+        // Of 5 s two are over; the samples would take six more.
+        let told = line((1_000_000, 4_000_000), None, (2.0, Some(5.0)));
+        assert_eq!(told, " 40 %  0.50 Msamples/s  1.0 Msamples  3.00 s left");
     }
 
     #[test]

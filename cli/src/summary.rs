@@ -1,12 +1,11 @@
 //! What a render came to, for people and as JSON.
 
 use glam::{DVec3, UVec2};
-use luxel_core::film::Film;
-use luxel_core::render::{Options, Outcome};
+use luxel_core::film::{Errors, Film};
+use luxel_core::render::{Goal, Options, Outcome};
 use luxel_core::stage::Stage;
 use serde_json::{Value, json};
 
-use crate::errors::Errors;
 use crate::files::DiskFiles;
 use crate::output::Output;
 use crate::picture::Notes;
@@ -19,13 +18,20 @@ pub(crate) struct Summary {
     window: [u32; 4],
     exposure: Option<f64>,
     display: String,
+    /// Samples that were asked for, or, with a goal, the most of a pixel.
     spp: u32,
+    /// The fewest and the most samples of a pixel.
+    counts: [u32; 2],
+    goal: Goal,
     seed: u32,
     mode: String,
     integrator: String,
     outcome: Outcome,
     seconds: f64,
+    /// Of this run.
     samples: u64,
+    /// Of this run and those that it went on from.
+    samples_in_all: u64,
     mean: DVec3,
     error: Option<Errors>,
     scene: String,
@@ -44,24 +50,35 @@ impl Summary {
         let hex = |hash| blake3::Hash::from_bytes(hash).to_hex().to_string();
         let integrator = stage.scene.integrator.map(|id| stage.scene.node(id).class.to_string());
         let window = film.window;
+        let goal = options.goal;
+        let counts = counts(film);
+        let spp = if goal.is_some() { counts[1] } else { options.samples(stage) };
         Self {
             size: film.size,
             window: [window.min.x, window.min.y, window.size.x, window.size.y],
             exposure: stage.film.exposure,
             display: format!("{:?}", stage.film.display).to_lowercase(),
-            spp: options.samples(stage),
+            spp,
+            counts,
+            goal,
             seed: options.seed(stage),
             mode: format!("{:?}", stage.mode).to_lowercase(),
             integrator: integrator.unwrap_or_else(|| "path".into()),
             outcome,
             seconds,
             samples,
+            samples_in_all: film.samples().max(samples),
             mean: film.mean().0,
-            error: Errors::of_film(film),
+            error: Errors::of_film(film, goal.error.unwrap_or(f64::INFINITY)),
             scene: hex(stage.scene.hash()),
             files: files.hash().to_hex().to_string(),
             bad: film.bad_samples(),
         }
+    }
+
+    /// Whether every tile has the error that was asked for, if one was.
+    pub(crate) fn is_reached(&self) -> bool {
+        self.goal.error.is_none() || self.error.is_some_and(|error| error.tiles_above == 0)
     }
 
     fn settings(&self) -> Value {
@@ -77,7 +94,8 @@ impl Summary {
             "seed": self.seed,
             "color": self.mode,
             "integrator": self.integrator,
-            "complete": self.outcome == Outcome::Complete,
+            "error_asked": self.goal.error,
+            "complete": self.outcome == Outcome::Complete && self.is_reached(),
         })
     }
 
@@ -93,8 +111,17 @@ impl Summary {
         all["samples"] = json!(self.samples);
         all["samples_per_second"] = json!(self.rate());
         all["mean_radiance"] = json!(self.mean.to_array());
+        all["least_samples"] = json!(self.counts[0]);
+        all["most_samples"] = json!(self.counts[1]);
+        all["rms_relative_error"] = json!(self.error.map(|error| error.rms));
         all["median_relative_error"] = json!(self.error.map(|error| error.median));
         all["p95_relative_error"] = json!(self.error.map(|error| error.p95));
+        all["worst_relative_error"] = json!(self.error.map(|error| error.worst));
+        all["worst_pixel"] = json!(self.error.map(|error| error.worst_at.to_array()));
+        if self.goal.error.is_some() {
+            all["pixels_above"] = json!(self.error.map(|error| error.above));
+            all["tiles_above"] = json!(self.error.map(|error| error.tiles_above));
+        }
         all["bad_samples"] = json!(self.bad);
         all["exr"] = json!(output.exr);
         all["png"] = json!(output.png);
@@ -103,16 +130,11 @@ impl Summary {
 
     /// A few lines.
     pub(crate) fn text(&self, output: &Output) -> String {
-        let Self { spp, mean, .. } = self;
-        let error = match self.error {
-            Some(Errors { median, p95 }) => {
-                format!("median {:.2} %, 95th percentile {:.2} %", median * 100.0, p95 * 100.0)
-            }
-            None => "unknown: it takes two samples per pixel".into(),
-        };
-        let percent = self.samples as f64 * 100.0 / self.wanted().max(1) as f64;
+        let Self { mean, .. } = self;
+        let percent = self.samples_in_all as f64 * 100.0 / self.wanted().max(1) as f64;
         let done = match self.outcome {
             Outcome::Complete => String::new(),
+            _ if self.goal.is_some() => ", interrupted".into(),
             Outcome::Cancelled | Outcome::Failed => {
                 format!(", interrupted after {percent:.1} % of the samples")
             }
@@ -121,17 +143,54 @@ impl Summary {
             "wrote {exr} and {png}{done}\n\
              {size}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
              mean radiance ({:.4}, {:.4}, {:.4}) W/m²/sr\n\
-             relative standard error per pixel: {error}\n",
+             {error}{reached}",
             mean.x,
             mean.y,
             mean.z,
             exr = output.exr.display(),
             png = output.png.display(),
             size = self.place(),
+            spp = self.spp_words(),
             mode = self.mode,
             time = duration(self.seconds),
             rate = self.rate() / 1e6,
+            error = self.error_words(),
+            reached = self.reached_words(),
         )
+    }
+
+    /// `64`, or `64 to 1024`.
+    fn spp_words(&self) -> String {
+        let [least, most] = self.counts;
+        let is_even = least == most || !self.goal.is_some();
+        if is_even { self.spp.to_string() } else { format!("{least} to {most}") }
+    }
+
+    fn error_words(&self) -> String {
+        let Some(Errors { rms, median, p95, worst, worst_at, .. }) = self.error else {
+            return "standard error per pixel: unknown, it takes two samples\n".into();
+        };
+        let [rms, median, p95, worst] = [rms, median, p95, worst].map(percent);
+        format!(
+            "relative standard error per pixel: rms {rms}, median {median}, 95th percentile {p95}, \
+             worst {worst} at ({}, {})\n",
+            worst_at.x, worst_at.y
+        )
+    }
+
+    fn reached_words(&self) -> String {
+        let (Some(asked), Some(error)) = (self.goal.error, self.error) else {
+            return String::new();
+        };
+        let (asked, above) = (percent(asked), error.above);
+        match error.tiles_above {
+            0 => format!(
+                "every tile is within the {asked} asked for; single pixels above: {above}\n"
+            ),
+            tiles => format!(
+                "the {asked} asked for is not reached: {tiles} tiles are above, {above} pixels\n"
+            ),
+        }
     }
 
     /// `640 x 480`, or of a crop `64 x 64 at (100, 50) of 640 x 480`.
@@ -152,4 +211,15 @@ impl Summary {
     fn rate(&self) -> f64 {
         self.samples as f64 / self.seconds.max(f64::MIN_POSITIVE)
     }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", share * 100.0)
+}
+
+/// The fewest and the most samples of a pixel.
+fn counts(film: &Film) -> [u32; 2] {
+    let of = film.pixels().map(|(_, pixel)| pixel.n + pixel.bad);
+    let most = of.fold([u32::MAX, 0], |[least, most], n| [least.min(n), most.max(n)]);
+    if most[0] == u32::MAX { [0, 0] } else { most }
 }

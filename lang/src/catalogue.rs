@@ -92,4 +92,6 @@ pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0508", "more mistakes than are shown"),
     ("E0509", "a string that is too long"),
     ("E0601", "an assertion that does not hold"),
+    ("E0602", "an expectation that cannot be understood"),
+    ("E0603", "an expectation of pixels outside the picture"),
 ];

@@ -74,9 +74,9 @@ pub struct Scan {
 /// Words that continue a statement on a new line.
 const CONTINUE: [&[u8]; 4] = [b"else", b"with", b"in", b"as"];
 /// Words after which something must follow: a newline after them ends nothing.
-const PREFIX: [&[u8]; 17] = [
+const PREFIX: [&[u8]; 18] = [
     b"else", b"with", b"in", b"as", b"let", b"param", b"fn", b"for", b"if", b"include", b"import",
-    b"use", b"place", b"set", b"assert", b"units", b"scene",
+    b"use", b"place", b"set", b"assert", b"expect", b"units", b"scene",
 ];
 
 /// Bytes that matter inside brackets: quotes, slashes, hashes and brackets.
@@ -104,6 +104,7 @@ pub fn scan(text: &str, range: Range<usize>, depth: usize, limit: usize) -> Scan
         operand: true,
         newline: true,
         in_for: false,
+        in_expect: false,
         first: depth == 0,
         doc: None,
         out: Scan::default(),
@@ -112,7 +113,7 @@ pub fn scan(text: &str, range: Range<usize>, depth: usize, limit: usize) -> Scan
     scanner.out
 }
 
-#[expect(clippy::struct_excessive_bools, reason = "four independent facts about the place")]
+#[expect(clippy::struct_excessive_bools, reason = "five independent facts about the place")]
 struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -124,6 +125,8 @@ struct Scanner<'a> {
     newline: bool,
     /// Between `for` and `in`, where a comma separates names and not statements.
     in_for: bool,
+    /// In an `expect`, which `where` continues on a new line.
+    in_expect: bool,
     /// Whether no statement has begun in this block.
     first: bool,
     doc: Option<usize>,
@@ -176,10 +179,10 @@ impl Scanner<'_> {
                     self.at += 1;
                 }
                 let name = &self.bytes[start..self.at];
-                if CONTINUE.contains(&name) {
+                if CONTINUE.contains(&name) || self.in_expect && name == b"where" {
                     self.newline = false;
-                } else {
-                    self.word(start);
+                } else if self.word(start) {
+                    self.in_expect = name == b"expect";
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
                 self.in_for = name == b"for" || (self.in_for && name != b"in");
@@ -194,15 +197,19 @@ impl Scanner<'_> {
         }
     }
 
-    fn word(&mut self, start: usize) {
+    /// Whether a statement begins with the word.
+    fn word(&mut self, start: usize) -> bool {
+        let mut begins = false;
         if self.open.len() == self.depth {
-            if self.first || (self.operand && self.newline) {
+            begins = self.first || (self.operand && self.newline);
+            if begins {
                 self.out.starts.push(self.doc.unwrap_or(start));
             }
             self.first = false;
         }
         self.doc = None;
         self.newline = false;
+        begins
     }
 
     fn string(&mut self) {
@@ -350,6 +357,7 @@ mod tests {
     #[test]
     fn words_that_continue_begin_nothing() {
         assert_eq!(starts("let a = b\n  with { c = 1 }\nif x { y = 1 }\nelse { y = 2 }").len(), 2);
+        assert_eq!(starts("expect mean = b\n  where { c = 1 }\nlet d = 1\nwhere = 2").len(), 3);
     }
 
     #[test]

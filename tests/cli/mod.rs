@@ -9,7 +9,9 @@ mod judged;
 mod libraries;
 mod plugin;
 #[cfg(test)]
-mod program;
+pub(crate) mod program;
+mod resume;
+mod verify;
 mod watch;
 
 use std::time::{Duration, Instant};

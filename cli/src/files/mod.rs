@@ -9,6 +9,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use luxel_core::diag::Sources;
 use luxel_core::files::{FileError, Files, normalise};
 use luxel_core::scene::Hash;
 
@@ -70,6 +71,16 @@ impl DiskFiles {
     pub(crate) fn hash(&self) -> blake3::Hash {
         let mut hasher = blake3::Hasher::new();
         for seen in self.asked().values().flatten() {
+            hasher.update(seen.as_bytes());
+        }
+        hasher.finalize()
+    }
+
+    /// The same over those that are not among some texts.
+    pub(crate) fn hash_besides(&self, texts: &Sources) -> blake3::Hash {
+        let texts: Vec<_> = texts.texts().map(|text| blake3::hash(text.as_bytes())).collect();
+        let mut hasher = blake3::Hasher::new();
+        for seen in self.asked().values().flatten().filter(|seen| !texts.contains(seen)) {
             hasher.update(seen.as_bytes());
         }
         hasher.finalize()

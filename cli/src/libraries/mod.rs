@@ -46,6 +46,15 @@ impl Plugins {
         self.libraries.iter().filter_map(one).collect()
     }
 
+    /// One hash over everything whose change could change the classes.
+    pub(crate) fn hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for seen in self.watched.values().flatten() {
+            hasher.update(seen.as_bytes());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
     /// The libraries that are open, for people.
     pub(crate) fn open(&self) -> Vec<String> {
         let one = |found: &Found| match &found.state {

@@ -209,8 +209,10 @@ fn problems(found: &[Diagnostic], sources: &Sources) -> impl Iterator<Item = Pro
 
 fn status(now: Reached, of_samples: u32) -> String {
     match now {
-        Reached { step: 1, samples } if samples >= of_samples => format!("{samples} samples, done"),
-        Reached { step: 1, samples } => format!("{samples} of {of_samples} samples"),
+        Reached { step: 1, samples, .. } if samples >= of_samples => {
+            format!("{samples} samples, done")
+        }
+        Reached { step: 1, samples, .. } => format!("{samples} of {of_samples} samples"),
         Reached { step, .. } => format!("coarse: one pixel of {}", step * step),
     }
 }

@@ -163,7 +163,14 @@ impl Sitting {
             }
         };
         let of = (args.file.as_path(), &*stage);
-        let measured = measure::measure(of, &options, control, !args.quiet, &mut seen)?;
+        let measured = measure::measure(
+            of,
+            measure::empty(&stage, &options)?,
+            &options,
+            control,
+            !args.quiet,
+            &mut seen,
+        )?;
         if let Some(failure) = refused {
             return Err(failure);
         }

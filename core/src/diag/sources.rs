@@ -43,6 +43,11 @@ impl Sources {
         self.files.get(id.0 as usize).map_or("", |(_, text)| text)
     }
 
+    /// Every text, in reading order.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|(_, text)| &**text)
+    }
+
     /// Line and column of a byte; a byte past the end is taken as the end.
     pub fn line_column(&self, id: SourceId, byte: usize) -> LineColumn {
         let text = self.text(id);

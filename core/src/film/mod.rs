@@ -3,62 +3,39 @@
 //! One sample feeds one pixel, and the samples of a pixel are added in their order, so a picture
 //! does not depend on tiles or threads.
 
+mod errors;
+mod pixel;
 mod rect;
+mod save;
 
 use glam::{DVec3, UVec2};
 
+pub use errors::Errors;
+pub(crate) use errors::Scale;
+pub use pixel::{Pixel, degrees_of_freedom, half_width_95};
 pub use rect::Rect;
-
-/// The estimate of one pixel: Welford's running mean and second moment, per channel, in f64.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pixel {
-    /// Samples that count.
-    pub n: u32,
-    /// Samples that were not finite, and were left out.
-    pub bad: u32,
-    /// Mean of linear sRGB, in the radiance unit of `luxel_sdk::color`.
-    pub mean: DVec3,
-    m2: DVec3,
-}
-
-impl Pixel {
-    /// Adds a sample; one that is not finite is counted and left out.
-    pub fn push(&mut self, rgb: DVec3) {
-        if !rgb.is_finite() {
-            self.bad += 1;
-            return;
-        }
-        self.n += 1;
-        let delta = rgb - self.mean;
-        self.mean += delta / f64::from(self.n);
-        self.m2 += delta * (rgb - self.mean);
-    }
-
-    /// Variance of one sample, per channel; zero below two samples.
-    pub fn variance(&self) -> DVec3 {
-        if self.n < 2 { DVec3::ZERO } else { self.m2 / f64::from(self.n - 1) }
-    }
-
-    /// Standard error of the mean, per channel, taking the samples as independent; infinite below
-    /// two samples. For Sobol samples it is an upper estimate.
-    pub fn standard_error(&self) -> DVec3 {
-        if self.n < 2 {
-            return DVec3::INFINITY;
-        }
-        let variance = self.variance() / f64::from(self.n);
-        DVec3::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt())
-    }
-}
+pub use save::Unreadable;
 
 /// The pixels of one tile.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tile {
     pub(crate) rect: Rect,
     pub(crate) pixels: Vec<Pixel>,
+    /// Samples that each of its pixels has been given.
+    pub(crate) next: u32,
+    /// Samples that each is to have before it is asked again how many it needs.
+    pub(crate) aim: u32,
+}
+
+impl Tile {
+    /// Samples that are missing, of all its pixels.
+    pub(crate) fn missing(&self) -> u64 {
+        u64::from(self.aim.saturating_sub(self.next)) * self.pixels.len() as u64
+    }
 }
 
 /// A picture in the making: pixels in tiles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// The whole picture's size.
     pub size: UVec2,
@@ -79,9 +56,18 @@ impl Film {
         let tile = |i: u32| {
             let min = window.min + UVec2::new(i % columns, i / columns) * TILE;
             let rect = Rect::new(min, UVec2::splat(TILE)).intersection(window);
-            Tile { rect, pixels: vec![Pixel::default(); rect.area()] }
+            Tile { rect, pixels: vec![Pixel::default(); rect.area()], next: 0, aim: 0 }
         };
         Self { size, window, tiles: (0..columns * rows).map(tile).collect(), columns }
+    }
+
+    /// Samples that have been given to pixels, those that were not finite among them.
+    pub fn samples(&self) -> u64 {
+        self.tiles.iter().map(|tile| u64::from(tile.next) * tile.pixels.len() as u64).sum()
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        self.columns as usize
     }
 
     pub(crate) fn tiles(&self) -> &[Tile] {
@@ -131,25 +117,6 @@ impl Film {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn mean_and_variance_survive_a_large_offset() {
-        let mut pixel = Pixel::default();
-        for i in 0..1000 {
-            pixel.push(DVec3::splat(1e9 + f64::from(i % 2)));
-        }
-        // Alternating 0 and 1: variance n/(n−1)/4; cancellation costs 1e9·2⁻⁵² of one.
-        assert!((pixel.variance().x - 0.25 * 1000.0 / 999.0).abs() < 1e-6);
-        assert!((pixel.mean.y - 1e9 - 0.5).abs() < 1e-6);
-    }
-
-    #[test]
-    fn samples_that_are_not_finite_are_counted_and_left_out() {
-        let mut pixel = Pixel::default();
-        pixel.push(DVec3::new(1.0, f64::NAN, 0.0));
-        pixel.push(DVec3::ONE);
-        assert_eq!((pixel.n, pixel.bad, pixel.mean), (1, 1, DVec3::ONE));
-    }
 
     #[test]
     fn pixels_without_samples_do_not_darken_the_mean() {

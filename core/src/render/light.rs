@@ -10,7 +10,8 @@ use luxel_sdk::sampling::hash_combine;
 
 use super::Stop;
 use super::arrival::sight;
-use super::tile::{Jobs, Worker, moment};
+use super::jobs::Jobs;
+use super::tile::{Worker, moment};
 use crate::cast::index;
 use crate::object::ColorMode;
 use crate::stage::{EmissionNumbers, Emitted, Emitters};

@@ -1,6 +1,9 @@
 //! Passes over the picture's tiles, on several threads, with progress and cancellation.
 
 mod arrival;
+mod develop;
+mod goal;
+mod jobs;
 mod lattice;
 mod light;
 mod path;
@@ -12,20 +15,26 @@ mod watched;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Instant;
 
 use glam::UVec2;
 use luxel_sdk::kind::Wants;
 use rayon::prelude::*;
 
+use self::goal::Plan;
 use self::lattice::Lattice;
-use crate::film::{Film, Rect};
+use crate::film::{Film, Rect, Tile};
 use crate::stage::Stage;
+
+pub use self::goal::Goal;
 
 /// What is asked of a render beyond the scene.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Samples per pixel instead of the sampler's.
+    /// Samples per pixel instead of the sampler's; with a goal, the most of them.
     pub spp: Option<u32>,
+    /// How good the picture is to be, instead of a number of samples.
+    pub goal: Goal,
     /// Seed instead of the sampler's.
     pub seed: Option<u32>,
     /// The part of the picture that is rendered; all if absent.
@@ -44,9 +53,10 @@ pub struct Options {
 }
 
 impl Options {
-    /// Samples per pixel for this stage.
+    /// Samples per pixel for this stage; with a goal, the most of them.
     pub fn samples(&self, stage: &Stage) -> u32 {
-        self.spp.unwrap_or_else(|| stage.sampler.fixed().sampler().samples())
+        let of_scene = || stage.sampler.fixed().sampler().samples();
+        self.spp.unwrap_or_else(|| if self.goal.is_some() { goal::MOST } else { of_scene() })
     }
 
     /// The seed for this stage.
@@ -96,8 +106,10 @@ impl Control {
 pub struct Reached {
     /// Pixels from one that has a sample to the next; 1 once all have.
     pub step: u32,
-    /// Samples of those pixels.
+    /// Samples of those pixels; the most where they differ.
     pub samples: u32,
+    /// Samples that are missing, as far as one can tell.
+    pub left: u64,
 }
 
 /// Sees a picture grow: told after each pass, while nothing is measured.
@@ -143,6 +155,29 @@ pub fn render_seen(
 ) -> (Film, Outcome) {
     let size = stage.film.resolution;
     let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
+    let mut film = Film::new(size, window);
+    let outcome = render_on(&mut film, stage, options, control, look);
+    (film, outcome)
+}
+
+/// Whether a picture of the stage that was left unfinished can be gone on with: not where an
+/// integrator owns the picture, which knows what it has seen.
+pub fn can_go_on(stage: &Stage) -> bool {
+    stage.integrator.fixed().integrator().as_picture().is_none()
+}
+
+/// Goes on with a film, whose window is what is measured. With the same stage and seed the bits in
+/// the end are those of a render that was never left.
+///
+/// # Panics
+/// As `render`; if a film is gone on with that `can_go_on` denies.
+pub fn render_on(
+    film: &mut Film,
+    stage: &Stage,
+    options: &Options,
+    control: &Control,
+    look: &mut Look<'_>,
+) -> Outcome {
     let threads = options.threads.map_or(0, NonZeroUsize::get);
     let courteous = options.courteous;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -150,38 +185,42 @@ pub fn render_seen(
         .start_handler(move |_| give_way(courteous))
         .build()
         .expect("the system gives threads");
-    let mut film = Film::new(size, window);
     // No count of failures is known: the stage may have failed before, when it was asked for a pixel.
     let failures = AtomicU64::new(u64::MAX);
-    let stop = Stop { control, stage, failures: &failures, first: false };
-    let (spp, seed) = (options.samples(stage), options.seed(stage));
+    let end = options.goal.time.and_then(|time| Instant::now().checked_add(time));
+    let stop = Stop { control, stage, failures: &failures, first: false, end: None };
+    let plan = Plan::new(options.goal, options.samples(stage));
+    let seed = options.seed(stage);
     let turns = options.turns.unwrap_or_else(|| stage.is_for_turns());
     pool.install(|| {
         let integrator = stage.integrator.fixed().integrator();
         if let Some(owner) = integrator.as_picture() {
-            return picture::render(owner, stage, (spp, seed), (&mut film, look), stop);
+            assert!(film.samples() == 0, "a film that an integrator owns is begun anew");
+            return picture::render(owner, stage, (plan, seed), (film, look), (stop, end));
         }
         let worker = || {
             let output = integrator.output();
             tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output).in_turns(turns)
         };
-        for (samples, lattice) in passes(spp, options.coarse) {
-            let stop = Stop { first: lattice.step() == lattice::COARSEST, ..stop };
+        passes(film, &plan, options.coarse, &mut |film, lattice, reached| {
+            // Until each pixel has a sample no time is over.
+            let end = end.filter(|_| reached.samples > 1);
+            let stop = Stop { first: lattice.step() == lattice::COARSEST, end, ..stop };
             film.tiles_mut().par_iter_mut().for_each_init(worker, |worker, tile| {
-                worker.pass(tile, samples.clone(), lattice, stop);
+                worker.pass(tile, next(tile), lattice, stop);
             });
             if stop.is_asked() {
-                break;
+                return false;
             }
-            look(&film, Reached { step: lattice.step(), samples: samples.end });
-        }
+            look(film, reached);
+            true
+        });
     });
-    let outcome = match (stop.is_failure(), stop.is_asked()) {
+    match (stop.is_failure(), stop.is_asked()) {
         (true, _) => Outcome::Failed,
         (_, true) => Outcome::Cancelled,
         _ => Outcome::Complete,
-    };
-    (film, outcome)
+    }
 }
 
 /// Lets other threads of the machine go first: a third of the share of those that do not.
@@ -200,17 +239,40 @@ fn give_way(_: bool) {}
 #[cfg(target_os = "linux")]
 const COURTESY: i32 = 5;
 
-/// The samples and the pixels of each pass. Passes grow: a first picture comes soon, later ones cost
-/// little to gather.
-fn passes(spp: u32, coarse: bool) -> impl Iterator<Item = (Range<u32>, Lattice)> {
-    let steps = Lattice::steps(coarse).into_iter().filter(move |_| spp > 0);
-    let first = steps.map(|lattice| (0..1, lattice));
-    let after = move |done: &Range<u32>| {
-        let next = done.end..spp.min(done.end.saturating_add(done.end.min(PASS)));
-        (!next.is_empty()).then_some(next)
-    };
-    let later = std::iter::successors(after(&(0..1)), after).map(|samples| (samples, Lattice::All));
-    first.chain(later)
+/// The samples that a tile gets in the next pass. Passes grow: a first picture comes soon, later ones
+/// cost little to gather.
+fn next(tile: &Tile) -> Range<u32> {
+    let done = tile.next;
+    done..tile.aim.min(done.saturating_add(done.clamp(1, PASS)))
+}
+
+/// Passes over a film until no tile needs more, or until one says false; each is told which pixels it
+/// is for and what is reached after it.
+fn passes(
+    film: &mut Film,
+    plan: &Plan,
+    coarse: bool,
+    pass: &mut dyn FnMut(&mut Film, Lattice, Reached) -> bool,
+) {
+    while let Some(beyond) = plan.aim(film) {
+        while film.tiles().iter().any(|tile| tile.missing() > 0) {
+            let is_first = film.samples() == 0;
+            for lattice in Lattice::steps(coarse && is_first) {
+                let ends = film.tiles().iter().map(|tile| next(tile).end);
+                let left = |tile: &Tile| {
+                    u64::from(tile.aim.saturating_sub(next(tile).end)) * tile.pixels.len() as u64
+                };
+                let reached = Reached {
+                    step: lattice.step(),
+                    samples: ends.max().unwrap_or(0),
+                    left: beyond + film.tiles().iter().map(left).sum::<u64>(),
+                };
+                if !pass(film, lattice, reached) {
+                    return;
+                }
+            }
+        }
+    }
 }
 
 /// Whether to go on: polled between rounds.
@@ -222,6 +284,8 @@ struct Stop<'a> {
     failures: &'a AtomicU64,
     /// Whether there is nothing to be seen yet that soon will be.
     first: bool,
+    /// When the time is over.
+    end: Option<Instant>,
 }
 
 impl Stop<'_> {
@@ -240,7 +304,11 @@ impl Stop<'_> {
 
     fn is_asked(self) -> bool {
         let superseded = self.control.is_superseded() && !self.first;
-        self.control.is_cancelled() || superseded || self.is_failure()
+        self.control.is_cancelled() || superseded || self.is_late() || self.is_failure()
+    }
+
+    fn is_late(self) -> bool {
+        self.end.is_some_and(|end| Instant::now() >= end)
     }
 }
 
@@ -270,14 +338,27 @@ mod tests {
 
     #[test]
     fn passes_are_each_sample_of_each_pixel_once() {
-        for spp in [0, 1, 2, 3, 17, 100] {
-            let all: Vec<_> = passes(spp, false).flat_map(|(samples, _)| samples).collect();
-            assert_eq!(all, (0..spp).collect::<Vec<_>>());
-            let coarse = passes(spp, true).filter(|(samples, _)| samples.start == 0);
-            assert_eq!(coarse.count(), if spp == 0 { 0 } else { 4 });
+        for (spp, coarse) in [0, 1, 2, 3, 17, 100].into_iter().flat_map(|n| [(n, false), (n, true)])
+        {
+            let size = UVec2::new(20, 3);
+            let mut film = Film::new(size, Rect::new(UVec2::ZERO, size));
+            let (mut steps, mut longest) = (vec![], 0);
+            let plan = Plan::new(Goal::default(), spp);
+            passes(&mut film, &plan, coarse, &mut |film, lattice, reached| {
+                for tile in film.tiles_mut() {
+                    let range = next(tile);
+                    longest = longest.max(range.len());
+                    assert_eq!((range.start, range.end), (tile.next, reached.samples));
+                    tile.next = if lattice.step() == 1 { range.end } else { 0 };
+                }
+                steps.push(lattice.step());
+                assert_eq!(reached.left, u64::from(spp - reached.samples) * 60);
+                true
+            });
+            assert!(film.tiles().iter().all(|tile| tile.next == spp));
+            assert!(longest <= 16);
+            let coarser = steps.iter().filter(|step| **step > 1).count();
+            assert_eq!(coarser, if coarse && spp > 0 { 3 } else { 0 });
         }
-        assert!(
-            passes(u32::MAX, false).all(|(samples, _)| samples.len() <= 16 || samples.end < 64)
-        );
     }
 }

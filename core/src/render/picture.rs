@@ -1,6 +1,7 @@
 //! What the host does for an integrator that owns the whole picture.
 
 use std::cell::{Cell, OnceCell, RefCell};
+use std::time::Instant;
 
 use glam::DVec3;
 use luxel_sdk::kind::{
@@ -9,6 +10,7 @@ use luxel_sdk::kind::{
 use luxel_sdk::num::Ray;
 use rayon::prelude::*;
 
+use super::goal::Plan;
 use super::lattice::Lattice;
 use super::light::{Bundle, Splat};
 use super::tile::{StageHost, Worker};
@@ -28,19 +30,20 @@ const RAYS: usize = 256;
 pub(super) fn render(
     owner: &dyn PictureIntegrator,
     stage: &Stage,
-    (samples, seed): (u32, u32),
+    (plan, seed): (Plan, u32),
     (film, look): (&mut Film, &mut Look<'_>),
-    stop: Stop<'_>,
+    (stop, end): (Stop<'_>, Option<Instant>),
 ) {
     let most = Wants(owner.wants().0 & (FROM_CAMERA.0 | Wants::SIGHT.0));
     let (window, output) = (film.window, owner.output());
     let sum = vec![DVec3::ZERO; window.area()];
-    let pass = Pass { done: 0, broken: false, sum };
+    let pass = Pass { done: 0, broken: false, is_good: false, sum };
     owner.render(&PictureHost {
         stage,
         seed,
-        samples,
+        plan,
         stop,
+        end,
         most,
         output,
         window,
@@ -55,8 +58,10 @@ pub(super) fn render(
 struct PictureHost<'a> {
     stage: &'a Stage,
     seed: u32,
-    samples: u32,
+    plan: Plan,
     stop: Stop<'a>,
+    /// When the time is over.
+    end: Option<Instant>,
     /// What is prepared for paths.
     most: Wants,
     output: Output,
@@ -75,6 +80,8 @@ struct Pass {
     done: u32,
     /// Whether something of it is missing.
     broken: bool,
+    /// Whether the picture is as good as it is to be.
+    is_good: bool,
     /// Of every pixel of the window, row by row.
     sum: Vec<DVec3>,
 }
@@ -95,7 +102,13 @@ impl PictureHost<'_> {
     /// Whether the pass can still count.
     fn goes_on(&self) -> bool {
         let pass = self.pass.borrow();
-        !pass.broken && pass.done < self.samples && !self.stop.is_asked()
+        !pass.broken && pass.done < self.plan.most() && !pass.is_good && !self.stop().is_asked()
+    }
+
+    /// When to end: until each pixel has a sample no time is over.
+    fn stop(&self) -> Stop<'_> {
+        let end = self.end.filter(|_| self.pass.borrow().done > 0);
+        Stop { end, ..self.stop }
     }
 
     fn row(&self) -> usize {
@@ -109,7 +122,7 @@ impl PictureJob for PictureHost<'_> {
     }
 
     fn samples(&self) -> u32 {
-        self.samples
+        self.plan.most()
     }
 
     fn seed(&self) -> u32 {
@@ -117,7 +130,7 @@ impl PictureJob for PictureHost<'_> {
     }
 
     fn is_cancelled(&self) -> bool {
-        self.stop.is_asked()
+        self.pass.borrow().is_good || self.stop().is_asked()
     }
 
     fn trace_n(&self, rays: &[Ray], out: &mut [Arrival]) {
@@ -145,7 +158,7 @@ impl PictureJob for PictureHost<'_> {
             return;
         }
         let paths = Watched(paths);
-        let (stage, seed, stop, output) = (self.stage, self.seed, self.stop, self.output);
+        let (stage, seed, stop, output) = (self.stage, self.seed, self.stop(), self.output);
         let (most, pass) = (Wants(self.most.0 & FROM_CAMERA.0), self.pass.borrow().done);
         let rects: Vec<Rect> = self.film.borrow().tiles().iter().map(|tile| tile.rect).collect();
         let found: Vec<Option<Vec<DVec3>>> = rects
@@ -176,7 +189,7 @@ impl PictureJob for PictureHost<'_> {
             return;
         }
         let paths = Watched(paths);
-        let (stage, seed, stop, output) = (self.stage, self.seed, self.stop, self.output);
+        let (stage, seed, stop, output) = (self.stage, self.seed, self.stop(), self.output);
         let (most, call) = (self.most, self.calls.get());
         self.calls.set(call.wrapping_add(1));
         let emitters = self.emitters.get_or_init(|| stage.opening().emitters());
@@ -210,16 +223,21 @@ impl PictureJob for PictureHost<'_> {
             return;
         }
         let mut pass = self.pass.borrow_mut();
+        pass.done += 1;
         for tile in self.film.borrow_mut().tiles_mut() {
+            tile.next = pass.done;
             for (at, estimate) in tile.rect.points().zip(&mut tile.pixels) {
                 let at = at - self.window.min;
                 estimate.push(pass.sum[at.y as usize * self.row() + at.x as usize]);
             }
         }
         pass.sum.fill(DVec3::ZERO);
-        pass.done += 1;
-        self.stop.control.add(self.window.area() as u64);
-        (self.look.borrow_mut())(&self.film.borrow(), Reached { step: 1, samples: pass.done });
+        pass.is_good = self.plan.is_met(&self.film.borrow(), pass.done);
+        let area = self.window.area() as u64;
+        self.stop.control.add(area);
+        let left = if pass.is_good { 0 } else { u64::from(self.plan.most() - pass.done) * area };
+        let reached = Reached { step: 1, samples: pass.done, left };
+        (self.look.borrow_mut())(&self.film.borrow(), reached);
     }
 }
 
@@ -245,7 +263,8 @@ mod tests {
     fn splats_outside_the_window_are_lost() {
         use glam::UVec2;
         let window = Rect::new(UVec2::new(1, 2), UVec2::new(2, 1));
-        let mut pass = Pass { done: 0, broken: false, sum: vec![DVec3::ZERO; window.area()] };
+        let sum = vec![DVec3::ZERO; window.area()];
+        let mut pass = Pass { done: 0, broken: false, is_good: false, sum };
         let splats: Vec<_> = (0..20).map(|pixel| Splat { pixel, rgb: DVec3::ONE }).collect();
         pass.add(&splats, 0.5, 4, window);
         pass.add(&[Splat { pixel: u32::MAX - 1, rgb: DVec3::ONE }], 0.5, 4, window);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::{DVec3, UVec2};
-use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
+use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
     Arrival, Erased, Host, Integrator, Job, Lane, Onward, Output, Requests, Round, SampleAt,
     Sampler, Samples, Shadow, Wants,
@@ -12,8 +12,10 @@ use luxel_sdk::num::{Ray, offset_origin};
 use luxel_sdk::sampling::hash_combine;
 
 use super::arrival::Shader;
+use super::develop::Develop;
+use super::jobs::Jobs;
 use super::lattice::Lattice;
-use super::light::{Bundle, Splat};
+use super::light::Splat;
 use super::path::Path;
 use super::{Stop, shadow};
 use crate::accel::{Processor, Work};
@@ -110,8 +112,8 @@ impl<'s> Worker<'s> {
         lattice: Lattice,
         stop: Stop<'_>,
     ) {
-        let n = range.len();
-        if !self.samples(tile.rect, range, lattice, stop) {
+        let (n, end) = (range.len(), range.end);
+        if n == 0 || !self.samples(tile.rect, range, lattice, stop) {
             return;
         }
         let n_pixels = self.chosen.len();
@@ -120,6 +122,9 @@ impl<'s> Worker<'s> {
             for sample in 0..n {
                 estimate.push(self.results[sample * n_pixels + i]);
             }
+        }
+        if lattice.step() == 1 {
+            tile.next = end;
         }
         stop.control.add((n_pixels * n) as u64);
     }
@@ -427,63 +432,6 @@ impl Work for Fly<'_, '_> {
 pub(super) fn moment<'s>(stage: &'s Stage, samples: &mut Samples<'_>) -> Moment<'s> {
     let u = if stage.features.motion { samples.next_1d() } else { 0.0 };
     stage.at(stage.time_of(u))
-}
-
-/// What a worker is to do.
-pub(super) enum Jobs<'a> {
-    /// The samples of one pass over pixels of a rectangle: sample by sample, each over all pixels.
-    Pixels {
-        /// Upper left pixel.
-        origin: UVec2,
-        width: u32,
-        /// Row by row.
-        pixels: &'a [u32],
-        range: Range<u32>,
-    },
-    /// Paths from lights.
-    Lights(Bundle<'a>),
-}
-
-impl Jobs<'_> {
-    fn len(&self) -> usize {
-        match self {
-            Self::Pixels { pixels, range, .. } => pixels.len() * range.len(),
-            Self::Lights(bundle) => bundle.paths.len(),
-        }
-    }
-
-    /// The pixel and the index of its sample.
-    fn at(&self, job: usize) -> (UVec2, u32) {
-        let Self::Pixels { origin, width, pixels, range } = self else { return (UVec2::ZERO, 0) };
-        let (sample, pixel) = (job / pixels.len(), pixels[job % pixels.len()]);
-        let offset = UVec2::new(pixel % width, pixel / width);
-        (*origin + offset, range.start + cast::index(sample))
-    }
-}
-
-/// From lanes to linear sRGB.
-struct Develop {
-    spectral: bool,
-    observer: Observer,
-    from_xyz: glam::DMat3,
-}
-
-impl Develop {
-    fn new(stage: &Stage, output: Output) -> Self {
-        Self {
-            spectral: stage.mode == ColorMode::Spectral && output == Output::Value,
-            observer: stage.film.observer,
-            from_xyz: RgbSpace::LinearSrgb.from_xyz(),
-        }
-    }
-
-    fn sample(&self, l: Spectrum, lambda: &Wavelengths) -> DVec3 {
-        if self.spectral {
-            self.from_xyz * to_xyz(self.observer, l, lambda)
-        } else {
-            l.rgb().as_dvec3()
-        }
-    }
 }
 
 /// What an integrator may ask the host while a path arrives.

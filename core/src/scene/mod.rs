@@ -7,6 +7,7 @@
 mod color;
 mod conform;
 mod diff;
+mod expect;
 mod pose;
 mod print;
 mod value;
@@ -25,6 +26,7 @@ pub use conform::{
     DefaultUnits, Given, Misfit, conform, describe, number_words, range_words, wanted,
 };
 pub use diff::{Difference, How, called, diff};
+pub use expect::{Area, Claim, Expectation, Expected};
 pub use pose::{Key, Pose, Step};
 pub use print::print;
 pub use value::{Hash, Value};
@@ -132,6 +134,8 @@ pub struct Scene {
     pub filter: Option<NodeId>,
     /// What fills the space that no shape encloses.
     pub medium: Option<NodeId>,
+    /// What its file says of its picture. Nothing that is measured depends on it, nor any hash.
+    pub expectations: Vec<Expectation>,
     /// Of each node the hash without what every node of its kind may have.
     own: Vec<Hash>,
 }

@@ -41,6 +41,9 @@ pub fn print(scene: &Scene) -> String {
             out.push('\n');
         }
     }
+    for expectation in &scene.expectations {
+        let _ = writeln!(out, "expect {expectation}");
+    }
     out
 }
 

@@ -90,6 +90,7 @@ impl Evaluator<'_> {
                 self.set(path, found, value.span, env);
             }
             StmtNode::Assert { cond, message } => self.assert(cond, message, env),
+            StmtNode::Expect(said) => self.expectation(said, body.place, env),
             // The file's units were read before its first statement.
             StmtNode::Units(_) => {}
             StmtNode::Broken { defines } => {

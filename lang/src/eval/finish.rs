@@ -18,6 +18,7 @@ impl Evaluator<'_> {
                     .help(format!("known are {}", known.join(", "))),
             );
         }
+        self.expectations_fit();
         let errors = self.sink.errors();
         let scene = (errors == 0 && !self.damaged).then(|| {
             self.scene.root = self.open_groups.pop().unwrap_or_default().group;
@@ -58,6 +59,7 @@ fn compact(old: &Scene) -> Scene {
     let mut new = compactor.new;
     [new.camera, new.film, new.integrator, new.sampler, new.filter, new.medium] = slots;
     new.camera_pose = old.camera_pose.clone();
+    new.expectations = old.expectations.clone();
     new.root = root;
     new
 }

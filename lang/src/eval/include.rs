@@ -165,20 +165,25 @@ impl Evaluator<'_> {
         let bytes = match self.files.read(&path) {
             Ok(bytes) => bytes,
             Err(error) => {
-                let code = match error {
-                    FileError::Outside => "E0108",
-                    FileError::TooLarge(_) => "E0504",
-                    _ => "E0107",
-                };
-                let message = format!("\"{}\": {error}", name.text);
-                let found = Diagnostic::error(code, name.span, message);
-                self.tell(found.help(format!("looked for {}", path.display())));
+                self.unreadable(name, &path, &error);
                 return None;
             }
         };
         let read = self.read_bytes(&path, &bytes, Some(name.span))?;
         self.read.insert(canonical.clone(), read.clone());
         Some((path, canonical, read))
+    }
+
+    /// Tells that a scene's file cannot be read.
+    pub(super) fn unreadable(&mut self, name: &Name, path: &Path, error: &FileError) {
+        let code = match error {
+            FileError::Outside => "E0108",
+            FileError::TooLarge(_) => "E0504",
+            _ => "E0107",
+        };
+        let message = format!("\"{}\": {error}", name.text);
+        let found = Diagnostic::error(code, name.span, message);
+        self.tell(found.help(format!("looked for {}", path.display())));
     }
 
     fn cycle(&mut self, at: usize, name: &Name, canonical: &Path) {

@@ -10,6 +10,7 @@ mod elsewhere;
 mod emit;
 mod env;
 mod exec;
+mod expect;
 mod expr;
 mod finish;
 mod given;

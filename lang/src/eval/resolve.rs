@@ -11,7 +11,7 @@ use luxel_sdk::params::Unit;
 use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
-    Comp, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
+    Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
 };
 
 /// Tells every name that is unknown, used too early or defined twice.
@@ -148,6 +148,7 @@ impl Resolver<'_> {
             }
             StmtNode::Set { value, .. } => self.expr(value),
             StmtNode::Assert { cond, .. } => self.expr(cond),
+            StmtNode::Expect(said) => self.expectation(said),
             StmtNode::Units(_) | StmtNode::Use { .. } => {}
             StmtNode::Field(field) => self.expr(&field.value),
             StmtNode::Object(object) => {
@@ -168,6 +169,16 @@ impl Resolver<'_> {
         if !stmt.is_off() {
             self.define(name);
         }
+    }
+
+    fn expectation(&mut self, said: &Expect) {
+        for arg in said.at.iter().flat_map(|(_, args)| args) {
+            self.expr(&arg.value);
+        }
+        for value in &said.values {
+            self.expr(value);
+        }
+        self.fields(&said.given);
     }
 
     /// Two objects of a block must not share a label.
@@ -442,6 +453,11 @@ fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
                 if let Some(block) = body {
                     mention_stmts(&block.stmts, out);
                 }
+            }
+            StmtNode::Expect(said) => {
+                let at = said.at.iter().flat_map(|(_, args)| args).map(|arg| &arg.value);
+                let given = said.given.iter().map(|field| &field.value);
+                at.chain(&said.values).chain(given).for_each(|value| mention(value, out));
             }
             StmtNode::Field(field) => mention(&field.value, out),
             StmtNode::Object(object) => mention_stmts(&object.body.stmts, out),

@@ -8,8 +8,8 @@ use pest::iterators::Pair;
 
 use super::Rule;
 use super::tree::{
-    Block, Doc, Expr, ExprNode, Field, FnBody, FnDef, FnParam, ListTy, Name, Object, ParamDef,
-    Quoted, Stmt, StmtNode, Ty,
+    Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, ListTy, Name, Object,
+    ParamDef, Quoted, Stmt, StmtNode, Ty,
 };
 use crate::budgets::Budgets;
 use crate::sink::Sink;
@@ -23,9 +23,9 @@ pub(super) struct Builder<'a> {
 }
 
 /// Names that no definition may take.
-pub(super) const RESERVED: [&str; 18] = [
+pub(super) const RESERVED: [&str; 19] = [
     "let", "param", "fn", "for", "if", "else", "include", "import", "use", "place", "set",
-    "assert", "units", "with", "as", "in", "true", "false",
+    "assert", "expect", "units", "with", "as", "in", "true", "false",
 ];
 
 fn is_keyword(rule: Rule) -> bool {
@@ -45,12 +45,15 @@ fn is_keyword(rule: Rule) -> bool {
             | Rule::kw_place
             | Rule::kw_set
             | Rule::kw_assert
+            | Rule::kw_expect
             | Rule::kw_units
             | Rule::kw_with
+            | Rule::kw_where
             | Rule::kw_as
             | Rule::kw_in
             | Rule::eq
             | Rule::colon
+            | Rule::pm
     )
 }
 
@@ -169,6 +172,7 @@ impl Builder<'_> {
                 let cond = self.expr(take(&mut parts));
                 StmtNode::Assert { cond, message: self.string(take(&mut parts)) }
             }
+            Rule::expect_stmt => StmtNode::Expect(Arc::new(self.expectation(&mut parts))),
             Rule::unit_stmt => StmtNode::Units(self.record(take(&mut parts))),
             _ => {
                 let callee = take(&mut parts);
@@ -178,6 +182,20 @@ impl Builder<'_> {
                 StmtNode::Call(self.call(callee, call))
             }
         }
+    }
+
+    fn expectation<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> Expect {
+        let what = self.name(&take(parts));
+        let mut out = Expect { what, at: None, path: None, values: vec![], given: vec![] };
+        for part in parts {
+            match part.as_rule() {
+                Rule::string => out.path = Some(self.string(part)),
+                Rule::call => out.at = Some((self.span(&part), self.args(part))),
+                Rule::record => out.given = self.record(part),
+                _ => out.values.push(self.expr(part)),
+            }
+        }
+        out
     }
 
     fn place<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> StmtNode {

@@ -210,7 +210,7 @@ impl<'a> Around<'a> {
                 ")" | "]" | "}" => depth = depth.saturating_sub(1),
                 _ => {}
             }
-            depth == 0 && token.first_on_line && RESERVED[..12].contains(&token.text)
+            depth == 0 && token.first_on_line && RESERVED[..13].contains(&token.text)
         })
     }
 

@@ -87,8 +87,12 @@ impl Builder<'_> {
     /// A call of what stands before.
     pub(super) fn call(&mut self, callee: Expr, pair: Pair<'_, Rule>) -> Expr {
         let span = callee.span.to(self.span(&pair));
-        let args = pair.into_inner().map(|arg| self.arg(arg)).collect();
-        Expr { span, node: ExprNode::Call { callee: Box::new(callee), args } }
+        Expr { span, node: ExprNode::Call { callee: Box::new(callee), args: self.args(pair) } }
+    }
+
+    /// What stands between the brackets of a call.
+    pub(super) fn args(&mut self, pair: Pair<'_, Rule>) -> Vec<Arg> {
+        pair.into_inner().map(|arg| self.arg(arg)).collect()
     }
 
     fn arg(&mut self, pair: Pair<'_, Rule>) -> Arg {

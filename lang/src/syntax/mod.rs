@@ -14,7 +14,7 @@ mod tree;
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, parse, parse_expr};
 pub(crate) use tree::{
-    Arg, Block, Comp, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
+    Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
     ParamDef, Stmt, StmtNode, Ty,
 };
 

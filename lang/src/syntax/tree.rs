@@ -91,6 +91,7 @@ pub(crate) enum StmtNode {
         cond: Expr,
         message: Quoted,
     },
+    Expect(Arc<Expect>),
     Units(Vec<Field>),
     Field(Field),
     Object(Arc<Object>),
@@ -117,6 +118,18 @@ pub(crate) struct FnDef {
     pub(crate) name: Name,
     pub(crate) params: Vec<FnParam>,
     pub(crate) body: FnBody,
+}
+
+/// `expect what (at) = value ± tolerance where { given }` or `expect what "path"`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Expect {
+    pub(crate) what: Name,
+    /// What stands between round brackets, and where they stand.
+    pub(crate) at: Option<(Span, Vec<Arg>)>,
+    pub(crate) path: Option<Quoted>,
+    /// The value and, perhaps, its tolerance; neither where a path stands.
+    pub(crate) values: Vec<Expr>,
+    pub(crate) given: Vec<Field>,
 }
 
 /// A parameter of a function.

@@ -14,12 +14,13 @@ use luxel_lang::{Settings, load};
 
 use crate::registry::registry;
 
-const CASES: [&str; 5] = [
+const CASES: [&str; 6] = [
     include_str!("../cases/syntax.txt"),
     include_str!("../cases/names.txt"),
     include_str!("../cases/units.txt"),
     include_str!("../cases/schema.txt"),
     include_str!("../cases/plugins.txt"),
+    include_str!("../cases/expect.txt"),
 ];
 
 /// What `CAMERA` in a case stands for.

@@ -98,6 +98,39 @@ group { transform = [move((0, 1, 0) m)]
 }
 
 #[test]
+fn expectations_print_as_they_are_said_and_change_no_hash() {
+    let head = "param rho: float = 0.5\nparam away: length = 2 m\n";
+    let said = "expect mean = 1 / (1 - rho) +- 1e-3 * 2
+        expect pixel (3, 4) = (1, 2, 0.5)
+        expect region (1, 2, 3, 4) = rgb.linear_srgb(1, 0, 0) ± 0.1
+        expect same_as \"cornell.scene\"
+          where { rho = 0.9, away = 30 cm }
+        for r in [0.1, 0.2] { expect mean = 1 - rho where { rho = r } }";
+    let printed = [
+        "expect mean = 2 ± 0.002",
+        "expect pixel (3, 4) = (1, 2, 0.5)",
+        "expect region (1, 2, 3, 4) = (1, 0, 0) ± 0.1",
+        "expect same_as \"cornell.scene\" where { rho = 0.9, away = 0.3 m }",
+        "expect mean = 0.5 where { rho = 0.1 }",
+        "expect mean = 0.5 where { rho = 0.2 }",
+    ];
+    let (bare, told) = (scene(head, &[]), scene(&format!("{head}{said}"), &[]));
+    let text = print(&told);
+    assert_eq!(text.strip_prefix(&print(&bare)).unwrap().lines().collect::<Vec<_>>(), printed);
+    assert_eq!((bare.hash(), bare.measured_hash()), (told.hash(), told.measured_hash()));
+}
+
+#[test]
+fn a_text_that_an_expectation_sets_is_read_as_it_was_said() {
+    let text = "param form: string = \"box\"
+        expect mean = 1 where { form = \"a \\\"b\\\" \\\\ \\n\" }
+        shape sphere \"x\" { center = (0, 0, 0) m, radius = if form == \"a \\\"b\\\" \\\\ \\n\" { 1 m } else { 2 m } }";
+    let (name, value) = scene(text, &[]).expectations[0].given[0].clone();
+    assert_eq!(numbers(&scene(text, &[]), "radius"), [2.0]);
+    assert_eq!(numbers(&scene(text, &[(&*name, &*value)]), "radius"), [1.0]);
+}
+
+#[test]
 fn set_changes_labelled_objects_and_off_takes_them_out() {
     let text = "shape sphere \"a\" { radius = 1 m }\n@off shape sphere \"b\" { radius = 2 m }
 set a.radius = 3 m\nset b.radius = 4 m\nset a.radius = 5 m";

@@ -1,7 +1,5 @@
 //! Truths about single functions and objects, through the same doors as everyone's.
 
-use std::path::Path;
-
 use glam::{DVec3, UVec2, Vec3};
 use luxel_core::files::MemoryFiles;
 use luxel_core::object::{Scratch, Site};
@@ -12,11 +10,14 @@ use luxel_sdk::color::{
 use luxel_sdk::kind::{Phase, Raster};
 use luxel_sdk::scattering::{conductor_reflectance, dielectric_reflectance, refract};
 
-use super::Row;
-use crate::load::stage_of;
+use super::bench::Bench;
+use crate::exit::Failure;
+use crate::verify::row::Row;
 
-pub(super) fn rows() -> Vec<Row> {
-    [
+/// Every row.
+pub(super) fn rows(bench: &Bench<'_>) -> Result<Vec<Row>, Failure> {
+    let stage = stage(bench)?;
+    Ok([
         snell(),
         dielectric(),
         conductor(),
@@ -25,10 +26,10 @@ pub(super) fn rows() -> Vec<Row> {
         planckian(),
         photometry(),
         transfer(),
-        pinhole(),
-        phase(),
+        pinhole(&stage),
+        phase(&stage),
     ]
-    .concat()
+    .concat())
 }
 
 fn direction(degrees: f64) -> Vec3 {
@@ -39,7 +40,7 @@ fn direction(degrees: f64) -> Vec3 {
 fn snell() -> Vec<Row> {
     let cases = [(10.0, 6.647777092828614), (45.0, 28.125505702055705), (80.0, 41.03641052520335)];
     let row = |(degrees, expected)| {
-        let wi = refract(direction(degrees), Vec3::Z, 1.5).unwrap().as_dvec3();
+        let wi = refract(direction(degrees), Vec3::Z, 1.5).expect("the glass is denser").as_dvec3();
         let measured = wi.truncate().length().atan2(-wi.z).to_degrees();
         Row::exact("snell", &format!("{degrees} deg"), (expected, measured), (1e-6, 0.0))
     };
@@ -77,7 +78,7 @@ fn conductor() -> Vec<Row> {
 }
 
 fn bk7() -> Vec<Row> {
-    let bk7 = glass("N-BK7").unwrap();
+    let bk7 = glass("N-BK7").expect("N-BK7 is known");
     let row = |case, expected, measured| {
         Row::exact("dispersion.bk7", case, (expected, measured), (1e-5, 0.0))
     };
@@ -90,8 +91,9 @@ fn bk7() -> Vec<Row> {
 }
 
 fn whites() -> Vec<Row> {
-    let d65 = illuminant("D65").unwrap().to_xyz(Observer::Cie1931);
-    let xy = |name: &str| xyz_to_xy(illuminant(name).unwrap().to_xyz(Observer::Cie1931));
+    let d65 = illuminant("D65").expect("D65 is known").to_xyz(Observer::Cie1931);
+    let xy =
+        |name: &str| xyz_to_xy(illuminant(name).expect("it is known").to_xyz(Observer::Cie1931));
     let row = |id: &str, case: &str, expected, measured, abs| {
         Row::exact(id, case, (expected, measured), (0.0, abs))
     };
@@ -140,7 +142,7 @@ fn planckian() -> Vec<Row> {
     ];
     let mut rows = vec![];
     for (kelvin, expected) in cases {
-        let xy = xyz_to_xy(blackbody(kelvin).unwrap().to_xyz(Observer::Cie1931));
+        let xy = xyz_to_xy(blackbody(kelvin).expect("it is hot").to_xyz(Observer::Cie1931));
         for (i, axis) in ["x", "y"].into_iter().enumerate() {
             let case = format!("{kelvin} K, {axis}");
             rows.push(Row::exact("colour.blackbody_xy", &case, (expected[i], xy[i]), (0.0, 2e-4)));
@@ -150,7 +152,7 @@ fn planckian() -> Vec<Row> {
 }
 
 /// The stage of a scene with a camera at the origin and a medium all around.
-fn stage() -> Stage {
+fn stage(bench: &Bench<'_>) -> Result<Stage, Failure> {
     let text = "scene 1
         camera perspective {
             look = look_at(from = (0, 0, 0) m, to = (0, 0, -1) m, up = (0, 1, 0)), fov = 60 deg
@@ -158,14 +160,13 @@ fn stage() -> Stage {
         film rgb { resolution = (1920, 1080) }
         medium homogeneous { sigma_t = 1 / (1 m), phase = phase henyey_greenstein { g = 0.7 } }";
     let files = MemoryFiles::default().with("unit.scene", text.as_bytes());
-    stage_of(Path::new("unit.scene"), &files, &[], None).unwrap()
+    bench.stage("unit.scene", &files, &[])
 }
 
-fn pinhole() -> Vec<Row> {
-    let stage = stage();
+fn pinhole(stage: &Stage) -> Vec<Row> {
     let raster = Raster { size: UVec2::new(1920, 1080) };
     let point = DVec3::new(1.0, 0.5, -4.0);
-    let p = stage.camera.fixed().camera().project(raster, point).unwrap();
+    let p = stage.camera.fixed().camera().project(raster, point).expect("the point is seen");
     let row = |case, expected, measured| {
         Row::exact("camera.pinhole", case, (expected, measured), (1e-6, 0.0))
     };
@@ -173,9 +174,8 @@ fn pinhole() -> Vec<Row> {
 }
 
 /// The value where light is turned by an angle: `wo` points back along the way it came.
-fn phase() -> Vec<Row> {
-    let stage = stage();
-    let outside = stage.outside.unwrap() as usize;
+fn phase(stage: &Stage) -> Vec<Row> {
+    let outside = stage.outside.expect("the scene has a medium") as usize;
     let scratch = Scratch::default();
     let palette = luxel_sdk::color::Palette::rgb();
     let site = Site { p: DVec3::ZERO, uv: glam::Vec2::ZERO, palette: &palette, color: None };

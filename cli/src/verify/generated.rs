@@ -1,9 +1,7 @@
 //! Parts of documents that a command writes, between comments that name them:
 //! `<!-- begin: NAME -->` and `<!-- end: NAME -->`, each on a line of its own.
 //!
-//! Shared by the tests and the benches, as a file that both take in.
-
-use std::path::Path;
+//! Shared with the tests and the benches, as a file that they take in.
 
 /// What stands between the comments of that name.
 ///
@@ -35,19 +33,4 @@ pub(crate) fn replaced(text: &str, name: &str, body: &str) -> Result<String, Str
     let from = old.as_ptr().addr() - text.as_ptr().addr();
     let (before, after) = (&text[..from], &text[from + old.len()..]);
     Ok(format!("{before}\n{}\n\n{after}", body.trim()))
-}
-
-/// Puts `body` between the comments of that name in a file: all of it or nothing, through a file
-/// beside it.
-///
-/// # Errors
-/// As `part`, and what the disk says, with the file's name.
-#[expect(clippy::disallowed_methods, reason = "a document of the project is written anew")]
-pub(crate) fn write(path: &Path, name: &str, body: &str) -> Result<(), String> {
-    let told = |message: String| format!("{}: {message}", path.display());
-    let text = std::fs::read_to_string(path).map_err(|error| told(error.to_string()))?;
-    let text = replaced(&text, name, body).map_err(told)?;
-    let beside = path.with_extension("part");
-    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    written.map_err(|error| told(error.to_string()))
 }

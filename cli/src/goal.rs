@@ -1,0 +1,75 @@
+//! Arguments that say how good a picture is to be.
+
+use std::time::Duration;
+
+use clap::Args;
+use luxel_core::render::Goal;
+
+/// Instead of a number of samples.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(crate) struct GoalArgs {
+    /// Go on until the standard error of every tile of 16 by 16 pixels is this small, as in 1%: root
+    /// mean square over its pixels, relative to their luminance or to a tenth of the picture's mean.
+    /// --spp is then the most samples of a pixel [default: 1048576]
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    error: Option<f64>,
+    /// Go on for this long, as in 30s or 5min; samples go where they lower the error most, or, with
+    /// --error, where that is not yet reached
+    #[arg(long, value_name = "DURATION", value_parser = duration)]
+    time: Option<Duration>,
+}
+
+impl GoalArgs {
+    pub(crate) fn goal(&self) -> Goal {
+        let Self { error, time } = *self;
+        Goal { error, time }
+    }
+}
+
+/// `1%` or `0.01`.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
+    let found = number.trim().parse().ok().map(|x: f64| x / unit);
+    let found = found.filter(|x| (1e-6..=1.0).contains(x));
+    found.ok_or_else(|| "expected a share from 0.0001% to 100%, as in 1% or 0.01".into())
+}
+
+/// `30s`, `5min`, `1.5h`; seconds without a unit.
+fn duration(text: &str) -> Result<Duration, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match &text[digits.len()..] {
+        "" | "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => f64::NAN,
+    };
+    let seconds = digits.trim().parse().ok().map(|x: f64| x * unit);
+    let found = seconds.filter(|s| (1e-3..=MOST_SECONDS).contains(s));
+    let told = || "expected a length of time, as in 30s, 5min or 1.5h".into();
+    found.map(Duration::from_secs_f64).ok_or_else(told)
+}
+
+/// More than a year is no limit.
+const MOST_SECONDS: f64 = 4e7;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_and_times_are_read_or_refused() {
+        assert_eq!(share("1%"), Ok(0.01));
+        assert_eq!(share("2.5 %"), Ok(0.025));
+        assert_eq!(share("0.02"), Ok(0.02));
+        for bad in ["", "%", "0", "-1%", "101%", "NaN", "one"] {
+            assert!(share(bad).is_err(), "{bad}");
+        }
+        assert_eq!(duration("30s"), Ok(Duration::from_secs(30)));
+        assert_eq!(duration("1.5h"), Ok(Duration::from_secs(5400)));
+        assert_eq!(duration("2min"), Ok(Duration::from_secs(120)));
+        assert_eq!(duration("7"), Ok(Duration::from_secs(7)));
+        for bad in ["", "s", "0", "-3s", "3 weeks", "1e9h", "NaN"] {
+            assert!(duration(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! `luxel verify`: whether the renderer is right, and whether what is said of scenes is so.
+
+mod generated;
+#[cfg(test)]
+mod generated_tests;
+mod mean;
+mod published;
+mod row;
+mod run;
+mod said;
+mod same;
+mod truths;
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use luxel_core::render::Options;
+
+use self::row::{Row, Verdict};
+use self::run::Run;
+use crate::args::{self, LoadArgs, PluginArgs};
+use crate::exit::{Exit, Failure};
+use crate::load;
+use crate::report::{self, Form, Stream};
+
+/// Test the renderer against mathematics, and scenes against what they say of their pictures
+///
+/// Without a scene, tests every closed-form truth that the program carries: pictures, and functions of
+/// light and colour. Of a scene, renders it as its own sampler says, and holds each `expect` against
+/// the picture. A value passes within four standard errors and its tolerance, unless the standard
+/// errors are so large that it could hardly have failed (NOISY). Exit code 0 if everything holds, 1 if
+/// something does not or a scene expects nothing. Ctrl-C ends early with what was tested and exit code 3.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "\
+Examples:
+  luxel verify
+  luxel verify --precision exact --only furnace
+  luxel verify --write docs/accuracy.md
+  luxel verify my.scene
+  luxel verify scenes/*.scene --spp 256 --json")]
+pub(crate) struct Args {
+    /// The scenes [default: the program's own truths]
+    files: Vec<PathBuf>,
+    /// Of the program's own truths, those alone whose name begins so
+    #[arg(long, value_name = "PREFIX", conflicts_with = "files")]
+    only: Option<String>,
+    /// Write the table of the program's own truths into a document, between the lines
+    /// `<!-- begin: truths -->` and `<!-- end: truths -->`
+    #[arg(long, value_name = "DOCUMENT", conflicts_with_all = ["files", "only", "precision"])]
+    #[arg(conflicts_with_all = ["spp", "seed"])]
+    write: Option<PathBuf>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    spp: Option<u32>,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// Threads [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = args::threads)]
+    threads: Option<NonZeroUsize>,
+    /// A JSON object per line: for each value what is expected, what was measured, and the verdict
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    load: LoadArgs,
+    #[command(flatten)]
+    plugins: PluginArgs,
+}
+
+impl Args {
+    fn form(&self) -> Form {
+        if self.json { Form::Json } else { Form::Text }
+    }
+}
+
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    if args.files.is_empty() && !(args.load.set.is_empty() && args.load.allow_path.is_empty()) {
+        let message = "--set and --allow-path are for a scene, and none is given";
+        return Err(Failure::new(Exit::Usage, message).help("luxel verify --help"));
+    }
+    args.write.as_deref().map_or(Ok(()), published::check)?;
+    let plugins = load::registry(&args.plugins)?;
+    plugins.notes.tell(args.form(), Stream::Error)?;
+    let Args { spp, seed, threads, .. } = *args;
+    let options = Options { spp, seed, threads, ..Options::default() };
+    let run = Run::new(plugins, options)?;
+    let mut rows = vec![];
+    let done = match args.files.as_slice() {
+        [] => own_truths(args, &run, &mut rows),
+        files => scenes(files, args, &run, &mut rows),
+    };
+    tell(args, &rows)?;
+    if let (Some(path), Ok(_)) = (&args.write, &done) {
+        published::write(path, &rows)?;
+    }
+    let holds = rows.iter().all(|row| row.verdict == Verdict::Holds);
+    Ok(if done? && holds { Exit::Fine } else { Exit::Input })
+}
+
+fn own_truths(args: &Args, run: &Run, rows: &mut Vec<Row>) -> Result<bool, Failure> {
+    let only = args.only.as_deref().unwrap_or_default();
+    truths::test(only, args.load.precision, run, rows)?;
+    if rows.is_empty() {
+        let message = format!("no truth has a name that begins with `{only}`");
+        return Err(Failure::new(Exit::Usage, message).help("`luxel verify` shows them all"));
+    }
+    Ok(true)
+}
+
+/// Whether every scene could be tested.
+fn scenes(files: &[PathBuf], args: &Args, run: &Run, rows: &mut Vec<Row>) -> Result<bool, Failure> {
+    let mut fine = true;
+    for file in files {
+        match said::test(file, &args.load, run, args.form(), rows) {
+            Ok(()) => {}
+            // One scene's mistake keeps no other from being tested.
+            Err(failure) if failure.exit == Exit::Input => {
+                report::failure(&failure);
+                fine = false;
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    Ok(fine)
+}
+
+fn tell(args: &Args, rows: &[Row]) -> Result<(), Failure> {
+    if args.json {
+        return rows.iter().try_for_each(|row| report::out(&format!("{}\n", row.json())));
+    }
+    if rows.is_empty() {
+        return Ok(());
+    }
+    let off = rows.iter().filter(|row| row.verdict != Verdict::Holds).count();
+    let verdict = match off {
+        0 => format!("all {} hold", rows.len()),
+        _ => format!("{off} of {} do not hold", rows.len()),
+    };
+    report::out(&format!("{}\n{verdict}\n", row::columns(rows)))
+}

@@ -1,0 +1,35 @@
+//! Closed-form truths: what the renderer measures against what mathematics says. The program carries
+//! them, so that whoever has it can tell whether it is right.
+
+mod bench;
+mod colour;
+mod list;
+mod scene;
+mod texts;
+mod unit;
+
+use luxel_core::accel::Precision;
+
+use self::bench::Bench;
+use super::row::Row;
+use super::run::Run;
+use crate::exit::Failure;
+
+/// Tests every truth whose name begins so; what is found is kept even if it ends early.
+///
+/// # Errors
+/// What `Run::film` says; a scene of this program that the classes at hand cannot make.
+pub(super) fn test(
+    only: &str,
+    precision: Option<Precision>,
+    run: &Run,
+    rows: &mut Vec<Row>,
+) -> Result<(), Failure> {
+    let bench = Bench::new(run, precision);
+    scene::test(only, &bench, rows)?;
+    if colour::ID.starts_with(only) {
+        colour::test(&bench, rows)?;
+    }
+    rows.extend(unit::rows(&bench)?.into_iter().filter(|row| row.id.starts_with(only)));
+    Ok(())
+}

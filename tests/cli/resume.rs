@@ -1,0 +1,69 @@
+//! Renders that are killed, left or bounded, and what is there afterwards.
+
+use std::time::Duration;
+
+use luxel_sdk::sampling::Rng;
+
+use super::program::{Folder, SCENE};
+
+/// Samples that take the program a second or two.
+const LONG: &str = "600";
+
+#[test]
+fn a_render_that_is_killed_twenty_times_goes_on_to_the_same_picture() {
+    let folder = Folder::new("kill").with("a.scene", SCENE);
+    let whole = folder.luxel(&["render", "a.scene", "--spp", LONG, "-o", "whole"]);
+    assert_eq!(whole.code, 0, "{whole:?}");
+    let mut rng = Rng::new(11);
+    let args =
+        ["render", "a.scene", "--spp", LONG, "-o", "left", "--resume", "--checkpoint", "0.02"];
+    let mut kept = 0;
+    for _ in 0..20 {
+        let running = folder.start(&args);
+        std::thread::sleep(Duration::from_millis(u64::from(rng.u32() % 250)));
+        // Killed, not asked: nothing can be said or saved any more.
+        drop(running);
+        kept += u32::from(folder.path("left.checkpoint").exists());
+    }
+    assert!(kept > 0, "none of them lived until its first checkpoint");
+    let last = folder.luxel(&args);
+    assert_eq!(last.code, 0, "{last:?}");
+    assert!(folder.read("left.exr") == folder.read("whole.exr"));
+    assert!(!folder.path("left.checkpoint").exists());
+}
+
+#[test]
+fn nothing_is_gone_on_with_that_is_of_another_picture() {
+    let folder = Folder::new("other").with("a.scene", SCENE);
+    // An error that cannot be reached leaves what it takes to go on.
+    let unreached = ["render", "a.scene", "--error", "0.0001%", "--spp", "64", "-o", "a", "--json"];
+    let done = folder.luxel(&unreached);
+    assert_eq!(done.code, 3, "{done:?}");
+    assert!(done.out.contains("\"complete\":false"), "{}", done.out);
+    let seed = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--seed", "9"]);
+    assert!(seed.code == 1 && seed.err.contains("it is of another seed"), "{seed:?}");
+    let size = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--size", "8x8"]);
+    assert!(size.code == 1 && size.err.contains("it is of another scene"), "{size:?}");
+    // A comment is no other scene, and more samples are more of the same.
+    folder.write("a.scene", &format!("{SCENE}// said later\n"));
+    let more = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--spp", "80", "--json"]);
+    assert_eq!(more.code, 0, "{more:?}");
+    assert!(more.out.contains("\"least_samples\":80"), "{}", more.out);
+    let anew = folder.luxel(&["render", "a.scene", "-o", "a", "--resume"]);
+    assert!(anew.code == 0 && anew.err.contains("begins anew"), "{anew:?}");
+}
+
+#[test]
+fn an_error_and_a_time_are_read_or_refused() {
+    let folder = Folder::new("goal").with("a.scene", SCENE);
+    let done = folder.luxel(&["render", "a.scene", "--error", "2%", "-o", "a"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    assert!(done.out.contains("every tile is within the 2.00 % asked for"), "{}", done.out);
+    let timed = folder.luxel(&["render", "a.scene", "--time", "0.05s", "-o", "a", "--json"]);
+    assert!(timed.code == 0 && timed.out.contains("rms_relative_error"), "{timed:?}");
+    for wrong in [["--error", "one"], ["--time", "3 weeks"], ["--checkpoint", "-1"]] {
+        let args = [&["render", "a.scene"][..], &wrong].concat();
+        let done = folder.luxel(&args);
+        assert!(done.code == 2 && done.err.contains("expected"), "{done:?}");
+    }
+}

@@ -181,18 +181,31 @@ impl Scene {
     /// Hash of everything that the scene shows: what stands where, and its settings. Labels, places
     /// in files and nodes that nothing uses do not count; nor do the contents of files by path.
     pub fn hash(&self) -> Hash {
-        value::hash_scene(self, self.film.map(|id| self.node(id).hash))
+        value::hash_scene(self, self.without(self.film, &[]), self.without(self.sampler, &[]))
     }
 
     /// The same without what decides only how a picture is shown and where it goes: equal where the
     /// measurement is.
     pub fn measured_hash(&self) -> Hash {
-        let film = self.film.map(|id| {
-            let mut film = self.node(id).clone();
-            film.params.retain(|argument| !SHOWN.contains(&argument.name));
-            value::hash_node(&film, |id| self.node(id).hash)
-        });
-        value::hash_scene(self, film)
+        value::hash_scene(self, self.without(self.film, &SHOWN), self.without(self.sampler, &[]))
+    }
+
+    /// The same without the number of samples: equal where one is measured by the first samples of the
+    /// other, if its sampler gives the same ones.
+    pub fn sampled_hash(&self) -> Hash {
+        let sampler = self.without(self.sampler, &["samples"]);
+        value::hash_scene(self, self.without(self.film, &SHOWN), sampler)
+    }
+
+    /// The hash of a setting without some of its parameters.
+    fn without(&self, setting: Option<NodeId>, names: &[&str]) -> Option<Hash> {
+        let node = self.node(setting?);
+        if !node.params.iter().any(|argument| names.contains(&argument.name)) {
+            return Some(node.hash);
+        }
+        let mut rest = node.clone();
+        rest.params.retain(|argument| !names.contains(&argument.name));
+        Some(value::hash_node(&rest, |id| self.node(id).hash))
     }
 
     /// Hash of a node without the parameters that the host adds to its kind: equal where the object

@@ -58,13 +58,13 @@ pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
 
 /// The hash of a scene: of what stands in its places, and of its settings, among them the film as it
 /// is given here.
-pub(super) fn hash_scene(scene: &Scene, film: Option<Hash>) -> Hash {
+pub(super) fn hash_scene(scene: &Scene, film: Option<Hash>, sampler: Option<Hash>) -> Hash {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&hash_group(scene, &scene.root, &group_hashes(scene)));
     hash_pose(&mut hasher, &scene.camera_pose);
-    let Scene { camera, integrator, sampler, filter, medium, .. } = scene;
+    let Scene { camera, integrator, filter, medium, .. } = scene;
     let of = |id: &Option<NodeId>| id.map(|id| scene.node(id).hash);
-    for setting in [of(camera), film, of(integrator), of(sampler), of(filter), of(medium)] {
+    for setting in [of(camera), film, of(integrator), sampler, of(filter), of(medium)] {
         hasher.update(&setting.unwrap_or([0; 32]));
     }
     *hasher.finalize().as_bytes()

@@ -59,7 +59,7 @@ fn compact(old: &Scene) -> Scene {
     let mut new = compactor.new;
     [new.camera, new.film, new.integrator, new.sampler, new.filter, new.medium] = slots;
     new.camera_pose = old.camera_pose.clone();
-    new.expectations = old.expectations.clone();
+    new.expectations.clone_from(&old.expectations);
     new.root = root;
     new
 }

@@ -25,6 +25,7 @@ use rayon::prelude::*;
 use self::goal::Plan;
 use self::lattice::Lattice;
 use crate::film::{Film, Rect, Tile};
+use crate::registry::dynamic::remote;
 use crate::stage::Stage;
 
 pub use self::goal::Goal;
@@ -166,6 +167,12 @@ pub fn render_seen(
 /// integrator owns the picture, which knows what it has seen.
 pub fn can_go_on(stage: &Stage) -> bool {
     stage.integrator.fixed().integrator().as_picture().is_none()
+}
+
+/// Whether a finished picture of the stage can be gone on with for more samples: not where the sampler
+/// is a library's, which may give others when it is asked for more.
+pub fn can_take_more(stage: &Stage) -> bool {
+    can_go_on(stage) && remote(stage.sampler.class()).is_none()
 }
 
 /// Goes on with a film, whose window is what is measured. With the same stage and seed the bits in

@@ -90,8 +90,8 @@ fn albedo_is_what_the_material_says_in_rgb_and_by_wavelength() {
 fn layers_change_no_bit_of_the_picture() {
     let with = film(&stage(SCENE, &[]));
     let without = film(&stage(SCENE, &[("layers", "false")]));
-    assert!(without.channels().is_empty() && without.layers.is_empty());
-    assert_eq!(with.layers, Layer::ALL);
+    assert!(without.channels().is_empty() && without.holds.is_empty());
+    assert_eq!(with.holds.layers, Layer::ALL);
     assert!(with.pixels().zip(without.pixels()).all(|(a, b)| a == b));
 }
 
@@ -106,4 +106,58 @@ fn layers_are_gone_on_with_too() {
     render_on(&mut film, &stage, &with(12), &Control::default(), &mut |_, _| {});
     assert_eq!(film, render(&stage, &with(12), &Control::default()).0);
     assert_eq!(film.size, UVec2::splat(33));
+}
+
+/// A sky and a sun, a lamp that is seen and sampled, another of the sun's group, a lamp of no group.
+const LAMPS: &str = "scene 1
+    camera perspective { look = look_at(from = (0, 1, 6) m, to = (0, 0.5, 0) m, up = (0, 1, 0)), fov = 50 deg }
+    film spectral { resolution = (40, 24) }
+    sampler sobol { samples = 32, seed = 2 }
+    light constant { spectrum = illuminant(\"D65\"), radiance = 0.3 W/m^2/sr, group = \"sky\" }
+    light sun { direction = (1, 2, 1), illuminance = 300 lx, group = \"warm\" }
+    light area { shape = shape sphere { center = (1, 1.5, 0) m, radius = 30 cm }, spectrum = blackbody(3000 K), radiance = 5 W/m^2/sr, group = \"warm\" }
+    light point { position = (-1, 2, 1) m, spectrum = blackbody(8000 K), intensity = 2 W/sr GROUP }
+    shape sphere { center = (-0.5, 0.5, 0) m, radius = 50 cm, material = material dielectric {} }
+    shape plane \"floor\" { material = material diffuse { reflectance = 0.6 } }";
+
+#[test]
+fn groups_of_lights_sum_to_the_picture() {
+    let film = film(&stage(&LAMPS.replace("GROUP", ", group = \"blue\""), &[]));
+    let groups: Vec<&str> = film.holds.groups.iter().map(|group| &**group).collect();
+    assert_eq!(groups, ["sky", "warm", "blue"]);
+    for (i, part) in ["R", "G", "B"].into_iter().enumerate() {
+        let parts: Vec<_> =
+            groups.iter().map(|group| values(&film, &format!("light.{group}.{part}"))).collect();
+        assert!(parts.iter().all(|values| values.iter().any(|v| v.abs() > 1e-3)), "one is black");
+        for (k, (at, pixel)) in film.pixels().enumerate() {
+            let sum: f64 = parts.iter().map(|values| values[k]).sum();
+            // Lanes are in single precision, and up to four times as large as what they come to.
+            let rounding = 64.0 * f64::from(f32::EPSILON) * (1.0 + pixel.mean.length());
+            assert!((sum - pixel.mean[i]).abs() < rounding, "{at} {part}: {sum} {}", pixel.mean[i]);
+        }
+    }
+}
+
+#[test]
+fn a_group_is_what_its_lights_alone_would_give() {
+    let all = film(&stage(&LAMPS.replace("GROUP", ""), &[]));
+    // The same scene, whose other lights are gone or black.
+    let lines = LAMPS.lines().filter(|line| !line.contains("sun") && !line.contains("GROUP"));
+    let dark = lines.collect::<Vec<_>>().join("\n").replace("radiance = 5", "radiance = 0");
+    let sky = film(&stage(&dark, &[]));
+    let of_group: f64 = values(&all, "light.sky.G").iter().sum::<f64>() / (40.0 * 24.0);
+    // A part is at most about as noisy as the whole.
+    let ((alone, error), (_, whole)) = (sky.mean(), all.mean());
+    let allowed = 4.0 * error.y.hypot(whole.y);
+    assert!((of_group - alone.y).abs() < allowed, "{of_group} {alone} ± {allowed}");
+    assert_eq!(all.holds.groups.len(), 2);
+}
+
+#[test]
+fn a_group_without_a_proper_name_is_told() {
+    let text = LAMPS.replace("GROUP", ", group = \"blue lamp\"");
+    let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+    let said = stage_of(Path::new("a.scene"), &files, &[], None).unwrap_err();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].code == "E0405" && said[0].message.contains("letters, digits"), "{said:?}");
 }

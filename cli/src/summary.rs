@@ -233,7 +233,7 @@ fn names(stage: &Stage, film: &Film) -> Value {
     let called = |id: &NodeId| stage.scene.nodes.get(id.0 as usize).map(called);
     let listed = |layer: Layer, nodes: &mut dyn Iterator<Item = &NodeId>| {
         let names: Vec<_> = nodes.take(MOST_NAMES).map(called).collect();
-        film.layers.contains(&layer).then(|| (layer.name().to_owned(), json!(names)))
+        film.holds.layers.contains(&layer).then(|| (layer.name().to_owned(), json!(names)))
     };
     let materials = listed(Layer::Material, &mut stage.material_nodes.iter());
     let shapes = &mut stage.placements.iter().map(|placement| &placement.node);

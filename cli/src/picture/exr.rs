@@ -39,7 +39,7 @@ pub(super) fn write(to: impl Write + Seek, film: &Film, notes: &Notes) -> io::Re
         } else {
             Plane::Floats(values.iter().map(|v| *v as f32).collect())
         };
-        (channel.name.to_owned(), plane)
+        (channel.name.into_owned(), plane)
     });
     let planes = [
         floats("R", &|pixel| pixel.mean.x),

@@ -1,4 +1,8 @@
-//! What else a picture may hold: what each pixel's paths met first, and what they cost.
+//! What else a picture may hold: what each pixel's paths met first, what they cost, and whose light they
+//! found.
+
+use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Something that is recorded beside colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,10 +27,10 @@ pub enum Layer {
 }
 
 /// One number of a layer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
     /// In the EXR.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// How samples become a pixel's.
     pub(crate) of: Of,
 }
@@ -50,11 +54,20 @@ pub(crate) enum Of {
 }
 
 const fn channel(name: &'static str, of: Of) -> Channel {
-    Channel { name, of }
+    Channel { name: Cow::Borrowed(name), of }
+}
+
+/// What a film holds beside colour.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Holds {
+    /// What paths met, in the order of `Layer::ALL`.
+    pub layers: Vec<Layer>,
+    /// Groups of lights, whose light is told apart, as linear sRGB.
+    pub groups: Vec<Arc<str>>,
 }
 
 /// How many of the samples met something: recorded with any layer, before all others.
-pub(crate) const COVERAGE: Channel = channel("coverage.A", Of::All);
+const COVERAGE: Channel = channel("coverage.A", Of::All);
 
 impl Layer {
     /// All of them, in the order of a film's.
@@ -123,16 +136,28 @@ impl Layer {
     }
 }
 
-/// The channels of some layers, coverage first; none of none.
-pub(crate) fn channels(layers: &[Layer]) -> Vec<Channel> {
-    let all = layers.iter().flat_map(|layer| layer.channels()).copied();
-    let coverage = (!layers.is_empty()).then_some(COVERAGE);
-    coverage.into_iter().chain(all).collect()
+impl Holds {
+    /// Whether there is nothing but colour.
+    pub fn is_empty(&self) -> bool {
+        self.layers.is_empty() && self.groups.is_empty()
+    }
+
+    /// The channels: coverage, those of the layers, those of the groups.
+    pub(crate) fn channels(&self) -> Vec<Channel> {
+        let layers = self.layers.iter().flat_map(|layer| layer.channels()).cloned();
+        let of_group = |group: &Arc<str>| {
+            let name = |part: &str| Cow::Owned(format!("light.{group}.{part}"));
+            ["R", "G", "B"].map(|part| Channel { name: name(part), of: Of::All })
+        };
+        let groups = self.groups.iter().flat_map(of_group);
+        let coverage = (!self.is_empty()).then_some(COVERAGE);
+        coverage.into_iter().chain(layers).chain(groups).collect()
+    }
 }
 
 /// A pixel's number, of the sum over `n` samples of which `met` met something.
-pub(crate) fn resolve(channel: Channel, sum: f64, (n, met): (f64, f64)) -> f64 {
-    match channel.of {
+pub(crate) fn resolve(of: Of, sum: f64, (n, met): (f64, f64)) -> f64 {
+    match of {
         Of::All if n > 0.0 => sum / n,
         Of::Met if met > 0.0 => sum / met,
         Of::First => sum,

@@ -13,8 +13,8 @@ use glam::{DVec3, UVec2};
 
 pub use errors::Errors;
 pub(crate) use errors::Scale;
-pub use layer::{Channel, Layer};
-pub(crate) use layer::{Of, channels};
+pub(crate) use layer::Of;
+pub use layer::{Channel, Holds, Layer};
 pub use pixel::{Pixel, degrees_of_freedom, half_width_95};
 pub use rect::Rect;
 pub use save::Unreadable;
@@ -47,7 +47,7 @@ pub struct Film {
     /// The part of it that is measured.
     pub window: Rect,
     /// What else it holds.
-    pub layers: Vec<Layer>,
+    pub holds: Holds,
     tiles: Vec<Tile>,
     columns: u32,
 }
@@ -58,12 +58,12 @@ pub(crate) const TILE: u32 = 16;
 impl Film {
     /// An empty film for the part `window` of a picture.
     pub fn new(size: UVec2, window: Rect) -> Self {
-        Self::with_layers(size, window, &[])
+        Self::holding(size, window, Holds::default())
     }
 
     /// The same that holds more than colour.
-    pub fn with_layers(size: UVec2, window: Rect, layers: &[Layer]) -> Self {
-        let n = channels(layers).len();
+    pub fn holding(size: UVec2, window: Rect, holds: Holds) -> Self {
+        let n = holds.channels().len();
         let window = window.intersection(Rect::new(UVec2::ZERO, size));
         let (columns, rows) = (window.size.x.div_ceil(TILE), window.size.y.div_ceil(TILE));
         let tile = |i: u32| {
@@ -73,7 +73,7 @@ impl Film {
             Tile { rect, pixels, layers: vec![0.0; rect.area() * n], next: 0, aim: 0 }
         };
         let tiles = (0..columns * rows).map(tile).collect();
-        Self { size, window, layers: layers.to_vec(), tiles, columns }
+        Self { size, window, holds, tiles, columns }
     }
 
     /// Samples that have been given to pixels, those that were not finite among them.
@@ -104,9 +104,9 @@ impl Film {
         &tile.pixels[(inside.y * tile.rect.size.x + inside.x) as usize]
     }
 
-    /// What the layers hold besides colour: a channel with its value at each pixel, row by row.
+    /// What it holds beside colour: a channel with its value at each pixel, row by row.
     pub fn channels(&self) -> Vec<(Channel, Vec<f64>)> {
-        let channels = channels(&self.layers);
+        let channels = self.holds.channels();
         let n = channels.len();
         let value = |i: usize, at: UVec2| {
             let from = at - self.window.min;
@@ -114,9 +114,10 @@ impl Film {
             let inside = at - tile.rect.min;
             let pixel = (inside.y * tile.rect.size.x + inside.x) as usize;
             let sums = &tile.layers[pixel * n..][..n];
-            layer::resolve(channels[i], sums[i], (f64::from(tile.next), sums[0]))
+            layer::resolve(channels[i].of, sums[i], (f64::from(tile.next), sums[0]))
         };
-        let one = |i: usize| (channels[i], self.window.points().map(|at| value(i, at)).collect());
+        let one =
+            |i: usize| (channels[i].clone(), self.window.points().map(|at| value(i, at)).collect());
         (0..n).map(one).collect()
     }
 

@@ -1,13 +1,14 @@
 //! A film as bytes, and back: to go on with it later, to the same bits.
 
 use std::io::{self, Write};
+use std::sync::Arc;
 
 use glam::{DVec3, UVec2};
 
-use super::{Film, Layer, Pixel, Rect};
+use super::{Film, Holds, Layer, Pixel, Rect};
 
 /// What every saved film begins with; the digit counts layouts.
-const MAGIC: &[u8; 8] = b"luxfilm2";
+const MAGIC: &[u8; 8] = b"luxfilm3";
 /// Bytes of a pixel.
 const PIXEL: usize = 8 + 7 * 24;
 
@@ -26,8 +27,13 @@ impl Film {
             to.write_all(&v.x.to_le_bytes())?;
             to.write_all(&v.y.to_le_bytes())?;
         }
-        let layers = Layer::ALL.map(|layer| u8::from(self.layers.contains(&layer)));
+        let layers = Layer::ALL.map(|layer| u8::from(self.holds.layers.contains(&layer)));
         to.write_all(&layers)?;
+        write_number(to, self.holds.groups.len())?;
+        for group in &self.holds.groups {
+            write_number(to, group.len())?;
+            to.write_all(group.as_bytes())?;
+        }
         for tile in &self.tiles {
             to.write_all(&tile.next.to_le_bytes())?;
             to.write_all(&tile.aim.to_le_bytes())?;
@@ -62,8 +68,9 @@ impl Film {
         }
         let given = from.take::<{ Layer::ALL.len() }>()?;
         let layers = Layer::ALL.into_iter().zip(given).filter(|(_, given)| *given != 0);
-        let layers: Vec<Layer> = layers.map(|(layer, _)| layer).collect();
-        let mut film = Self::with_layers(size, window, &layers);
+        let layers = layers.map(|(layer, _)| layer).collect();
+        let groups = (0..from.u32()?).map(|_| from.text()).collect::<Result<_, _>>()?;
+        let mut film = Self::holding(size, window, Holds { layers, groups });
         for tile in &mut film.tiles {
             (tile.next, tile.aim) = (from.u32()?, from.u32()?);
             for pixel in &mut tile.pixels {
@@ -75,6 +82,10 @@ impl Film {
         }
         if from.0.is_empty() { Ok(film) } else { Err(Unreadable("it goes on after its end")) }
     }
+}
+
+fn write_number(to: &mut impl Write, n: usize) -> io::Result<()> {
+    to.write_all(&crate::cast::index(n).to_le_bytes())
 }
 
 fn bytes(pixel: &Pixel) -> [u8; PIXEL] {
@@ -103,6 +114,14 @@ impl Reader<'_> {
         self.take().map(u32::from_le_bytes)
     }
 
+    fn text(&mut self) -> Result<Arc<str>, Unreadable> {
+        let n = self.u32()? as usize;
+        let (text, rest) = self.0.split_at_checked(n).ok_or(Unreadable("it ends too early"))?;
+        self.0 = rest;
+        let text = std::str::from_utf8(text).map_err(|_| Unreadable("a name in it is no text"))?;
+        Ok(text.into())
+    }
+
     fn vector(&mut self) -> Result<DVec3, Unreadable> {
         let mut number = || self.take().map(f64::from_le_bytes);
         Ok(DVec3::new(number()?, number()?, number()?))
@@ -129,8 +148,8 @@ mod tests {
 
     fn film() -> Film {
         let window = Rect::new(UVec2::new(5, 3), UVec2::new(40, 18));
-        let layers = [Layer::Albedo, Layer::Cost];
-        let mut film = Film::with_layers(UVec2::new(64, 64), window, &layers);
+        let holds = Holds { layers: vec![Layer::Albedo, Layer::Cost], groups: vec!["key".into()] };
+        let mut film = Film::holding(UVec2::new(64, 64), window, holds);
         for (i, tile) in (0_u8..).zip(film.tiles_mut()) {
             tile.layers[2] = f64::from(i) / 7.0;
             (tile.next, tile.aim) = (u32::from(i), 100);

@@ -34,6 +34,14 @@ const PRIORITY: Param = Param {
     )
 };
 
+const LIGHT: &[Param] = &[Param {
+    ty: Type::Text,
+    ..handle(
+        "group",
+        Kind::Light,
+        "Lights of this name are recorded beside colour too, as layers that sum to the picture.",
+    )
+}];
 const SHAPE: &[Param] = &[
     PRIORITY,
     handle("material", Kind::Material, "How the surface scatters; a group's material if absent."),
@@ -49,6 +57,7 @@ const MATERIAL: &[Param] =
 pub fn common_params(kind: Kind) -> &'static [Param] {
     match kind {
         Kind::Shape => SHAPE,
+        Kind::Light => LIGHT,
         Kind::Material => MATERIAL,
         Kind::Importer => IMPORTER,
         _ => &[],

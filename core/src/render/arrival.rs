@@ -48,6 +48,7 @@ impl Shader<'_, '_> {
         let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
         if self.wants.has(Wants::DIRECT) {
             let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
+            self.path.light = found.map_or(0, |found| found.light);
             at.direct.set(found.map(|found| {
                 let eval = phase.eval(wo.as_vec3(), found.ray.d.as_vec3());
                 let f_le = eval.f * found.le_over_pdf * self.flight;
@@ -198,6 +199,7 @@ impl Shader<'_, '_> {
         let local = Local::new(at.wo, at, surface, needs);
         if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
             let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
+            self.path.light = found.map_or(0, |found| found.light);
             at.direct.set(found.and_then(|found| {
                 let wi = local.of_world(found.ray.d)?;
                 let eval = material.eval(local.wo, wi);

@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 use self::goal::Plan;
 use self::lattice::Lattice;
-use crate::film::{Film, Rect, Tile};
+use crate::film::{Film, Holds, Rect, Tile};
 use crate::registry::dynamic::remote;
 use crate::stage::Stage;
 
@@ -157,8 +157,7 @@ pub fn render_seen(
 ) -> (Film, Outcome) {
     let size = stage.film.resolution;
     let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
-    let layers = if can_go_on(stage) { &*stage.film.layers } else { &[] };
-    let mut film = Film::with_layers(size, window, layers);
+    let mut film = empty_film(stage, window);
     let outcome = render_on(&mut film, stage, options, control, look);
     (film, outcome)
 }
@@ -173,6 +172,14 @@ pub fn can_go_on(stage: &Stage) -> bool {
 /// is a library's, which may give others when it is asked for more.
 pub fn can_take_more(stage: &Stage) -> bool {
     can_go_on(stage) && remote(stage.sampler.class()).is_none()
+}
+
+/// A film for a part of the stage's picture, with room for what is recorded beside colour: nothing
+/// where an integrator owns the picture.
+pub fn empty_film(stage: &Stage, window: Rect) -> Film {
+    let holds = || Holds { layers: stage.film.layers.clone(), groups: stage.lights.groups.clone() };
+    let holds = if can_go_on(stage) { holds() } else { Holds::default() };
+    Film::holding(stage.film.resolution, window, holds)
 }
 
 /// Goes on with a film, whose window is what is measured. With the same stage and seed the bits in
@@ -207,12 +214,12 @@ pub fn render_on(
             assert!(film.samples() == 0, "a film that an integrator owns is begun anew");
             return picture::render(owner, stage, (plan, seed), (film, look), (stop, end));
         }
-        let layers = film.layers.clone();
+        let holds = film.holds.clone();
         let worker = || {
             let output = integrator.output();
             tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output)
                 .in_turns(turns)
-                .recording(&layers)
+                .recording(&holds)
         };
         passes(film, &plan, options.coarse, &mut |film, lattice, reached| {
             // Until each pixel has a sample no time is over.

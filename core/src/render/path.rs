@@ -24,6 +24,8 @@ pub(super) struct Path {
     pub(super) from: DVec3,
     /// The surface it stands on.
     pub(super) on: Option<Standing>,
+    /// Which source its last light sample is of.
+    pub(super) light: u32,
     /// The media around it, on the side it came from.
     pub(super) media: MediumStack,
     /// What it would be in beyond that surface.
@@ -55,7 +57,8 @@ impl Path {
         let (palette, media) = (Palette::rgb(), stage.camera_media);
         let (from, beyond) = (DVec3::ZERO, media);
         let time = stage.film.time;
-        Self { job: 0, time, weight: 0.0, palette, ended: false, from, on: None, media, beyond }
+        let (job, weight, light, ended) = (0, 0.0, 0, false);
+        Self { job, time, weight, palette, ended, from, on: None, light, media, beyond }
     }
 
     /// A path begins at the camera at a moment; `u` chooses the wavelengths, if there are any.

@@ -1,34 +1,54 @@
-//! Records what a film's layers hold: what paths met first, and what they cost.
+//! Records what a film holds beside colour: what paths met first, what they cost, whose light they found.
 
 use glam::{DVec2, DVec3, Vec3};
 use luxel_sdk::color::Spectrum;
-use luxel_sdk::kind::{Arrival, ArrivalKind};
+use luxel_sdk::kind::{Arrival, ArrivalKind, Lane};
 
 use super::develop::Develop;
 use super::path::Path;
-use crate::film::{Layer, Of, Tile, channels};
+use crate::film::{Holds, Layer, Of, Tile};
+use crate::object::Scratch;
 use crate::stage::Stage;
 
-/// The numbers of samples in the making; nothing where a film has no layers.
+/// The numbers of samples in the making; nothing where a film holds colour alone.
 pub(super) struct Recorder {
     layers: Vec<Layer>,
+    /// How many groups of lights there are.
+    n_groups: usize,
     /// Of each number of a sample.
     ofs: Vec<Of>,
     /// Sample by sample, as many numbers as there are channels.
     values: Vec<f64>,
     /// Whether the path in a lane has met nothing yet.
     is_fresh: Vec<bool>,
+    /// Light of the groups that the path in a lane has gathered, lane by lane.
+    light: Vec<Spectrum>,
+    /// What the paths that arrived had gathered before.
+    before: Vec<Spectrum>,
 }
 
 impl Recorder {
-    pub(super) fn new(layers: &[Layer], lanes: usize) -> Self {
-        let ofs = channels(layers).iter().map(|channel| channel.of).collect();
-        Self { layers: layers.to_vec(), ofs, values: vec![], is_fresh: vec![false; lanes] }
+    pub(super) fn new(holds: &Holds, lanes: usize) -> Self {
+        let n_groups = holds.groups.len();
+        Self {
+            layers: holds.layers.clone(),
+            n_groups,
+            ofs: holds.channels().iter().map(|channel| channel.of).collect(),
+            values: vec![],
+            is_fresh: vec![false; lanes],
+            light: vec![Spectrum::ZERO; lanes * n_groups],
+            before: vec![],
+        }
     }
 
     /// Whether anything is recorded.
     pub(super) fn is_on(&self) -> bool {
-        !self.layers.is_empty()
+        !self.ofs.is_empty()
+    }
+
+    /// Whether light of groups is told apart.
+    pub(super) fn has_groups(&self) -> bool {
+        self.n_groups > 0
     }
 
     /// So many samples follow.
@@ -40,6 +60,7 @@ impl Recorder {
     /// A path begins in a lane.
     pub(super) fn start(&mut self, lane: usize) {
         self.is_fresh[lane] = true;
+        self.light[lane * self.n_groups..][..self.n_groups].fill(Spectrum::ZERO);
     }
 
     /// The path in a lane arrived.
@@ -72,6 +93,71 @@ impl Recorder {
         }
     }
 
+    /// The path in a lane found light of a source that it had chosen.
+    pub(super) fn found(&mut self, stage: &Stage, (lane, path): (u32, &Path), l: Spectrum) {
+        let group = stage.lights.group_of.get(path.light as usize).copied().flatten();
+        if let Some(group) = group {
+            self.light[lane as usize * self.n_groups + group as usize] += l;
+        }
+    }
+
+    /// Paths are about to be told where they arrived.
+    pub(super) fn before(&mut self, lanes: &[Lane], arrived: &[u32]) {
+        self.before.clear();
+        self.before.extend(arrived.iter().map(|lane| lanes[*lane as usize].l));
+    }
+
+    /// They were told: what they gathered is of what shines where they are.
+    pub(super) fn after(
+        &mut self,
+        stage: &Stage,
+        (paths, lanes): (&[Path], &[Lane]),
+        arrived: &[u32],
+        scratch: &mut Scratch,
+    ) {
+        for (i, lane) in arrived.iter().enumerate() {
+            let (path, Lane { at, l, .. }) = (&paths[*lane as usize], &lanes[*lane as usize]);
+            let gathered = *l - self.before[i];
+            if gathered.is_black() {
+                continue;
+            }
+            let light = &mut self.light[*lane as usize * self.n_groups..][..self.n_groups];
+            match at.kind {
+                ArrivalKind::Escaped => {
+                    let (stage, d, palette) = (stage.at(path.time), -at.wo, &path.palette);
+                    scratch.reset();
+                    let (all, _) = stage.escaped(d, palette, scratch);
+                    for (group, light) in (0..).zip(light) {
+                        scratch.reset();
+                        let own = stage.escaped_to_group(group, d, palette, scratch);
+                        *light += gathered * share(own, all);
+                    }
+                }
+                ArrivalKind::Surface => {
+                    let on = path.on.map(|on| on.leaving.placement as usize);
+                    let source = on.and_then(|on| stage.placements[on].light);
+                    let group = source.and_then(|i| stage.lights.group_of[i as usize]);
+                    if let Some(group) = group {
+                        light[group as usize] += gathered;
+                    }
+                }
+                ArrivalKind::Medium => {}
+            }
+        }
+    }
+
+    /// The path in a lane has ended.
+    pub(super) fn finish(&mut self, (lane, path): (usize, &Path), develop: &Develop) {
+        let n = self.ofs.len();
+        let values = &mut self.values[(path.job as usize + 1) * n - 3 * self.n_groups..]
+            [..3 * self.n_groups];
+        let light = &self.light[lane * self.n_groups..][..self.n_groups];
+        for (own, l) in values.chunks_exact_mut(3).zip(light) {
+            let rgb = develop.sample(*l * path.weight, &path.palette.wavelengths);
+            own.copy_from_slice(&rgb.to_array());
+        }
+    }
+
     /// Adds sample `sample` of `of` for each of some pixels to a tile.
     pub(super) fn add(&self, tile: &mut Tile, chosen: &[u32], samples: usize) {
         let n = self.ofs.len();
@@ -90,6 +176,12 @@ impl Recorder {
             }
         }
     }
+}
+
+/// What part is of the whole; none where that is black.
+fn share(own: Spectrum, all: Spectrum) -> Spectrum {
+    let lane = |i: usize| if all[i] > 0.0 { own[i] / all[i] } else { 0.0 };
+    Spectrum::new(lane(0), lane(1), lane(2), lane(3))
 }
 
 /// What a layer says of the place that a path met first.

@@ -21,7 +21,7 @@ use super::record::Recorder;
 use super::{Stop, shadow};
 use crate::accel::{Processor, Work};
 use crate::cast;
-use crate::film::{Layer, Rect, Tile};
+use crate::film::{Holds, Rect, Tile};
 use crate::object::{ColorMode, Scratch, Site};
 use crate::stage::{Leaving, Moment, Rooms, SceneHit, Stage};
 
@@ -98,7 +98,7 @@ impl<'s> Worker<'s> {
             scratch: Scratch::default(),
             medium_scratch: Scratch::default(),
             to_rgb: Develop::new(stage, output),
-            record: Recorder::new(&[], LANES),
+            record: Recorder::new(&Holds::default(), LANES),
         }
     }
 
@@ -108,8 +108,8 @@ impl<'s> Worker<'s> {
     }
 
     /// The same, which records layers too.
-    pub(super) fn recording(self, layers: &[Layer]) -> Self {
-        Self { record: Recorder::new(layers, LANES), ..self }
+    pub(super) fn recording(self, holds: &Holds) -> Self {
+        Self { record: Recorder::new(holds, LANES), ..self }
     }
 
     /// Adds the samples of a range to the pixels of a tile that a lattice names. A pass that is
@@ -259,6 +259,9 @@ impl<'s> Worker<'s> {
             lane.numbers = samples.at();
             if request.pixel == Shadow::OWN {
                 lane.l += request.l * left;
+                if self.record.has_groups() {
+                    self.record.found(self.stage, (request.lane, path), request.l * left);
+                }
                 continue;
             }
             let rgb = self.to_rgb.sample(request.l * left, &path.palette.wavelengths);
@@ -282,7 +285,14 @@ impl<'s> Worker<'s> {
         self.arrived.clear();
         self.arrived.extend(self.now.rays.iter().map(|onward| onward.lane));
         let round = Round { host: &StageHost(stage), sampler: self.sampler };
+        if self.record.has_groups() {
+            self.record.before(&self.lanes, &self.arrived);
+        }
         self.states.arrive_n(&mut self.lanes, &self.arrived, round, &mut self.next);
+        if self.record.has_groups() {
+            let paths = (&*self.paths, &*self.lanes);
+            self.record.after(stage, paths, &self.arrived, &mut self.scratch);
+        }
     }
 
     /// What the paths of this round met, for the film's layers.
@@ -416,6 +426,9 @@ impl<'s> Worker<'s> {
         let l = self.lanes[lane].l * path.weight;
         if let Some(result) = self.results.get_mut(path.job as usize) {
             *result = self.to_rgb.sample(l, &path.palette.wavelengths);
+            if self.record.has_groups() {
+                self.record.finish((lane, path), &self.to_rgb);
+            }
         }
         self.free.push(cast::index(lane));
     }

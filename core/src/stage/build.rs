@@ -138,6 +138,9 @@ struct Maker<'a> {
     watch: &'a Watch,
 }
 
+/// Most letters of the name of a group of lights.
+const GROUP_NAME: usize = 32;
+
 impl Maker<'_> {
     fn place(&mut self, flat: &Flat) {
         if self.scene.node(flat.node).kind == Kind::Shape {
@@ -158,7 +161,26 @@ impl Maker<'_> {
         }
         if let Some(place) = self.stand(&flat.pose, flat.span) {
             self.made.lights.push(LightSource::Free { object, place });
+            let group = self.group(flat.node);
+            self.made.light_groups.push(group);
         }
+    }
+
+    /// The group that a light is of.
+    fn group(&mut self, light: NodeId) -> Option<Arc<str>> {
+        let mut given = self.scene.node(light).params.iter();
+        let (name, span) = given.find_map(|argument| match &argument.value {
+            Value::Text(name) if argument.name == "group" => Some((name, argument.span)),
+            _ => None,
+        })?;
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if name.is_empty() || name.len() > GROUP_NAME || !name.chars().all(is_plain) {
+            let message = "the name of a group is of letters, digits, `_` and `-`";
+            let wrong = Diagnostic::error("E0405", span, message);
+            let help = format!("at most {GROUP_NAME} of them: it names channels of the EXR");
+            self.builder.diagnostics.push(wrong.help(help));
+        }
+        Some((**name).into())
     }
 
     /// A light of a surface that nobody gave: it would shine from nowhere.
@@ -221,6 +243,8 @@ impl Maker<'_> {
         };
         if let Some(object) = light {
             self.shining(object, &placement, flat.span);
+            let group = self.group(flat.node);
+            self.made.light_groups.push(group);
         }
         self.made.placements.push(placement);
     }

@@ -61,6 +61,10 @@ pub struct Lights {
     pub sources: Vec<LightSource>,
     /// Indices of those that escaped rays find.
     pub infinite: Vec<u32>,
+    /// Names of the groups that some are of.
+    pub groups: Vec<Arc<str>>,
+    /// Which of them each source is of.
+    pub group_of: Vec<Option<u32>>,
     choice: Option<Alias>,
 }
 
@@ -73,11 +77,18 @@ pub struct FoundLight {
     pub le_over_pdf: Spectrum,
     /// Solid-angle density; infinite for a delta light.
     pub pdf: f32,
+    /// Which source it is of.
+    pub light: u32,
 }
 
 impl Lights {
     /// Lights, chosen about in proportion to their power.
-    pub(super) fn new(sources: Vec<LightSource>, stage_radius: f64, mode: ColorMode) -> Self {
+    pub(super) fn new(
+        sources: Vec<LightSource>,
+        names: &[Option<Arc<str>>],
+        stage_radius: f64,
+        mode: ColorMode,
+    ) -> Self {
         let power: Vec<f64> =
             sources.iter().map(|light| f64::from(power(light, stage_radius, mode))).collect();
         let mean = power.iter().sum::<f64>() / power.len().max(1) as f64;
@@ -88,7 +99,9 @@ impl Lights {
             let object = sources[*i as usize].object();
             object.fixed().light().form() == luxel_sdk::kind::LightForm::Infinite
         });
-        Self { infinite: infinite.collect(), choice: Alias::new(&weights).ok(), sources }
+        let infinite = infinite.collect();
+        let (groups, group_of) = groups(names);
+        Self { infinite, choice: Alias::new(&weights).ok(), groups, group_of, sources }
     }
 
     /// Whether there is none.
@@ -114,16 +127,32 @@ impl Lights {
     fn choose(&self, u: f32) -> Option<Chosen<'_>> {
         let choice = self.choice.as_ref()?;
         if let [source] = self.sources.as_slice() {
-            return Some(Chosen { source, chance: 1.0, u: f64::from(u) });
+            return Some(Chosen { source, light: 0, chance: 1.0, u: f64::from(u) });
         }
         let drawn = choice.sample(f64::from(u));
-        Some(Chosen { source: &self.sources[drawn.index], chance: narrow(drawn.pmf), u: drawn.u })
+        let (source, chance) = (&self.sources[drawn.index], narrow(drawn.pmf));
+        Some(Chosen { source, light: index(drawn.index), chance, u: drawn.u })
     }
+}
+
+/// Names of groups, each once, and which of them each source is of.
+fn groups(names: &[Option<Arc<str>>]) -> (Vec<Arc<str>>, Vec<Option<u32>>) {
+    let mut groups: Vec<Arc<str>> = vec![];
+    let mut number = |name: &Arc<str>| {
+        let known = groups.iter().position(|group| group == name);
+        index(known.unwrap_or_else(|| {
+            groups.push(name.clone());
+            groups.len() - 1
+        }))
+    };
+    let group_of = names.iter().map(|name| name.as_ref().map(&mut number)).collect();
+    (groups, group_of)
 }
 
 /// A source that was chosen.
 struct Chosen<'a> {
     source: &'a LightSource,
+    light: u32,
     chance: f32,
     /// What is left of the random number.
     u: f64,
@@ -187,7 +216,7 @@ impl Moment<'_> {
                 self.sample_free(light, place, from, palette, u)
             }
         }?;
-        Some(found.with_chance(chosen.chance))
+        Some(found.of(chosen.light, chosen.chance))
     }
 
     fn sample_free(
@@ -221,6 +250,7 @@ impl Moment<'_> {
             ray: from.ray_to(wi, distance),
             le_over_pdf: le / found.pdf,
             pdf,
+            light: 0,
         })
     }
 
@@ -293,6 +323,7 @@ impl Moment<'_> {
             ray,
             le_over_pdf: le * narrow(per_pdf),
             pdf: narrow(pdf),
+            light: 0,
         })
     }
 
@@ -382,8 +413,31 @@ impl Moment<'_> {
     /// What a ray that leaves the scene along `d` finds, and the density with which `sample_light`
     /// would have found it.
     pub fn escaped(self, d: DVec3, palette: &Palette, scratch: &Scratch) -> (Spectrum, f32) {
+        self.escaped_to(|_| true, d, palette, scratch)
+    }
+
+    /// The same of a group of lights alone.
+    pub fn escaped_to_group(
+        self,
+        group: u32,
+        d: DVec3,
+        palette: &Palette,
+        scratch: &Scratch,
+    ) -> Spectrum {
+        let is_of = |light: u32| self.lights.group_of[light as usize] == Some(group);
+        self.escaped_to(is_of, d, palette, scratch).0
+    }
+
+    #[inline(always)]
+    fn escaped_to(
+        self,
+        is_meant: impl Fn(u32) -> bool,
+        d: DVec3,
+        palette: &Palette,
+        scratch: &Scratch,
+    ) -> (Spectrum, f32) {
         let (mut le, mut pdf) = (Spectrum::ZERO, 0.0);
-        for &light in &self.lights.infinite {
+        for &light in self.lights.infinite.iter().filter(|light| is_meant(**light)) {
             let LightSource::Free { object, place } = &self.lights.sources[light as usize] else {
                 continue;
             };
@@ -412,8 +466,8 @@ struct SurfaceLight<'a> {
 }
 
 impl FoundLight {
-    fn with_chance(self, chance: f32) -> Self {
-        Self { le_over_pdf: self.le_over_pdf / chance, pdf: self.pdf * chance, ..self }
+    fn of(self, light: u32, chance: f32) -> Self {
+        Self { le_over_pdf: self.le_over_pdf / chance, pdf: self.pdf * chance, light, ..self }
     }
 }
 

@@ -40,6 +40,8 @@ pub(super) struct Made {
     pub(super) media: Vec<Arc<Object>>,
     pub(super) medium_of: BTreeMap<NodeId, u32>,
     pub(super) lights: Vec<LightSource>,
+    /// Of each of them the group.
+    pub(super) light_groups: Vec<Option<Arc<str>>>,
     pub(super) default_material: Option<u32>,
 }
 
@@ -72,7 +74,7 @@ impl Made {
         let mut cache = Cache { assets: self.assets, objects, shapes: self.shapes };
         cache.inherit(before);
         let mut stage = Stage {
-            lights: Lights::new(self.lights, sphere.1, mode),
+            lights: Lights::new(self.lights, &self.light_groups, sphere.1, mode),
             top,
             geometries: self.geometries,
             placements: self.placements,

@@ -116,6 +116,32 @@ fn a_film_that_was_left_goes_on_to_the_same_bits() {
 }
 
 #[test]
+fn a_film_that_was_cut_off_in_a_pass_goes_on_to_the_same_bits() {
+    let stage = stage(UNEVEN);
+    let options = Options { spp: Some(160), ..Options::default() };
+    let whole = render(&stage, &options, &Control::default()).0;
+    let mut film = empty(&stage);
+    let mut uneven = 0;
+    // Each run ends as soon as it has taken another two tiles' samples.
+    while film != whole {
+        let control = Control::default();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while control.samples_done() < 2 * 16 * 256 && !control.is_cancelled() {
+                    std::thread::yield_now();
+                }
+                control.cancel();
+            });
+            render_on(&mut film, &stage, &options, &control, &mut |_, _| {});
+            control.cancel();
+        });
+        let counts: Vec<u32> = film.pixels().map(|(_, pixel)| pixel.n).collect();
+        uneven += u32::from(counts.iter().any(|n| *n != counts[0]));
+    }
+    assert!(uneven > 0, "no pass was cut off");
+}
+
+#[test]
 fn more_samples_go_on_where_fewer_ended() {
     let stage = stage(UNEVEN);
     let with = |spp| Options { spp: Some(spp), ..Options::default() };

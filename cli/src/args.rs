@@ -94,6 +94,9 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
+/// More seconds than a year has are as good as no limit.
+pub(crate) const MOST_SECONDS: f64 = 4e7;
+
 /// Side of the largest picture; as the film's schema says.
 const MAX_SIDE: u32 = 65536;
 

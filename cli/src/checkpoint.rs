@@ -1,8 +1,10 @@
 //! What has been measured, kept on the disk while a render runs, so that another can go on with it.
 //!
-//! A line of JSON says of what it is; then comes the film, and a hash over both.
+//! After a first line by which it is known comes a line of JSON that says of what it is, then the film,
+//! and a hash over all.
 
-use std::io::{self, BufWriter, Write};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -11,6 +13,7 @@ use luxel_core::render::{Options, can_go_on};
 use luxel_core::stage::Stage;
 use serde_json::{Value, json};
 
+use crate::args::MOST_SECONDS;
 use crate::exit::{Exit, Failure};
 use crate::load::Loaded;
 use crate::output::{Draft, Output, unwritable};
@@ -22,15 +25,21 @@ pub(crate) struct CheckpointArgs {
     /// is not there
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Seconds between two checkpoints; 0 for none, not even after Ctrl-C
+    /// Seconds between two checkpoints, which wait for the end of a pass; 0 for none, not even after
+    /// Ctrl-C
     #[arg(long = "checkpoint", value_name = "SECONDS", default_value = "60", value_parser = seconds)]
     every: Duration,
 }
 
 /// Time that may go into checkpoints: one part in so many.
 const SHARE: u32 = 20;
+/// Bytes of the first two lines, at most.
+const MOST_HEAD: u64 = 4096;
 /// Bytes of a hash.
 const HASH: usize = blake3::OUT_LEN;
+
+/// What every checkpoint begins with.
+const MAGIC: &[u8] = b"luxel checkpoint\n";
 
 /// Where a render is kept.
 pub(crate) struct Checkpoint {
@@ -40,15 +49,46 @@ pub(crate) struct Checkpoint {
     next: Option<Instant>,
 }
 
+/// What is there of an earlier render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Left {
+    /// Nothing.
+    Nothing,
+    /// A checkpoint of another picture.
+    Other,
+    /// One that could be gone on with.
+    Same,
+}
+
+/// How much was asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Asked {
+    /// Samples of a pixel, if somebody said so.
+    pub(crate) spp: Option<u32>,
+    /// The error.
+    pub(crate) error: Option<f64>,
+}
+
+impl Asked {
+    /// What these options ask for, beside a time.
+    pub(crate) fn of(options: &Options) -> Self {
+        Self { spp: options.spp, error: options.goal.error }
+    }
+}
+
 impl Checkpoint {
     /// Beside the picture; `libraries` is what plugins may differ by.
+    ///
+    /// # Errors
+    /// A file in its place that is none.
     pub(crate) fn new(
         args: CheckpointArgs,
         output: &Output,
         (stage, loaded): (&Stage, &Loaded),
         libraries: &str,
         (options, window): (&Options, Rect),
-    ) -> Self {
+    ) -> Result<Self, Failure> {
+        let asked = Asked::of(options);
         let about = json!({
             "luxel": env!("CARGO_PKG_VERSION"),
             "scene": blake3::Hash::from_bytes(stage.scene.measured_hash()).to_hex().to_string(),
@@ -56,10 +96,15 @@ impl Checkpoint {
             "libraries": libraries,
             "seed": options.seed(stage),
             "window": [window.min.to_array(), window.size.to_array()],
+            "spp": asked.spp,
+            "error": asked.error,
         });
         let every = Some(args.every).filter(|every| !every.is_zero() && can_go_on(stage));
         let next = every.and_then(|every| Instant::now().checked_add(every));
-        Self { place: output.exr.with_extension("checkpoint"), about, every, next }
+        let place = output.exr.with_extension("checkpoint");
+        let kept = Self { place, about, every, next };
+        kept.head()?;
+        Ok(kept)
     }
 
     /// Where it is.
@@ -67,40 +112,84 @@ impl Checkpoint {
         &self.place
     }
 
-    /// Whether there is one, of this picture or another.
-    pub(crate) fn exists(&self) -> bool {
-        self.place.exists()
+    /// What is there.
+    ///
+    /// # Errors
+    /// As `new`.
+    pub(crate) fn left(&self) -> Result<Left, Failure> {
+        Ok(match self.head()? {
+            None => Left::Nothing,
+            Some(about) if self.difference(&about).is_none() => Left::Same,
+            Some(_) => Left::Other,
+        })
     }
 
-    /// The film that was left; nothing if there is none.
+    /// What the file that is there says of itself.
+    fn head(&self) -> Result<Option<Value>, Failure> {
+        let Some(file) = self.open()? else { return Ok(None) };
+        let mut from = BufReader::new(file.take(MOST_HEAD));
+        let (mut magic, mut about) = (vec![], vec![]);
+        let read = from.read_until(b'\n', &mut magic);
+        read.and_then(|_| from.read_until(b'\n', &mut about)).map_err(|e| self.wrong(&e))?;
+        if magic != MAGIC {
+            let message = format!("`{}` is in the way: no checkpoint", self.place.display());
+            return Err(Failure::new(Exit::Input, message).help("choose another place: -o OUT"));
+        }
+        Ok(Some(serde_json::from_slice(&about).unwrap_or_default()))
+    }
+
+    /// The file that is there, if it is a regular one.
+    fn open(&self) -> Result<Option<File>, Failure> {
+        match std::fs::metadata(&self.place) {
+            Ok(about) if !about.is_file() => {
+                return Err(self.wrong(&"something that is not a file is in its place"));
+            }
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            _ => {}
+        }
+        #[expect(clippy::disallowed_methods, reason = "our own file, read by no scene")]
+        File::open(&self.place).map(Some).map_err(|error| self.wrong(&error))
+    }
+
+    fn wrong(&self, why: &dyn std::fmt::Display) -> Failure {
+        let message = format!("cannot go on with `{}`: {why}", self.place.display());
+        Failure::new(Exit::Input, message).help("without --resume the render begins anew")
+    }
+
+    /// What it is of, if it is of another picture.
+    fn difference(&self, about: &Value) -> Option<&'static str> {
+        let mut differences = DIFFERENCES.iter();
+        differences.find(|(key, _)| about[key] != self.about[key]).map(|(_, what)| *what)
+    }
+
+    /// The film that was left and what it was to become; nothing if there is none.
     ///
     /// # Errors
     /// A file that cannot be read, is damaged, or is of another picture.
-    pub(crate) fn read(&self) -> Result<Option<Film>, Failure> {
-        let wrong = |why: &str| {
-            let message = format!("cannot go on with `{}`: {why}", self.place.display());
-            Failure::new(Exit::Input, message).help("without --resume the render begins anew")
-        };
-        #[expect(clippy::disallowed_methods, reason = "our own file, read by no scene")]
-        let bytes = match std::fs::read(&self.place) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(wrong(&error.to_string())),
-        };
-        let (body, hash) =
-            bytes.split_last_chunk::<HASH>().ok_or_else(|| wrong("it is damaged"))?;
+    pub(crate) fn read(&self) -> Result<Option<(Film, Asked)>, Failure> {
+        let wrong = |why: &str| self.wrong(&why);
+        let Some(mut file) = self.open()? else { return Ok(None) };
+        let mut bytes = vec![];
+        file.read_to_end(&mut bytes).map_err(|error| self.wrong(&error))?;
+        let damaged = || wrong("it is damaged");
+        let (body, hash) = bytes.split_last_chunk::<HASH>().ok_or_else(damaged)?;
         if blake3::hash(body) != *hash {
-            return Err(wrong("it is damaged"));
+            return Err(damaged());
         }
-        let end =
-            body.iter().position(|byte| *byte == b'\n').ok_or_else(|| wrong("it is damaged"))?;
-        let about: Value = serde_json::from_slice(&body[..end]).unwrap_or_default();
-        for (key, what) in DIFFERENCES {
-            if about[key] != self.about[key] {
-                return Err(wrong(&format!("it is of {what}")));
-            }
+        let body = body.strip_prefix(MAGIC).ok_or_else(damaged)?;
+        let end = body.iter().position(|byte| *byte == b'\n').ok_or_else(damaged)?;
+        let about: Value = serde_json::from_slice(&body[..end]).map_err(|_| damaged())?;
+        if let Some(what) = self.difference(&about) {
+            return Err(wrong(&format!("it is of {what}")));
         }
-        Film::load(&body[end + 1..]).map(Some).map_err(|unreadable| wrong(unreadable.0))
+        let film = Film::load(&body[end + 1..]).map_err(|unreadable| wrong(unreadable.0))?;
+        let spp = about["spp"].as_u64().and_then(|spp| spp.try_into().ok());
+        Ok(Some((film, Asked { spp, error: about["error"].as_f64() })))
+    }
+
+    /// From now on this is asked for.
+    pub(crate) fn asks(&mut self, asked: Asked) {
+        (self.about["spp"], self.about["error"]) = (json!(asked.spp), json!(asked.error));
     }
 
     /// Whether it is time for the next.
@@ -123,6 +212,7 @@ impl Checkpoint {
     fn write(&self, film: &Film) -> io::Result<()> {
         let draft = Draft::begin(&self.place)?;
         let mut to = Hashing { to: BufWriter::new(&draft.file), hash: blake3::Hasher::new() };
+        to.write_all(MAGIC)?;
         writeln!(to, "{}", self.about)?;
         film.save(&mut to)?;
         let hash = to.hash.finalize();
@@ -134,13 +224,12 @@ impl Checkpoint {
 
     /// The picture is whole: there is nothing to go on with.
     pub(crate) fn remove(&self) {
-        // What is not there need not go.
-        let _ = std::fs::remove_file(&self.place);
+        if self.every.is_some() {
+            // What is not there need not go.
+            let _ = std::fs::remove_file(&self.place);
+        }
     }
 }
-
-/// More than a year is never.
-const MOST_SECONDS: f64 = 4e7;
 
 fn seconds(text: &str) -> Result<Duration, String> {
     let found = text.parse().ok().filter(|s: &f64| (0.0..=MOST_SECONDS).contains(s));
@@ -196,13 +285,17 @@ mod tests {
     fn what_was_kept_is_read_and_nothing_else_is_left() {
         let folder = Folder::new("checkpoint");
         let mut kept = checkpoint(&folder, 1);
-        assert_eq!(kept.read().unwrap(), None);
+        assert_eq!((kept.read().unwrap(), kept.left().unwrap()), (None, Left::Nothing));
         assert!(!kept.is_due());
+        let asked = Asked { spp: Some(7), error: Some(0.25) };
+        kept.asks(asked);
         kept.keep(&film()).unwrap();
         assert_eq!(folder.names(), ["a.checkpoint"]);
-        assert_eq!(kept.read().unwrap(), Some(film()));
+        assert_eq!(kept.read().unwrap(), Some((film(), asked)));
+        assert_eq!(kept.left().unwrap(), Left::Same);
+        assert_eq!(checkpoint(&folder, 2).left().unwrap(), Left::Other);
         kept.remove();
-        assert!(folder.names().is_empty() && !kept.exists());
+        assert!(folder.names().is_empty());
     }
 
     #[test]
@@ -217,7 +310,10 @@ mod tests {
         bytes[100] ^= 1;
         folder.write("a.checkpoint", &bytes);
         assert!(why(&kept).ends_with("it is damaged"), "{}", why(&kept));
-        folder.write("a.checkpoint", b"short");
-        assert!(why(&kept).ends_with("it is damaged"));
+        folder.write("a.checkpoint", b"a diary");
+        assert!(kept.left().unwrap_err().message.ends_with("is in the way: no checkpoint"));
+        folder.write("b.checkpoint/inside", b"");
+        let place = folder.path("b.checkpoint");
+        assert!(Checkpoint { place, ..kept }.left().is_err());
     }
 }

@@ -5,6 +5,8 @@ use std::time::Duration;
 use clap::Args;
 use luxel_core::render::Goal;
 
+use crate::args::MOST_SECONDS;
+
 /// Instead of a number of samples.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub(crate) struct GoalArgs {
@@ -48,9 +50,6 @@ fn duration(text: &str) -> Result<Duration, String> {
     let told = || "expected a length of time, as in 30s, 5min or 1.5h".into();
     found.map(Duration::from_secs_f64).ok_or_else(told)
 }
-
-/// More than a year is no limit.
-const MOST_SECONDS: f64 = 4e7;
 
 #[cfg(test)]
 mod tests {

@@ -6,14 +6,16 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use luxel_core::film::{Errors, Film, Rect};
-use luxel_core::render::{Control, Look, Options, Outcome, Reached, empty_film, render_on};
+use luxel_core::render::{
+    Control, Look, Options, Outcome, Reached, bytes_of_pixel, empty_film, render_on,
+};
 use luxel_core::stage::Stage;
 
 use crate::exit::{Exit, Failure, blaming};
 use crate::progress;
 
-/// Pixels of one film, at most: 176 bytes each, 11.8 GB.
-const MAX_PIXELS: usize = 1 << 26;
+/// Bytes of one film, at most.
+const MOST_BYTES: usize = 12 << 30;
 
 /// Between two looks at how wrong the picture is, for the line.
 const PACE: Duration = Duration::from_secs(1);
@@ -37,10 +39,11 @@ pub(crate) fn window(stage: &Stage, options: &Options) -> Result<Rect, Failure> 
         let message = format!("the crop lies outside the picture of {} x {}", size.x, size.y);
         return Err(Failure::new(Exit::Usage, message));
     }
-    if window.area() > MAX_PIXELS {
+    let most = MOST_BYTES / bytes_of_pixel(stage);
+    if window.area() > most {
         let message = format!("{} x {} pixels are too many at once", window.size.x, window.size.y);
         return Err(Failure::new(Exit::Input, message)
-            .help(format!("at most {MAX_PIXELS}; render parts with --crop X,Y,W,H")));
+            .help(format!("at most {most}; render parts with --crop X,Y,W,H")));
     }
     Ok(window)
 }
@@ -67,9 +70,9 @@ pub(crate) fn measure(
 ) -> Result<Measured, Failure> {
     let start = Instant::now();
     let shown = progress::is_shown(line);
-    let at_first = film.window.area() as u64 * u64::from(options.samples(stage));
-    let before = film.samples();
-    let reached = Mutex::new(Standing { total: at_first.saturating_sub(before), error: None });
+    let at_first = film.window.area() as u64 * u64::from(options.samples_at_first(stage));
+    let total = at_first.saturating_sub(film.samples());
+    let reached = Mutex::new(Standing { total, error: None });
     let standing = || *reached.lock().unwrap_or_else(PoisonError::into_inner);
     let mut told = start;
     let mut seen = |film: &Film, now: Reached| {

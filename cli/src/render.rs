@@ -8,12 +8,12 @@ use luxel_core::render::{Control, Options, Outcome, Reached, can_go_on};
 use luxel_core::stage::Stage;
 
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
-use crate::checkpoint::{Checkpoint, CheckpointArgs};
+use crate::checkpoint::{Asked, Checkpoint, CheckpointArgs, Left};
 use crate::exit::{Exit, Failure};
 use crate::goal::GoalArgs;
 use crate::interrupt::Guard;
 use crate::isolate::{self, Beat, IsolateArgs, Phase};
-use crate::load::{self, Course, Loaded};
+use crate::load::{self, Course};
 use crate::measure::{self, Measured};
 use crate::output::Output;
 use crate::picture;
@@ -27,8 +27,8 @@ use crate::summary::Summary;
 /// Ctrl-C ends early with a valid picture of what was measured and exit code 3; once more, two
 /// seconds later, gives up what has not been saved by then. No file is ever left half written.
 ///
-/// What has been measured is kept in OUT.checkpoint every minute and after Ctrl-C; --resume goes on
-/// with it, to the same bits as if nothing had come between. With --error or --time the samples go
+/// What has been measured is kept in OUT.checkpoint about every minute and after Ctrl-C; --resume goes
+/// on with it, to the same bits as if nothing had come between. With --error or --time the samples go
 /// where they are needed; an error that is not reached ends with exit code 3.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
@@ -102,17 +102,16 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
     let Some(stage) = &loaded.stage else { return Ok(Exit::Input) };
 
-    let options = args.options();
-    let empty = measure::empty(stage, &options)?;
+    let empty = measure::empty(stage, &args.options())?;
     let film_file = stage.film.file.as_deref();
     let output = Output::choose(args.render.output.as_deref(), film_file, &args.file)?;
     guard.measuring();
     beat.rendering(&control, interrupt);
     output.check(&loaded.files)?;
     let (of, libraries) = ((stage, &loaded), plugins.hash());
-    let how = (&options, empty.window);
-    let mut kept = Checkpoint::new(args.checkpoint, &output, of, &libraries, how);
-    let film = begin(args, stage, empty, &kept)?;
+    let how = (&args.options(), empty.window);
+    let mut kept = Checkpoint::new(args.checkpoint, &output, of, &libraries, how)?;
+    let (film, options) = begin(args, stage, empty, &mut kept)?;
     beat.phase(Phase::Rendering);
     let of = (args.file.as_path(), stage);
     let mut look = |film: &Film, _: Reached| keep_sometimes(&mut kept, film, (&guard, beat));
@@ -124,32 +123,37 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     }
     let _whole = guard.saving();
     beat.phase(Phase::Saving);
-    save(args, (stage, &loaded), (&measured, control.samples_done()), &output, &mut kept)
+    let Measured { film, outcome, seconds } = &measured;
+    let (of, took) = ((stage, &loaded.files), (*seconds, control.samples_done()));
+    let summary = Summary::new(of, &options, (film, *outcome), took);
+    save(args, (stage, &summary), &measured, &output, &mut kept)
 }
 
 /// Writes the picture, and what is needed to go on with it if it is not whole.
 fn save(
     args: &Args,
-    (stage, loaded): (&Stage, &Loaded),
-    (measured, samples): (&Measured, u64),
+    (stage, summary): (&Stage, &Summary),
+    Measured { film, outcome, .. }: &Measured,
     output: &Output,
     kept: &mut Checkpoint,
 ) -> Result<Exit, Failure> {
-    let Measured { film, outcome, seconds } = measured;
-    if film.samples() == 0 && samples == 0 {
+    if film.pixels().all(|(_, pixel)| pixel.n + pixel.bad == 0) {
         let message = "interrupted before anything was measured: no picture was written";
         return Err(Failure::new(Exit::Incomplete, message));
     }
-    let (of, options) = ((stage, &loaded.files), args.options());
-    let summary = Summary::new(of, &options, (film, *outcome), (*seconds, samples));
-    picture::write(output, film, &stage.film, &summary.notes())?;
+    let written = picture::write(output, film, &stage.film, &summary.notes());
     let is_whole = *outcome == Outcome::Complete && summary.is_reached();
-    if is_whole {
+    if is_whole && written.is_ok() {
         kept.remove();
-    } else if kept.keep(film)? {
-        report::aside("--resume goes on from here");
+    } else {
+        match kept.keep(film) {
+            Ok(true) => report::aside("--resume goes on from here"),
+            Ok(false) => {}
+            Err(failure) => report::warning(&failure.message),
+        }
     }
-    tell(args, &summary, output)?;
+    written?;
+    tell(args, summary, output)?;
     Ok(match is_whole {
         _ if args.strict && summary.bad > 0 => Exit::Ours,
         true => Exit::Fine,
@@ -157,26 +161,65 @@ fn save(
     })
 }
 
-/// The film to render on: one that was left, if that is wanted.
-fn begin(args: &Args, stage: &Stage, empty: Film, kept: &Checkpoint) -> Result<Film, Failure> {
-    let place = kept.place().display();
-    if !args.checkpoint.resume {
-        if kept.exists() {
-            report::aside(&format!(
-                "`{place}` is of a picture that was left: --resume goes on with it"
-            ));
-        }
-        return Ok(empty);
+/// The film to render on, one that was left if that is wanted, and what it is to become.
+fn begin(
+    args: &Args,
+    stage: &Stage,
+    empty: Film,
+    kept: &mut Checkpoint,
+) -> Result<(Film, Options), Failure> {
+    let options = args.options();
+    let is_owned = !can_go_on(stage);
+    if is_owned && !(stage.film.layers.is_empty() && stage.lights.groups.is_empty()) {
+        let message = "an integrator that owns the whole picture records nothing beside colour";
+        report::warning(message);
     }
-    if !can_go_on(stage) {
+    if !args.checkpoint.resume {
+        if kept.left()? == Left::Same {
+            let place = kept.place().display();
+            let message = format!("`{place}` is of this picture, left unfinished: it begins anew");
+            report::warning(&format!("{message}; --resume would go on with it"));
+        }
+        return Ok((empty, options));
+    }
+    if is_owned {
         let message = "an integrator that owns the whole picture cannot go on with one";
         return Err(Failure::new(Exit::Input, message).help("render without --resume"));
     }
-    let left = kept.read()?;
-    if left.is_none() {
-        report::warning(&format!("there is no `{place}`: the render begins anew"));
+    if let Some((film, before)) = kept.read()? {
+        return go_on((film, before), &empty, (stage, options), kept);
     }
-    Ok(left.unwrap_or(empty))
+    report::warning(&format!("there is no `{}`: it begins anew", kept.place().display()));
+    Ok((empty, options))
+}
+
+/// A film that was left, and what it is to become: what it was to be, unless something is asked for.
+fn go_on(
+    (mut film, before): (Film, Asked),
+    empty: &Film,
+    (stage, mut options): (&Stage, Options),
+    kept: &mut Checkpoint,
+) -> Result<(Film, Options), Failure> {
+    let place = kept.place().display().to_string();
+    let fits = film.size == empty.size && film.window == empty.window && film.holds == empty.holds;
+    if !fits {
+        let message = format!("cannot go on with `{place}`: it is damaged");
+        return Err(Failure::new(Exit::Input, message));
+    }
+    if options.spp.is_none() && !options.goal.is_some() {
+        (options.spp, options.goal.error) = (before.spp, before.error);
+    }
+    let (has, asked) = (film.most_samples(), options.samples(stage));
+    if has > asked {
+        let message =
+            format!("`{place}` has {has} samples of a pixel, more than the {asked} asked for");
+        return Err(Failure::new(Exit::Input, message).help(format!("--spp {has}, or more")));
+    }
+    if Asked::of(&options) != before || options.goal.time.is_some() {
+        film.ask_anew();
+    }
+    kept.asks(Asked::of(&options));
+    Ok((film, options))
 }
 
 /// Keeps the film if it is time for it. What cannot be kept is told, and nothing else is lost.
@@ -189,8 +232,8 @@ fn keep_sometimes(kept: &mut Checkpoint, film: &Film, (guard, beat): (&Guard, &B
     if let Err(failure) = kept.keep(film) {
         report::warning(&failure.message);
     }
-    drop(whole);
     guard.measuring();
+    drop(whole);
     beat.phase(Phase::Rendering);
 }
 

@@ -26,7 +26,7 @@ fn a_render_that_is_killed_twenty_times_goes_on_to_the_same_picture() {
         kept += u32::from(folder.path("left.checkpoint").exists());
     }
     assert!(kept > 0, "none of them lived until its first checkpoint");
-    let last = folder.luxel(&args);
+    let last = folder.luxel(&[&args[..], &["--json"]].concat());
     assert_eq!(last.code, 0, "{last:?}");
     assert!(folder.read("left.exr") == folder.read("whole.exr"));
     assert!(!folder.path("left.checkpoint").exists());
@@ -44,6 +44,14 @@ fn nothing_is_gone_on_with_that_is_of_another_picture() {
     assert!(seed.code == 1 && seed.err.contains("it is of another seed"), "{seed:?}");
     let size = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--size", "8x8"]);
     assert!(size.code == 1 && size.err.contains("it is of another scene"), "{size:?}");
+    let fewer = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--spp", "9"]);
+    assert!(fewer.code == 1 && fewer.err.contains("64 samples of a pixel, more than"), "{fewer:?}");
+    // What nobody says is as it was: the error is not reached this time either.
+    let again = folder.luxel(&["render", "a.scene", "-o", "a", "--resume"]);
+    assert!(again.code == 3 && again.out.contains("is not reached"), "{again:?}");
+    let silent =
+        folder.luxel(&["render", "a.scene", "-o", "a", "--error", "0.0001%", "--spp", "64"]);
+    assert!(silent.err.contains("a.checkpoint` is of this picture"), "{silent:?}");
     // A comment is no other scene, and more samples are more of the same.
     folder.write("a.scene", &format!("{SCENE}// said later\n"));
     let more = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--spp", "80", "--json"]);
@@ -51,6 +59,11 @@ fn nothing_is_gone_on_with_that_is_of_another_picture() {
     assert!(more.out.contains("\"least_samples\":80"), "{}", more.out);
     let anew = folder.luxel(&["render", "a.scene", "-o", "a", "--resume"]);
     assert!(anew.code == 0 && anew.err.contains("begins anew"), "{anew:?}");
+    // Somebody else's file is left alone.
+    folder.write("a.checkpoint", "a diary");
+    let foreign = folder.luxel(&["render", "a.scene", "-o", "a"]);
+    assert!(foreign.code == 1 && foreign.err.contains("is in the way"), "{foreign:?}");
+    assert_eq!(folder.read("a.checkpoint"), b"a diary");
 }
 
 #[test]

@@ -12,6 +12,8 @@ mod supervise;
 
 use std::time::Duration;
 
+use crate::args::MOST_SECONDS;
+
 pub(crate) use beat::{Beat, Phase};
 pub(crate) use child::Child;
 pub(crate) use ending::{End, Ending};
@@ -62,9 +64,6 @@ impl IsolateArgs {
         self.patience.unwrap_or(usual)
     }
 }
-
-/// More than a year is no limit.
-const MOST_SECONDS: f64 = 4e7;
 
 fn seconds(text: &str) -> Result<Duration, String> {
     let found = text.parse().ok().filter(|s: &f64| *s > 0.0 && *s <= MOST_SECONDS);

@@ -55,6 +55,10 @@ impl Errors {
         let last = sorted.len().checked_sub(1)?;
         let squares: f64 = sorted.iter().map(|(error, _)| error * error).sum();
         let (worst, worst_at) = sorted[last];
+        // A tile of which nothing is known is not good.
+        let is_above = |tile: &Tile| {
+            scale.of_tile(tile).is_none_or(|error| error > limit) && limit.is_finite()
+        };
         Some(Self {
             rms: (squares / sorted.len() as f64).sqrt(),
             median: sorted[last / 2].0,
@@ -62,8 +66,7 @@ impl Errors {
             worst,
             worst_at,
             above: sorted.iter().filter(|(error, _)| *error > limit).count() as u64,
-            tiles_above: film.tiles().iter().filter(|tile| scale.of_tile(tile) > limit).count()
-                as u64,
+            tiles_above: film.tiles().iter().filter(|tile| is_above(tile)).count() as u64,
         })
     }
 }
@@ -91,11 +94,11 @@ impl Scale {
         (pixel.n >= 2 && relative.is_finite()).then_some(relative)
     }
 
-    /// Root mean square over a tile; zero if nothing is known of it.
-    pub(crate) fn of_tile(&self, tile: &Tile) -> f64 {
+    /// Root mean square over a tile; nothing where none of its pixels is known.
+    pub(crate) fn of_tile(&self, tile: &Tile) -> Option<f64> {
         let known = tile.pixels.iter().filter_map(|pixel| self.error(pixel));
         let (squares, n) = known.fold((0.0, 0.0), |(sum, n), error| (sum + error * error, n + 1.0));
-        (squares / f64::max(n, 1.0)).sqrt()
+        (n > 0.0).then(|| (squares / n).sqrt())
     }
 }
 

@@ -14,7 +14,7 @@ pub enum Layer {
     Normal,
     /// World space, metres.
     Position,
-    /// Distance from where the ray begins, metres.
+    /// Distance from where the camera's ray begins, metres.
     Depth,
     /// Number of the material from 1, of the first sample; 0 for none.
     Material,
@@ -22,7 +22,7 @@ pub enum Layer {
     Object,
     /// From where a place is seen as the shutter opens to where as it closes, pixels.
     Motion,
-    /// Steps of tracing, nodes and primitives, of the whole path.
+    /// Steps of tracing, nodes and primitives, of the whole path; those of shadow rays do not count.
     Cost,
 }
 

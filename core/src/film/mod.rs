@@ -81,6 +81,22 @@ impl Film {
         self.tiles.iter().map(|tile| u64::from(tile.next) * tile.pixels.len() as u64).sum()
     }
 
+    /// Room that its pixels take.
+    pub fn bytes(&self) -> usize {
+        let of_pixel = size_of::<Pixel>() + size_of::<f64>() * self.holds.channels().len();
+        self.window.area() * of_pixel
+    }
+
+    /// Forgets how many samples its tiles were about to have: what is asked has changed.
+    pub fn ask_anew(&mut self) {
+        self.tiles.iter_mut().for_each(|tile| tile.aim = tile.next);
+    }
+
+    /// The most samples that a pixel has been given.
+    pub fn most_samples(&self) -> u32 {
+        self.tiles.iter().map(|tile| tile.next).max().unwrap_or(0)
+    }
+
     pub(crate) fn columns(&self) -> usize {
         self.columns as usize
     }
@@ -114,7 +130,7 @@ impl Film {
             let inside = at - tile.rect.min;
             let pixel = (inside.y * tile.rect.size.x + inside.x) as usize;
             let sums = &tile.layers[pixel * n..][..n];
-            layer::resolve(channels[i].of, sums[i], (f64::from(tile.next), sums[0]))
+            layer::resolve(channels[i].of, sums[i], (f64::from(tile.pixels[pixel].n), sums[0]))
         };
         let one =
             |i: usize| (channels[i].clone(), self.window.points().map(|at| value(i, at)).collect());

@@ -62,19 +62,24 @@ impl Film {
         if window.intersection(Rect::new(UVec2::ZERO, size)) != window || window.area() == 0 {
             return Err(Unreadable("its window lies outside the picture"));
         }
-        // Before any room is made for the pixels.
-        if from.0.len() / PIXEL < window.area() {
-            return Err(Unreadable("it ends too early"));
-        }
         let given = from.take::<{ Layer::ALL.len() }>()?;
         let layers = Layer::ALL.into_iter().zip(given).filter(|(_, given)| *given != 0);
         let layers = layers.map(|(layer, _)| layer).collect();
         let groups = (0..from.u32()?).map(|_| from.text()).collect::<Result<_, _>>()?;
-        let mut film = Self::holding(size, window, Holds { layers, groups });
+        let holds = Holds { layers, groups };
+        // Before any room is made for the pixels.
+        let bytes = PIXEL + 8 * holds.channels().len();
+        if from.0.len() / bytes < window.area() {
+            return Err(Unreadable("it ends too early"));
+        }
+        let mut film = Self::holding(size, window, holds);
         for tile in &mut film.tiles {
             (tile.next, tile.aim) = (from.u32()?, from.u32()?);
             for pixel in &mut tile.pixels {
                 *pixel = from.pixel()?;
+                if pixel.n.checked_add(pixel.bad).is_none_or(|n| n > tile.next) {
+                    return Err(Unreadable("a pixel has more samples than its tile"));
+                }
             }
             for sum in &mut tile.layers {
                 *sum = from.take().map(f64::from_le_bytes)?;
@@ -152,7 +157,8 @@ mod tests {
         let mut film = Film::holding(UVec2::new(64, 64), window, holds);
         for (i, tile) in (0_u8..).zip(film.tiles_mut()) {
             tile.layers[2] = f64::from(i) / 7.0;
-            (tile.next, tile.aim) = (u32::from(i), 100);
+            tile.aim = 100;
+            tile.next = u32::from(i) * 7;
             for sample in 0..i * 7 {
                 tile.pixels[3].push(DVec3::new(0.1, 1e-30, 1e30) * f64::from(sample));
             }

@@ -86,7 +86,8 @@ pub struct FilmSettings<'a> {
     /// Beside colour, how far it moves over the picture while the shutter is open, pixels.
     #[param(default = false)]
     pub motion: bool,
-    /// Beside colour, the steps that tracing a path takes: nodes and primitives.
+    /// Beside colour, the steps that tracing a path takes, nodes and primitives, without those of shadow
+    /// rays.
     #[param(default = false)]
     pub cost: bool,
     /// Where the EXR is written; the PNG stands beside it. The scene's name if absent.

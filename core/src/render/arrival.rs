@@ -37,8 +37,13 @@ impl Shader<'_, '_> {
     }
 
     /// The ray was scattered by a medium at `p`.
-    pub(super) fn medium(self, ray: &Ray, t: f64, phase: &dyn Phase, at: &mut Arrival) {
-        begin(at, ArrivalKind::Medium, ray, t, 0);
+    pub(super) fn medium(
+        self,
+        (ray, t, steps): (&Ray, f64, u32),
+        phase: &dyn Phase,
+        at: &mut Arrival,
+    ) {
+        begin(at, ArrivalKind::Medium, ray, t, steps);
         let (p, wo) = (ray.at(t), -ray.d);
         at.p = p;
         self.path.on = None;

@@ -90,7 +90,7 @@ impl Plan {
             return false;
         };
         let scale = Scale::of(film);
-        film.tiles().iter().all(|tile| scale.of_tile(tile) <= error)
+        film.tiles().iter().all(|tile| scale.of_tile(tile).is_none_or(|found| found <= error))
     }
 }
 
@@ -105,7 +105,9 @@ struct Aim {
 /// its error is too large by. It at most doubles, and finds out again.
 fn for_error(film: &Film, target: f64, most: u32) -> Vec<Aim> {
     let scale = Scale::of(film);
-    let ratios: Vec<f64> = film.tiles().iter().map(|tile| scale.of_tile(tile) / target).collect();
+    // More of what is not finite tells nothing more.
+    let ratio = |tile| scale.of_tile(tile).unwrap_or(0.0) / target;
+    let ratios: Vec<f64> = film.tiles().iter().map(ratio).collect();
     let counts: Vec<u32> = film.tiles().iter().map(|tile| tile.next).collect();
     let of_tile = |i: usize| {
         let n = counts[i];
@@ -125,25 +127,25 @@ fn for_error(film: &Film, target: f64, most: u32) -> Vec<Aim> {
     (0..counts.len()).map(of_tile).collect()
 }
 
-/// Twice the samples for the half of the tiles where one more lowers the squared error most.
+/// Twice the samples for the tiles where one more lowers the squared error nearly as much as anywhere:
+/// doubled, a tile gains a quarter of what it gained before.
 fn for_time(film: &Film, most: u32) -> Vec<Aim> {
     let scale = Scale::of(film);
+    let counts: Vec<u32> = film.tiles().iter().map(|tile| tile.next).collect();
     let gain = |i: usize| {
-        let tile = &film.tiles()[i];
-        scale.of_tile(tile).powi(2) / f64::from(tile.next.max(1))
+        let error = scale.of_tile(&film.tiles()[i]).unwrap_or(0.0);
+        if counts[i] < most { error * error / f64::from(counts[i].max(1)) } else { 0.0 }
     };
-    let mut order: Vec<(f64, usize)> = (0..film.tiles().len())
-        .filter(|i| film.tiles()[*i].next < most)
-        .map(|i| (gain(i), i))
-        .collect();
-    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut aims: Vec<Aim> =
-        film.tiles().iter().map(|tile| Aim { next: tile.next, last: tile.next }).collect();
-    for (_, i) in &order[..order.len().div_ceil(2)] {
-        let next = aims[*i].next.saturating_mul(2).min(most);
-        aims[*i] = Aim { next, last: next };
-    }
-    aims
+    let gains: Vec<f64> = (0..counts.len()).map(gain).collect();
+    let limit = gains.iter().copied().fold(0.0, f64::max) / 4.0;
+    let of_tile = |i: usize| {
+        let n = counts[i];
+        let lags = |j: usize| gains[j] >= limit && counts[j] / LAG > n;
+        let needs = gains[i] >= limit || neighbours(i, film.columns(), counts.len()).any(lags);
+        let next = if needs { n.saturating_mul(2).min(most) } else { n };
+        Aim { next, last: next }
+    };
+    (0..counts.len()).map(of_tile).collect()
 }
 
 /// Up to whole blocks of the point sets that samples come from.
@@ -228,12 +230,30 @@ mod tests {
     }
 
     #[test]
-    fn time_goes_to_the_half_that_gains_most() {
+    fn time_goes_where_it_gains_most_and_none_lags_far_behind() {
         let goal = Goal { error: None, time: Some(Duration::from_secs(1)) };
-        let mut found = film(64, 0.1, 1.0);
-        assert!(Plan::new(goal, MOST).aim(&mut found).is_some());
-        let more = found.tiles().iter().filter(|tile| tile.aim == 128).count();
-        assert_eq!((more, found.tiles()[4].aim), (5, 128));
+        let aims = |found: &mut Film| {
+            assert!(Plan::new(goal, MOST).aim(found).is_some());
+            found.tiles().iter().map(|tile| tile.aim).collect::<Vec<_>>()
+        };
+        assert_eq!(aims(&mut film(64, 0.1, 1.0)), [64, 64, 64, 64, 128, 64, 64, 64, 64]);
+        let mut uneven = film(64, 0.1, 9.0);
+        (uneven.tiles_mut()[4].next, uneven.tiles_mut()[4].aim) = (64 * LAG + LAG, 64 * LAG + LAG);
+        assert!(aims(&mut uneven).iter().all(|aim| *aim >= 128));
+        // Where nothing gains all go on alike.
+        assert_eq!(aims(&mut film(64, 0.0, 0.0)), [128; 9]);
+    }
+
+    #[test]
+    fn tiles_of_which_nothing_is_known_end_nothing_and_are_not_asked_again() {
+        let mut found = film(64, 0.0, 0.0);
+        for pixel in &mut found.tiles_mut()[4].pixels {
+            *pixel = crate::film::Pixel::default();
+            pixel.push(DVec3::NAN);
+        }
+        assert_eq!(Plan::new(error(0.1), MOST).aim(&mut found), None);
+        let errors = crate::film::Errors::of_film(&found, 0.1).unwrap();
+        assert_eq!((errors.tiles_above, errors.above), (1, 0));
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod watched;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use luxel_sdk::kind::Wants;
@@ -59,6 +59,12 @@ impl Options {
     pub fn samples(&self, stage: &Stage) -> u32 {
         let of_scene = || stage.sampler.fixed().sampler().samples();
         self.spp.unwrap_or_else(|| if self.goal.is_some() { goal::MOST } else { of_scene() })
+    }
+
+    /// Samples per pixel that are asked for before it is known how many more are needed.
+    pub fn samples_at_first(&self, stage: &Stage) -> u32 {
+        let most = self.samples(stage);
+        if self.goal.is_some() { most.min(goal::LEAST) } else { most }
     }
 
     /// The seed for this stage.
@@ -174,6 +180,11 @@ pub fn can_take_more(stage: &Stage) -> bool {
     can_go_on(stage) && remote(stage.sampler.class()).is_none()
 }
 
+/// What a pixel of the stage's picture takes.
+pub fn bytes_of_pixel(stage: &Stage) -> usize {
+    empty_film(stage, Rect::new(UVec2::ZERO, UVec2::ONE)).bytes()
+}
+
 /// A film for a part of the stage's picture, with room for what is recorded beside colour: nothing
 /// where an integrator owns the picture.
 pub fn empty_film(stage: &Stage, window: Rect) -> Film {
@@ -182,8 +193,9 @@ pub fn empty_film(stage: &Stage, window: Rect) -> Film {
     Film::holding(stage.film.resolution, window, holds)
 }
 
-/// Goes on with a film, whose window is what is measured. With the same stage and seed the bits in
-/// the end are those of a render that was never left.
+/// Goes on with a film, whose window is what is measured. With the same stage, seed and goal the bits
+/// in the end are those of a render that was never left; not after coarse steps of which some are
+/// missing, which the film does not count as samples.
 ///
 /// # Panics
 /// As `render`; if a film is gone on with that `can_go_on` denies.
@@ -221,12 +233,12 @@ pub fn render_on(
                 .in_turns(turns)
                 .recording(&holds)
         };
-        passes(film, &plan, options.coarse, &mut |film, lattice, reached| {
+        passes(film, &plan, options.coarse, &mut |film, Turn { lattice, longest, reached }| {
             // Until each pixel has a sample no time is over.
-            let end = end.filter(|_| reached.samples > 1);
+            let end = end.filter(|_| film.tiles().iter().all(|tile| tile.next > 0));
             let stop = Stop { first: lattice.step() == lattice::COARSEST, end, ..stop };
             film.tiles_mut().par_iter_mut().for_each_init(worker, |worker, tile| {
-                worker.pass(tile, next(tile), lattice, stop);
+                worker.pass(tile, next(tile, longest), lattice, stop);
             });
             if stop.is_asked() {
                 return false;
@@ -260,37 +272,61 @@ const COURTESY: i32 = 5;
 
 /// The samples that a tile gets in the next pass. Passes grow: a first picture comes soon, later ones
 /// cost little to gather.
-fn next(tile: &Tile) -> Range<u32> {
+fn next(tile: &Tile, longest: u32) -> Range<u32> {
     let done = tile.next;
-    done..tile.aim.min(done.saturating_add(done.clamp(1, PASS)))
+    done..tile.aim.min(done.saturating_add(done.clamp(1, longest)))
 }
 
-/// Passes over a film until no tile needs more, or until one says false; each is told which pixels it
-/// is for and what is reached after it.
+/// One pass over the film.
+#[derive(Clone, Copy)]
+struct Turn {
+    /// Which pixels it is for.
+    lattice: Lattice,
+    /// Most samples of each.
+    longest: u32,
+    /// What is reached after it.
+    reached: Reached,
+}
+
+/// Longer than this no pass should take: between two the picture is seen and kept.
+const SLOW: Duration = Duration::from_secs(4);
+
+/// Passes over a film until no tile needs more, or until one says false.
 fn passes(
     film: &mut Film,
     plan: &Plan,
     coarse: bool,
-    pass: &mut dyn FnMut(&mut Film, Lattice, Reached) -> bool,
+    pass: &mut dyn FnMut(&mut Film, Turn) -> bool,
 ) {
+    let mut longest = PASS;
     while let Some(beyond) = plan.aim(film) {
         while film.tiles().iter().any(|tile| tile.missing() > 0) {
-            let is_first = film.samples() == 0;
+            let (is_first, start) = (film.samples() == 0, Instant::now());
             for lattice in Lattice::steps(coarse && is_first) {
-                let ends = film.tiles().iter().map(|tile| next(tile).end);
-                let left = |tile: &Tile| {
-                    u64::from(tile.aim.saturating_sub(next(tile).end)) * tile.pixels.len() as u64
-                };
-                let reached = Reached {
-                    step: lattice.step(),
-                    samples: ends.max().unwrap_or(0),
-                    left: beyond + film.tiles().iter().map(left).sum::<u64>(),
-                };
-                if !pass(film, lattice, reached) {
+                let reached = reached(film, (lattice, longest), beyond);
+                if !pass(film, Turn { lattice, longest, reached }) {
                     return;
                 }
             }
+            // How samples are gathered changes no bit.
+            longest = match start.elapsed() {
+                took if took > SLOW => (longest / 2).max(1),
+                took if took < SLOW / 4 => (longest * 2).min(PASS),
+                _ => longest,
+            };
         }
+    }
+}
+
+/// What a pass comes to.
+fn reached(film: &Film, (lattice, longest): (Lattice, u32), beyond: u64) -> Reached {
+    let end = |tile: &Tile| next(tile, longest).end;
+    let left =
+        |tile: &Tile| u64::from(tile.aim.saturating_sub(end(tile))) * tile.pixels.len() as u64;
+    Reached {
+        step: lattice.step(),
+        samples: film.tiles().iter().map(end).max().unwrap_or(0),
+        left: beyond + film.tiles().iter().map(left).sum::<u64>(),
     }
 }
 
@@ -363,17 +399,22 @@ mod tests {
             let mut film = Film::new(size, Rect::new(UVec2::ZERO, size));
             let (mut steps, mut longest) = (vec![], 0);
             let plan = Plan::new(Goal::default(), spp);
-            passes(&mut film, &plan, coarse, &mut |film, lattice, reached| {
-                for tile in film.tiles_mut() {
-                    let range = next(tile);
-                    longest = longest.max(range.len());
-                    assert_eq!((range.start, range.end), (tile.next, reached.samples));
-                    tile.next = if lattice.step() == 1 { range.end } else { 0 };
-                }
-                steps.push(lattice.step());
-                assert_eq!(reached.left, u64::from(spp - reached.samples) * 60);
-                true
-            });
+            passes(
+                &mut film,
+                &plan,
+                coarse,
+                &mut |film, Turn { lattice, longest: most, reached }| {
+                    for tile in film.tiles_mut() {
+                        let range = next(tile, most);
+                        longest = longest.max(range.len());
+                        assert_eq!((range.start, range.end), (tile.next, reached.samples));
+                        tile.next = if lattice.step() == 1 { range.end } else { 0 };
+                    }
+                    steps.push(lattice.step());
+                    assert_eq!(reached.left, u64::from(spp - reached.samples) * 60);
+                    true
+                },
+            );
             assert!(film.tiles().iter().all(|tile| tile.next == spp));
             assert!(longest <= 16);
             let coarser = steps.iter().filter(|step| **step > 1).count();

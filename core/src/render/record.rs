@@ -19,8 +19,8 @@ pub(super) struct Recorder {
     ofs: Vec<Of>,
     /// Sample by sample, as many numbers as there are channels.
     values: Vec<f64>,
-    /// Whether the path in a lane has met nothing yet.
-    is_fresh: Vec<bool>,
+    /// Where the path in a lane began, if it has met nothing yet.
+    fresh: Vec<Option<DVec3>>,
     /// Light of the groups that the path in a lane has gathered, lane by lane.
     light: Vec<Spectrum>,
     /// What the paths that arrived had gathered before.
@@ -35,7 +35,7 @@ impl Recorder {
             n_groups,
             ofs: holds.channels().iter().map(|channel| channel.of).collect(),
             values: vec![],
-            is_fresh: vec![false; lanes],
+            fresh: vec![None; lanes],
             light: vec![Spectrum::ZERO; lanes * n_groups],
             before: vec![],
         }
@@ -58,8 +58,8 @@ impl Recorder {
     }
 
     /// A path begins in a lane.
-    pub(super) fn start(&mut self, lane: usize) {
-        self.is_fresh[lane] = true;
+    pub(super) fn start(&mut self, lane: usize, from: DVec3) {
+        self.fresh[lane] = Some(from);
         self.light[lane * self.n_groups..][..self.n_groups].fill(Spectrum::ZERO);
     }
 
@@ -71,14 +71,14 @@ impl Recorder {
         stage: &Stage,
         develop: &Develop,
     ) {
-        let is_first = std::mem::take(&mut self.is_fresh[lane]);
+        let from = self.fresh[lane].take();
         let n = self.ofs.len();
         let Some(values) = self.values.get_mut(path.job as usize * n..(path.job as usize + 1) * n)
         else {
             return;
         };
-        let has_met = is_first && at.kind != ArrivalKind::Escaped;
-        if has_met {
+        let from = from.filter(|_| at.kind != ArrivalKind::Escaped);
+        if from.is_some() {
             values[0] = 1.0;
         }
         let mut rest = &mut values[1..];
@@ -87,7 +87,8 @@ impl Recorder {
             rest = after;
             match layer {
                 Layer::Cost => own[0] += f64::from(at.steps),
-                _ if has_met => met(*layer, own, (path, at), stage, develop),
+                Layer::Depth => own[0] = from.map_or(own[0], |from| at.p.distance(from)),
+                _ if from.is_some() => met(*layer, own, (path, at), stage, develop),
                 _ => {}
             }
         }
@@ -158,13 +159,16 @@ impl Recorder {
         }
     }
 
-    /// Adds sample `sample` of `of` for each of some pixels to a tile.
-    pub(super) fn add(&self, tile: &mut Tile, chosen: &[u32], samples: usize) {
+    /// Adds so many samples of each of some pixels to a tile; those whose light is not finite count
+    /// nowhere.
+    pub(super) fn add(&self, tile: &mut Tile, chosen: &[u32], results: &[DVec3]) {
+        let samples = results.len() / chosen.len().max(1);
         let n = self.ofs.len();
         let is_first = tile.next == 0;
         for (i, pixel) in chosen.iter().enumerate() {
             let sums = &mut tile.layers[*pixel as usize * n..][..n];
-            for sample in 0..samples {
+            let is_finite = |sample: &usize| results[sample * chosen.len() + i].is_finite();
+            for sample in (0..samples).filter(is_finite) {
                 let values = &self.values[(sample * chosen.len() + i) * n..][..n];
                 for ((sum, value), of) in sums.iter_mut().zip(values).zip(&self.ofs) {
                     match of {
@@ -207,13 +211,12 @@ fn met(
         }
         Layer::Normal => own.copy_from_slice(&at.ns.to_array()),
         Layer::Position => own.copy_from_slice(&at.p.to_array()),
-        Layer::Depth => own[0] = at.t,
         Layer::Material => own[0] = number(Some(at.material).filter(|i| *i != u32::MAX)),
         Layer::Object => own[0] = number(on),
         Layer::Motion => {
             own.copy_from_slice(&motion(stage, on, (at.p, path.time)).to_array());
         }
-        Layer::Cost => {}
+        Layer::Depth | Layer::Cost => {}
     }
 }
 

@@ -133,7 +133,7 @@ impl<'s> Worker<'s> {
             }
         }
         if self.record.is_on() {
-            self.record.add(tile, &self.chosen, n);
+            self.record.add(tile, &self.chosen, &self.results);
         }
         if lattice.step() == 1 {
             tile.next = end;
@@ -223,7 +223,7 @@ impl<'s> Worker<'s> {
         self.paths[lane].start(cast::index(job), &found, u, stage);
         (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
         self.job.ray = found.ray;
-        self.record.start(lane);
+        self.record.start(lane, self.job.ray.o);
         Some(())
     }
 
@@ -380,7 +380,7 @@ impl<'s> Worker<'s> {
                 if let Some(t) = free.t.get() {
                     path.media = media;
                     let shader = Shader { stage, wants, path, samples, scratch, flight };
-                    return shader.medium(&ray, t, &medium.phase(), arrival);
+                    return shader.medium((&ray, t, steps), &medium.phase(), arrival);
                 }
             }
             path.media = media;

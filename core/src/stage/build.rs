@@ -138,6 +138,8 @@ struct Maker<'a> {
     watch: &'a Watch,
 }
 
+/// Most groups of lights: each is a picture of its own.
+const GROUPS: usize = 32;
 /// Most letters of the name of a group of lights.
 const GROUP_NAME: usize = 32;
 
@@ -162,12 +164,12 @@ impl Maker<'_> {
         if let Some(place) = self.stand(&flat.pose, flat.span) {
             self.made.lights.push(LightSource::Free { object, place });
             let group = self.group(flat.node);
-            self.made.light_groups.push(group);
+            self.made.group_of.push(group);
         }
     }
 
     /// The group that a light is of.
-    fn group(&mut self, light: NodeId) -> Option<Arc<str>> {
+    fn group(&mut self, light: NodeId) -> Option<u32> {
         let mut given = self.scene.node(light).params.iter();
         let (name, span) = given.find_map(|argument| match &argument.value {
             Value::Text(name) if argument.name == "group" => Some((name, argument.span)),
@@ -180,7 +182,17 @@ impl Maker<'_> {
             let help = format!("at most {GROUP_NAME} of them: it names channels of the EXR");
             self.builder.diagnostics.push(wrong.help(help));
         }
-        Some((**name).into())
+        let names = &mut self.made.group_names;
+        if let Some(known) = names.iter().position(|group| **group == **name) {
+            return Some(index(known));
+        }
+        if names.len() == GROUPS {
+            let message = format!("more than {GROUPS} groups of lights");
+            self.builder.diagnostics.push(Diagnostic::error("E0405", span, message));
+            return None;
+        }
+        names.push((**name).into());
+        Some(index(names.len() - 1))
     }
 
     /// A light of a surface that nobody gave: it would shine from nowhere.
@@ -244,7 +256,7 @@ impl Maker<'_> {
         if let Some(object) = light {
             self.shining(object, &placement, flat.span);
             let group = self.group(flat.node);
-            self.made.light_groups.push(group);
+            self.made.group_of.push(group);
         }
         self.made.placements.push(placement);
     }

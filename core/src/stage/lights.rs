@@ -82,13 +82,8 @@ pub struct FoundLight {
 }
 
 impl Lights {
-    /// Lights, chosen about in proportion to their power.
-    pub(super) fn new(
-        sources: Vec<LightSource>,
-        names: &[Option<Arc<str>>],
-        stage_radius: f64,
-        mode: ColorMode,
-    ) -> Self {
+    /// Lights of no group, chosen about in proportion to their power.
+    pub(super) fn new(sources: Vec<LightSource>, stage_radius: f64, mode: ColorMode) -> Self {
         let power: Vec<f64> =
             sources.iter().map(|light| f64::from(power(light, stage_radius, mode))).collect();
         let mean = power.iter().sum::<f64>() / power.len().max(1) as f64;
@@ -100,8 +95,13 @@ impl Lights {
             object.fixed().light().form() == luxel_sdk::kind::LightForm::Infinite
         });
         let infinite = infinite.collect();
-        let (groups, group_of) = groups(names);
+        let (groups, group_of) = (vec![], vec![None; sources.len()]);
         Self { infinite, choice: Alias::new(&weights).ok(), groups, group_of, sources }
+    }
+
+    /// The same in groups.
+    pub(super) fn in_groups(self, groups: Vec<Arc<str>>, group_of: Vec<Option<u32>>) -> Self {
+        Self { groups, group_of, ..self }
     }
 
     /// Whether there is none.
@@ -133,20 +133,6 @@ impl Lights {
         let (source, chance) = (&self.sources[drawn.index], narrow(drawn.pmf));
         Some(Chosen { source, light: index(drawn.index), chance, u: drawn.u })
     }
-}
-
-/// Names of groups, each once, and which of them each source is of.
-fn groups(names: &[Option<Arc<str>>]) -> (Vec<Arc<str>>, Vec<Option<u32>>) {
-    let mut groups: Vec<Arc<str>> = vec![];
-    let mut number = |name: &Arc<str>| {
-        let known = groups.iter().position(|group| group == name);
-        index(known.unwrap_or_else(|| {
-            groups.push(name.clone());
-            groups.len() - 1
-        }))
-    };
-    let group_of = names.iter().map(|name| name.as_ref().map(&mut number)).collect();
-    (groups, group_of)
 }
 
 /// A source that was chosen.

@@ -40,8 +40,9 @@ pub(super) struct Made {
     pub(super) media: Vec<Arc<Object>>,
     pub(super) medium_of: BTreeMap<NodeId, u32>,
     pub(super) lights: Vec<LightSource>,
-    /// Of each of them the group.
-    pub(super) light_groups: Vec<Option<Arc<str>>>,
+    /// Groups of lights by name, and which of them each light is of.
+    pub(super) group_names: Vec<Arc<str>>,
+    pub(super) group_of: Vec<Option<u32>>,
     pub(super) default_material: Option<u32>,
 }
 
@@ -74,7 +75,8 @@ impl Made {
         let mut cache = Cache { assets: self.assets, objects, shapes: self.shapes };
         cache.inherit(before);
         let mut stage = Stage {
-            lights: Lights::new(self.lights, &self.light_groups, sphere.1, mode),
+            lights: Lights::new(self.lights, sphere.1, mode)
+                .in_groups(self.group_names, self.group_of),
             top,
             geometries: self.geometries,
             placements: self.placements,

@@ -92,12 +92,31 @@ pub(crate) fn write_planes(
     let mut image = Image::from_layer(layer);
     image.attributes.display_window = IntegerBounds::new((0, 0), corner(size));
     image.attributes.chromaticities = Some(srgb());
-    let json = AttributeValue::Text(Text::new_or_panic(json));
+    let json = Text::new_or_none(ascii(json)).ok_or_else(|| io::Error::other("odd notes"))?;
+    let json = AttributeValue::Text(json);
     image.layer_data.attributes.other.insert(Text::from("luxel"), json);
     image.write().to_buffered(to).map_err(|error| match error {
         exr::error::Error::Io(error) => error,
         other => io::Error::other(other.to_string()),
     })
+}
+
+/// The same JSON in ASCII alone: an EXR's texts know no letters beyond Latin-1.
+fn ascii(json: &str) -> String {
+    use std::fmt::Write;
+
+    let mut out = String::with_capacity(json.len());
+    for c in json.chars() {
+        if c.is_ascii() {
+            out.push(c);
+            continue;
+        }
+        for unit in c.encode_utf16(&mut [0; 2]) {
+            // Nothing fails that writes to a text.
+            let _ = write!(out, "\\u{unit:04x}");
+        }
+    }
+    out
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the file holds 32-bit floats")]
@@ -117,7 +136,7 @@ mod tests {
 
     fn bytes(film: &Film) -> Vec<u8> {
         let mut file = Cursor::new(vec![]);
-        write(&mut file, film, &Notes { json: r#"{"é":1}"#.into() }).unwrap();
+        write(&mut file, film, &Notes { json: r#"{"é球𝄞":1}"#.into() }).unwrap();
         file.into_inner()
     }
 
@@ -150,7 +169,9 @@ mod tests {
         let AttributeValue::Text(notes) = &layer.attributes.other[&Text::from("luxel")] else {
             panic!("the notes are text")
         };
-        assert_eq!(notes.to_string(), r#"{"é":1}"#);
+        assert_eq!(notes.to_string(), r#"{"\u00e9\u7403\ud834\udd1e":1}"#);
+        let read: serde_json::Value = serde_json::from_str(&notes.to_string()).unwrap();
+        assert_eq!(read["é球𝄞"], 1);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::thread::{Scope, ScopedJoinHandle};
 use super::Args;
 use super::audience::Audience;
 use super::round::Sitting;
+use crate::exit::blaming;
 use crate::interrupt::Saving;
 use crate::isolate::Beat;
 use crate::report;
@@ -70,7 +71,8 @@ impl<'scope, 'env> Press<'scope, 'env> {
 /// Writes a picture until it is on the disk as it is to be shown.
 fn write(Sheet { sitting, .. }: &Sheet<'_>, args: &Args, audience: &Audience) {
     while let Some(print) = sitting.to_print() {
-        let written = print.write(args, &Beat::silent());
+        let name = args.file.display().to_string();
+        let written = blaming(&name, || print.write(args, &Beat::silent())).flatten();
         sitting.printed(written.is_ok());
         match written {
             Ok(output) => audience.written(output),

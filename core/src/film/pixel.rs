@@ -147,7 +147,7 @@ pub fn degrees_of_freedom(n: u32) -> f64 {
     let whole = 1_u32 << n.ilog2();
     let share = |samples: u32| f64::from(samples) / f64::from(whole);
     let first = share(FIRST).powi(2) / f64::from(FIRST - 1);
-    let starts = std::iter::successors(Some(FIRST), |start| Some(start * 2));
+    let starts = std::iter::successors(Some(FIRST), |start| start.checked_mul(2));
     let later = starts.take_while(|start| *start < whole);
     let later: f64 = later.map(|start| share(start).powi(2) / f64::from(BLOCKS - 1)).sum();
     1.0 / (first + later)
@@ -255,6 +255,7 @@ mod tests {
         }
         assert!((degrees_of_freedom(32) - 1.0 / (0.25 / 7.0 + 0.25 / 15.0)).abs() < 1e-9);
         assert!((20.9..21.0).contains(&degrees_of_freedom(1 << 20)));
+        assert!((20.9..21.1).contains(&degrees_of_freedom(u32::MAX)));
         // Student's t, 97.5 %: 3.18245, 2.36462, 2.13145 for 3, 7 and 15 degrees of freedom.
         for (n, t) in [(4, 3.18245), (8, 2.36462), (16, 2.13145)] {
             assert!((half_width_95(n) / t - 1.0).abs() < 2e-3, "{n}: {}", half_width_95(n));

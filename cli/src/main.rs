@@ -28,6 +28,7 @@ mod verify;
 mod view;
 mod watch;
 mod words;
+mod written;
 
 use std::process::ExitCode;
 

@@ -21,6 +21,7 @@ mod preview;
 mod progress;
 mod render;
 mod report;
+mod study;
 mod summary;
 #[cfg(test)]
 mod testing;
@@ -60,6 +61,7 @@ enum Command {
     View(view::Args),
     Check(check::Args),
     Verify(verify::Args),
+    Study(study::Args),
     List(list::Args),
     Describe(describe::Args),
     Plugin(plugin::Args),
@@ -83,6 +85,7 @@ fn main() -> ExitCode {
         Command::View(args) => view::run(args),
         Command::Check(args) => check::run(args),
         Command::Verify(args) => verify::run(args),
+        Command::Study(args) => study::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),
         Command::Plugin(args) => plugin::run(args),

@@ -11,6 +11,7 @@ mod plugin;
 #[cfg(test)]
 pub(crate) mod program;
 mod resume;
+mod study;
 mod verify;
 mod watch;
 

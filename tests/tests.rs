@@ -34,6 +34,8 @@ mod house;
 #[cfg(test)]
 mod lamps;
 #[cfg(test)]
+mod layers;
+#[cfg(test)]
 mod load;
 #[cfg(test)]
 mod manual;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use glam::UVec2;
 use luxel_core::accel::Precision;
-use luxel_core::film::Rect;
+use luxel_core::film::{Layer, Rect};
 use luxel_core::render::Options;
 
 /// How a scene is read.
@@ -22,6 +22,10 @@ pub(crate) struct LoadArgs {
     /// How rays meet the triangles of meshes: fast, standard or exact [default: as the film says]
     #[arg(long, value_name = "HOW", value_parser = precision)]
     pub(crate) precision: Option<Precision>,
+    /// Record this beside colour, as the film's parameters of these names do: `albedo`, `normal`,
+    /// `position`, `depth`, `material_id`, `object_id`, `motion`, `cost`
+    #[arg(long = "aov", value_name = "LAYER,…", value_delimiter = ',', value_parser = layer)]
+    pub(crate) layers: Vec<Layer>,
 }
 
 /// Where plugin libraries come from.
@@ -99,6 +103,11 @@ pub(crate) fn size(text: &str) -> Result<UVec2, String> {
         Some((Ok(w @ 1..=MAX_SIDE), Ok(h @ 1..=MAX_SIDE))) => Ok(UVec2::new(w, h)),
         _ => Err(format!("expected WIDTHxHEIGHT, each from 1 to {MAX_SIDE}, as in 640x480")),
     }
+}
+
+fn layer(text: &str) -> Result<Layer, String> {
+    let names = || Layer::ALL.map(Layer::name).join(", ");
+    Layer::of_name(text.trim()).ok_or_else(|| format!("expected some of {}", names()))
 }
 
 fn precision(text: &str) -> Result<Precision, String> {

@@ -131,6 +131,9 @@ pub(crate) fn read(
         if let (Some(scene), Some(precision)) = (&mut scene, args.precision) {
             scene.set_precision(precision);
         }
+        if let Some(scene) = &mut scene {
+            args.layers.iter().for_each(|layer| scene.add_layer(*layer));
+        }
         let luxel_lang::Loaded { diagnostics, sources, params, .. } = read;
         Text { scene, diagnostics, sources, files, params }
     })

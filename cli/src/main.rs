@@ -4,6 +4,8 @@
 mod args;
 mod check;
 mod checkpoint;
+mod compare;
+mod denoise;
 mod describe;
 mod exit;
 mod files;
@@ -52,6 +54,7 @@ Examples:
   luxel render scenes/cornell.scene
   luxel watch scenes/cornell.scene --spp 16
   luxel view cornell.exr
+  luxel compare cornell.exr reference.exr
   luxel describe material diffuse";
 
 #[derive(Subcommand)]
@@ -59,6 +62,8 @@ enum Command {
     Render(render::Args),
     Watch(watch::Args),
     View(view::Args),
+    Compare(compare::Args),
+    Denoise(denoise::Args),
     Check(check::Args),
     Verify(verify::Args),
     Study(study::Args),
@@ -83,6 +88,8 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Watch(args) => watch::run(args),
         Command::View(args) => view::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Study(args) => study::run(args),

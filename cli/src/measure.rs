@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use luxel_core::film::{Errors, Film, Rect};
-use luxel_core::render::{Control, Look, Options, Outcome, Reached, render_on};
+use luxel_core::render::{Control, Look, Options, Outcome, Reached, can_go_on, render_on};
 use luxel_core::stage::Stage;
 
 use crate::exit::{Exit, Failure, blaming};
@@ -50,7 +50,8 @@ pub(crate) fn window(stage: &Stage, options: &Options) -> Result<Rect, Failure> 
 /// # Errors
 /// As `window`.
 pub(crate) fn empty(stage: &Stage, options: &Options) -> Result<Film, Failure> {
-    Ok(Film::new(stage.film.resolution, window(stage, options)?))
+    let layers = if can_go_on(stage) { &*stage.film.layers } else { &[] };
+    Ok(Film::with_layers(stage.film.resolution, window(stage, options)?, layers))
 }
 
 /// Renders on a film, with a line of progress if wanted; `look` sees the picture grow.

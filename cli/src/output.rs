@@ -53,6 +53,20 @@ impl Output {
         Ok(Self { exr: with_suffix(&stem, ".exr"), png: with_suffix(&stem, ".png") })
     }
 
+    /// Refuses to write over a file that is read.
+    ///
+    /// # Errors
+    /// If it is one of the two.
+    pub(crate) fn keep(&self, read: &Path) -> Result<(), Failure> {
+        let place = |path: &Path| fs::canonicalize(path).ok();
+        let found = place(read);
+        if found.is_some() && [&self.exr, &self.png].into_iter().any(|path| place(path) == found) {
+            let message = format!("the output would take the place of `{}`", read.display());
+            return Err(Failure::new(Exit::Usage, message).help("choose another name"));
+        }
+        Ok(())
+    }
+
     /// Tells before the work begins whether the files can be written.
     ///
     /// # Errors
@@ -201,6 +215,16 @@ mod tests {
         assert!(Draft::begin(&folder.path("a.exr")).is_err());
         assert!(Draft::begin(&folder.path("none/b.exr")).is_err());
         assert!(!cfg!(unix) || Draft::begin(Path::new("/dev/full")).is_err());
+    }
+
+    #[test]
+    fn what_is_read_is_not_written_over() {
+        let folder = Folder::new("keep");
+        folder.write("a.exr", b"old");
+        let output = Output { exr: folder.path("a.exr"), png: folder.path("a.png") };
+        let wrong = output.keep(&folder.path("./a.exr")).unwrap_err();
+        assert!(wrong.exit == Exit::Usage && wrong.message.contains("would take the place of"));
+        output.keep(&folder.path("b.exr")).unwrap();
     }
 
     #[test]

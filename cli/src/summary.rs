@@ -1,8 +1,9 @@
 //! What a render came to, for people and as JSON.
 
 use glam::{DVec3, UVec2};
-use luxel_core::film::{Errors, Film};
+use luxel_core::film::{Errors, Film, Layer};
 use luxel_core::render::{Goal, Options, Outcome};
+use luxel_core::scene::{NodeId, called};
 use luxel_core::stage::Stage;
 use serde_json::{Value, json};
 
@@ -36,6 +37,8 @@ pub(crate) struct Summary {
     error: Option<Errors>,
     scene: String,
     files: String,
+    /// What the numbers of layers mean, by layer: names, the first of which is number 1.
+    names: Value,
     /// Samples that were not finite.
     pub(crate) bad: u64,
 }
@@ -72,6 +75,7 @@ impl Summary {
             error: Errors::of_film(film, goal.error.unwrap_or(f64::INFINITY)),
             scene: hex(stage.scene.hash()),
             files: files.hash().to_hex().to_string(),
+            names: names(stage, film),
             bad: film.bad_samples(),
         }
     }
@@ -82,6 +86,14 @@ impl Summary {
     }
 
     fn settings(&self) -> Value {
+        let mut settings = self.common_settings();
+        if self.names.as_object().is_some_and(|names| !names.is_empty()) {
+            settings["names"] = self.names.clone();
+        }
+        settings
+    }
+
+    fn common_settings(&self) -> Value {
         json!({
             "luxel": env!("CARGO_PKG_VERSION"),
             "scene_hash": self.scene,
@@ -211,6 +223,22 @@ impl Summary {
     fn rate(&self) -> f64 {
         self.samples as f64 / self.seconds.max(f64::MIN_POSITIVE)
     }
+}
+
+/// Most names that a picture carries: those of a forest help nobody.
+const MOST_NAMES: usize = 10_000;
+
+/// What the numbers of layers mean.
+fn names(stage: &Stage, film: &Film) -> Value {
+    let called = |id: &NodeId| stage.scene.nodes.get(id.0 as usize).map(called);
+    let listed = |layer: Layer, nodes: &mut dyn Iterator<Item = &NodeId>| {
+        let names: Vec<_> = nodes.take(MOST_NAMES).map(called).collect();
+        film.layers.contains(&layer).then(|| (layer.name().to_owned(), json!(names)))
+    };
+    let materials = listed(Layer::Material, &mut stage.material_nodes.iter());
+    let shapes = &mut stage.placements.iter().map(|placement| &placement.node);
+    let objects = listed(Layer::Object, shapes);
+    Value::Object(materials.into_iter().chain(objects).collect())
 }
 
 fn percent(share: f64) -> String {

@@ -11,9 +11,9 @@ use std::time::{Duration, SystemTime};
 
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
+use crate::picture::Picture;
 use crate::preview::{Command, PageArgs, PixelReply, Preview, Problem, Side};
 use crate::report;
-use picture::Picture;
 
 /// Look at a finished picture, or compare two, in the browser
 ///
@@ -75,8 +75,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         match preview.commands().recv_timeout(LOOK) {
             Ok(Command::Pixel { at, side }) => {
                 let at = glam::UVec2::from(at);
-                let picture = shown.get(&(side as u8)).and_then(|shown| shown.picture.as_ref());
-                let facts = picture.map_or(vec![], |picture| picture.facts(at));
+                let of = shown.get(&(side as u8)).and_then(|shown| shown.picture.as_ref());
+                let facts = of.map_or(vec![], |of| picture::facts(of, at));
                 preview.screen().pixel(&PixelReply { at, side, facts, places: vec![] });
             }
             // A finished picture has nothing to set.
@@ -93,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 /// A line about the pictures.
 fn about(shown: &BTreeMap<u8, Shown>) -> String {
     let pictures = shown.values().filter_map(|shown| shown.picture.as_ref());
-    pictures.map(Picture::about).collect::<Vec<_>>().join(" | ")
+    pictures.map(picture::about).collect::<Vec<_>>().join(" | ")
 }
 
 fn name(path: &std::path::Path) -> String {
@@ -101,8 +101,8 @@ fn name(path: &std::path::Path) -> String {
 }
 
 fn show(preview: &Preview, shown: &Shown) {
-    if let Some(picture) = &shown.picture {
-        let mut frame = picture.frame();
+    if let Some(of) = &shown.picture {
+        let mut frame = picture::frame(of);
         (frame.side, frame.name) = (shown.side, name(&shown.path));
         frame.generation = shown.generation;
         preview.screen().show(&frame);

@@ -1,6 +1,10 @@
 //! The program as a person runs it: exit codes, files, interrupts.
 
 #[cfg(test)]
+mod compare;
+#[cfg(test)]
+mod denoise;
+#[cfg(test)]
 mod faulty;
 mod grown;
 mod hostile;

@@ -140,8 +140,14 @@ fn a_hundred_edits_leave_no_file_open_and_no_thread() {
         std::thread::sleep(std::time::Duration::from_millis(3));
     };
     (2..12).for_each(edit);
-    std::thread::sleep(std::time::Duration::from_millis(200));
-    let [files, threads] = watching.held();
+    // A picture that is being written has a file open: what is held at rest stays the same.
+    let mut held = watching.held();
+    until("rest", || {
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        let before = std::mem::replace(&mut held, watching.held());
+        held == before
+    });
+    let [files, threads] = held;
     (12..112).for_each(edit);
     // Those of one pool may come, which the first build that is cut off midway starts; a thread that
     // stays of each edit would be a hundred.

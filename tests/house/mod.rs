@@ -27,12 +27,13 @@ const ARROWS: [(&str, &[&str]); 14] = [
 ];
 
 /// External packages, each with the folders of the only packages that may depend on them.
-const DEPENDENCIES: [(&str, &[&str]); 23] = [
+const DEPENDENCIES: [(&str, &[&str]); 24] = [
     ("pest", &["lang"]),
     ("pest_derive", &["lang"]),
     ("tobj", &["plugins/builtin"]),
     ("gltf", &["plugins/builtin"]),
     ("image", &["plugins/builtin", "cli"]),
+    ("zune-jpeg", &["plugins/builtin"]),
     ("exr", &["plugins/builtin", "cli"]),
     ("obvhs", &["core", "benches"]),
     ("rayon", &["core"]),

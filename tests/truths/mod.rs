@@ -1,11 +1,12 @@
 //! Closed-form truths, as the program tests them: `luxel verify`.
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 use serde_json::Value;
 
 use crate::cli::program::{Done, Folder};
-use crate::disk::{root, text};
+use crate::disk::{files_below, root, text};
 use crate::dynamic;
 use crate::generated::{part, replaced};
 use crate::load::takes_loaded_builtins;
@@ -52,6 +53,23 @@ fn truths_hold_and_every_one_is_published_and_no_other() {
     let table = part(&written, "truths").unwrap();
     assert_eq!(table.trim().lines().count(), 2 + rows.len());
     assert_eq!(written, replaced(&document, "truths", table).unwrap());
+}
+
+#[test]
+fn scenes_of_truths_hold_to_what_they_say_themselves() {
+    let scenes = files_below(&root().join("cli/src/verify/truths"), "scene");
+    let says = |path: &PathBuf| text(path).contains("expect ");
+    let scenes: Vec<String> =
+        scenes.into_iter().filter(says).map(|path| path.display().to_string()).collect();
+    assert!(scenes.len() >= 8, "{scenes:?}");
+    let args: Vec<&str> = scenes.iter().map(String::as_str).chain(["--json"]).collect();
+    let done = verify(&Folder::new("truths-said"), &args);
+    assert!(done.code == 0 && done.err.is_empty(), "{done:?}");
+    let rows = rows(&done);
+    assert!(rows.len() > 30 && rows.iter().all(|row| row["verdict"] == "ok"), "{rows:#?}");
+    // Of each scene something was tested.
+    let of = |scene: &String| rows.iter().any(|row| row["id"].as_str().unwrap().starts_with(scene));
+    assert!(scenes.iter().all(of));
 }
 
 #[test]

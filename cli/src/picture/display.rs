@@ -11,7 +11,7 @@ pub(crate) fn scale(exposure: Option<f64>) -> f64 {
 }
 
 /// The signal in [0, 1] for exposed linear sRGB; not a number stays one.
-pub(super) fn show(rgb: DVec3, display: Display) -> DVec3 {
+pub(crate) fn show(rgb: DVec3, display: Display) -> DVec3 {
     let clipped = |v: DVec3| v.clamp(DVec3::ZERO, DVec3::ONE);
     match display {
         Display::Srgb => DVec3::from(clipped(rgb).to_array().map(srgb_encode)),

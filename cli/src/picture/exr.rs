@@ -7,7 +7,8 @@ use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, Vec2,
     WritableImage,
 };
-use luxel_core::film::{Film, Pixel};
+use glam::UVec2;
+use luxel_core::film::{Film, Pixel, Rect};
 use luxel_sdk::color::RgbSpace;
 
 /// What is said about the picture in its header.
@@ -18,45 +19,80 @@ pub(crate) struct Notes {
 }
 
 /// Writes channels R, G, B (the mean), SE.R, SE.G, SE.B (standard error of the mean, infinite below
-/// two samples) and N (samples). The data window is the film's window, the display window the whole
-/// picture. The notes are the attribute `luxel`: one attribute, so that the same picture has the
+/// two samples), N (samples), and those of the film's layers. The data window is the film's window,
+/// the display window the whole picture. The notes are the attribute `luxel`: one attribute, so that the same picture has the
 /// same bytes.
 ///
 /// # Errors
 /// The writer's.
-#[expect(clippy::cast_possible_truncation, reason = "the file holds 32-bit floats")]
+#[expect(clippy::cast_possible_truncation, reason = "the file holds 32 bits")]
+#[expect(clippy::cast_sign_loss, reason = "numbers of things are not negative")]
 pub(super) fn write(to: impl Write + Seek, film: &Film, notes: &Notes) -> io::Result<()> {
     let floats = |name: &str, value: &dyn Fn(&Pixel) -> f64| {
         let samples = film.pixels().map(|(_, pixel)| value(pixel) as f32).collect();
-        AnyChannel::new(name, FlatSamples::F32(samples))
+        (name.to_owned(), Plane::Floats(samples))
     };
     let counts = film.pixels().map(|(_, pixel)| pixel.n).collect();
-    let channels = AnyChannels::sort(
-        [
-            floats("R", &|pixel| pixel.mean.x),
-            floats("G", &|pixel| pixel.mean.y),
-            floats("B", &|pixel| pixel.mean.z),
-            floats("SE.R", &|pixel| pixel.standard_error().x),
-            floats("SE.G", &|pixel| pixel.standard_error().y),
-            floats("SE.B", &|pixel| pixel.standard_error().z),
-            AnyChannel::new("N", FlatSamples::U32(counts)),
-        ]
-        .into_iter()
-        .collect(),
-    );
-    let corner = |v: glam::UVec2| (v.x as usize, v.y as usize);
-    let min = film.window.min.as_ivec2();
+    let layers = film.channels().into_iter().map(|(channel, values)| {
+        let plane = if channel.is_number() {
+            Plane::Counts(values.iter().map(|v| *v as u32).collect())
+        } else {
+            Plane::Floats(values.iter().map(|v| *v as f32).collect())
+        };
+        (channel.name.to_owned(), plane)
+    });
+    let planes = [
+        floats("R", &|pixel| pixel.mean.x),
+        floats("G", &|pixel| pixel.mean.y),
+        floats("B", &|pixel| pixel.mean.z),
+        floats("SE.R", &|pixel| pixel.standard_error().x),
+        floats("SE.G", &|pixel| pixel.standard_error().y),
+        floats("SE.B", &|pixel| pixel.standard_error().z),
+        ("N".to_owned(), Plane::Counts(counts)),
+    ];
+    write_planes(to, (film.size, film.window), planes.into_iter().chain(layers), &notes.json)
+}
+
+/// The values of a channel, row by row.
+#[derive(Clone, Debug)]
+pub(crate) enum Plane {
+    /// 32-bit floats.
+    Floats(Vec<f32>),
+    /// Whole numbers.
+    Counts(Vec<u32>),
+}
+
+/// Writes channels by name, in the part `window` of a picture of that size, with what is said about
+/// them.
+///
+/// # Errors
+/// The writer's.
+pub(crate) fn write_planes(
+    to: impl Write + Seek,
+    (size, window): (UVec2, Rect),
+    planes: impl IntoIterator<Item = (String, Plane)>,
+    json: &str,
+) -> io::Result<()> {
+    let channel = |(name, plane): (String, Plane)| {
+        let samples = match plane {
+            Plane::Floats(values) => FlatSamples::F32(values),
+            Plane::Counts(values) => FlatSamples::U32(values),
+        };
+        AnyChannel::new(name.as_str(), samples)
+    };
+    let channels = AnyChannels::sort(planes.into_iter().map(channel).collect());
+    let corner = |v: UVec2| (v.x as usize, v.y as usize);
+    let min = window.min.as_ivec2();
     let about = LayerAttributes {
         layer_position: Vec2(min.x, min.y),
         software_name: Some(Text::from("luxel")),
         ..LayerAttributes::default()
     };
-    let layer =
-        Layer::new(corner(film.window.size), about, Encoding::SMALL_FAST_LOSSLESS, channels);
+    let layer = Layer::new(corner(window.size), about, Encoding::SMALL_FAST_LOSSLESS, channels);
     let mut image = Image::from_layer(layer);
-    image.attributes.display_window = IntegerBounds::new((0, 0), corner(film.size));
+    image.attributes.display_window = IntegerBounds::new((0, 0), corner(size));
     image.attributes.chromaticities = Some(srgb());
-    let json = AttributeValue::Text(Text::new_or_panic(&notes.json));
+    let json = AttributeValue::Text(Text::new_or_panic(json));
     image.layer_data.attributes.other.insert(Text::from("luxel"), json);
     image.write().to_buffered(to).map_err(|error| match error {
         exr::error::Error::Io(error) => error,
@@ -76,8 +112,6 @@ mod tests {
     use std::io::Cursor;
 
     use exr::prelude::{ReadChannels, ReadLayers, read};
-    use glam::UVec2;
-    use luxel_core::film::Rect;
 
     use super::*;
 

@@ -3,6 +3,7 @@
 mod display;
 mod exr;
 mod png;
+mod read;
 
 use std::io::{self, BufWriter, Write};
 
@@ -12,8 +13,10 @@ use luxel_core::stage;
 use crate::exit::Failure;
 use crate::output::{Draft, Output, unwritable};
 
-pub(crate) use display::scale;
-pub(crate) use exr::Notes;
+pub(crate) use display::{scale, show};
+pub(crate) use exr::{Notes, Plane, write_planes};
+pub(crate) use png::write_signal;
+pub(crate) use read::Picture;
 
 /// Writes both files. They take their places only when both are whole on the disk.
 ///
@@ -25,11 +28,26 @@ pub(crate) fn write(
     settings: &stage::Film,
     notes: &Notes,
 ) -> Result<(), Failure> {
-    let exr = draft(output.exr.as_ref(), |to| exr::write(to, film, notes))?;
-    let png = draft(output.png.as_ref(), |to| png::write(to, film, settings))?;
+    write_both(output, |to| exr::write(to, film, notes), |to| png::write(to, film, settings))
+}
+
+/// Fills both files; likewise.
+///
+/// # Errors
+/// As `write`.
+pub(crate) fn write_both(
+    output: &Output,
+    exr: impl FnOnce(&mut To<'_>) -> io::Result<()>,
+    png: impl FnOnce(&mut To<'_>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let exr = draft(output.exr.as_ref(), exr)?;
+    let png = draft(output.png.as_ref(), png)?;
     exr.finish().map_err(|error| unwritable(&output.exr, &error))?;
     png.finish().map_err(|error| unwritable(&output.png, &error))
 }
+
+/// Where the bytes of a file go.
+pub(crate) type To<'a> = BufWriter<&'a std::fs::File>;
 
 /// Writes the PNG alone.
 ///
@@ -40,9 +58,17 @@ pub(crate) fn preview(output: &Output, film: &Film, settings: &stage::Film) -> R
     png.finish().map_err(|error| unwritable(&output.png, &error))
 }
 
+/// A film as it is read back from its file.
+#[cfg(test)]
+pub(crate) fn reread(film: &Film, notes: &Notes) -> Picture {
+    let mut file = io::Cursor::new(vec![]);
+    exr::write(&mut file, film, notes).unwrap();
+    Picture::read(io::Cursor::new(file.into_inner())).unwrap()
+}
+
 fn draft(
     path: &std::path::Path,
-    fill: impl FnOnce(&mut BufWriter<&std::fs::File>) -> io::Result<()>,
+    fill: impl FnOnce(&mut To<'_>) -> io::Result<()>,
 ) -> Result<Draft, Failure> {
     let filled = Draft::begin(path).and_then(|draft| {
         let mut to = BufWriter::new(&draft.file);

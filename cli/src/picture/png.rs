@@ -2,9 +2,10 @@
 
 use std::io::{self, Write};
 
+use glam::{DVec3, UVec2};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
-use luxel_core::film::Film;
+use luxel_core::film::{Film, Pixel};
 use luxel_core::stage;
 
 use super::display;
@@ -13,17 +14,26 @@ use super::display;
 ///
 /// # Errors
 /// The writer's.
-#[expect(clippy::cast_possible_truncation, reason = "the signal lies in [0, 1]")]
-#[expect(clippy::cast_sign_loss, reason = "the signal lies in [0, 1]")]
 pub(super) fn write(to: impl Write, film: &Film, settings: &stage::Film) -> io::Result<()> {
     let scale = display::scale(settings.exposure);
-    let mut bytes = Vec::with_capacity(film.window.area() * 3);
-    for (_, pixel) in film.pixels() {
-        let shown = display::show(pixel.mean * scale, settings.display);
-        // Half a step up, then cut: rounds to the nearest; what is not a number becomes black.
-        bytes.extend(shown.to_array().map(|x| (x * 255.0 + 0.5) as u8));
-    }
-    let size = film.window.size;
+    let shown = |pixel: &Pixel| display::show(pixel.mean * scale, settings.display);
+    write_signal(to, film.window.size, film.pixels().map(|(_, pixel)| shown(pixel)))
+}
+
+/// Writes what a screen is to show, row by row, in [0, 1].
+///
+/// # Errors
+/// The writer's.
+#[expect(clippy::cast_possible_truncation, reason = "the signal lies in [0, 1]")]
+#[expect(clippy::cast_sign_loss, reason = "the signal lies in [0, 1]")]
+pub(crate) fn write_signal(
+    to: impl Write,
+    size: UVec2,
+    signal: impl Iterator<Item = DVec3>,
+) -> io::Result<()> {
+    // Half a step up, then cut: rounds to the nearest; what is not a number becomes black.
+    let bytes: Vec<u8> =
+        signal.flat_map(|shown| shown.to_array().map(|x| (x * 255.0 + 0.5) as u8)).collect();
     PngEncoder::new(to).write_image(&bytes, size.x, size.y, ExtendedColorType::Rgb8).map_err(
         |error| match error {
             ImageError::IoError(error) => error,
@@ -34,7 +44,6 @@ pub(super) fn write(to: impl Write, film: &Film, settings: &stage::Film) -> io::
 
 #[cfg(test)]
 mod tests {
-    use glam::UVec2;
     use luxel_core::film::Rect;
 
     use super::*;

@@ -1,193 +1,58 @@
-//! Reading an EXR: ours with standard error and samples, others with R, G and B or Y alone.
+//! A picture of a file, for the page.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek};
-use std::path::Path;
-
-use exr::image::FlatSamples;
-use exr::meta::attribute::{AttributeValue, Text};
-use exr::prelude::{AnyChannels, Layer, LayerAttributes, ReadChannels, ReadLayers, read};
 use glam::UVec2;
-use luxel_core::film::Rect;
-use luxel_core::registry::Display;
-use serde_json::Value;
 
-use crate::exit::{Exit, Failure};
+use crate::picture::Picture;
 use crate::preview::{Frame, Pixels, Side};
 
-/// Values of the largest picture, all channels together: 4 GiB of them.
-const MOST_VALUES: usize = 1 << 30;
-
-/// What a file holds.
-pub(super) struct Picture {
-    size: UVec2,
-    window: Rect,
-    /// Three for each pixel.
-    rgb: Vec<f32>,
-    /// As `rgb`, or empty.
-    se: Vec<f32>,
-    /// Samples, or empty.
-    n: Vec<u32>,
-    notes: Value,
-}
-
-impl Picture {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// A file that is missing, no EXR, too large, or without colour.
-    pub(super) fn open(path: &Path) -> Result<Self, Failure> {
-        let wrong = |what: &dyn std::fmt::Display| {
-            Failure::new(Exit::Input, format!("cannot read the picture {}: {what}", path.display()))
-        };
-        #[expect(clippy::disallowed_methods, reason = "named by the person, read by no scene")]
-        let file = File::open(path).map_err(|error| wrong(&error))?;
-        let (layer, display) = decode(BufReader::new(file)).map_err(|error| wrong(&error))?;
-        Self::of_layer(layer, display).map_err(|what| {
-            wrong(&what).help("it takes channels R, G and B, or Y alone; ours has SE.R … and N too")
-        })
-    }
-
-    fn of_layer(
-        layer: Layer<AnyChannels<FlatSamples>>,
-        display: (UVec2, glam::IVec2),
-    ) -> Result<Self, String> {
-        let plane = |name: &str| {
-            let mut channels = layer.channel_data.list.iter();
-            Some(&channels.find(|channel| channel.name == *name)?.sample_data)
-        };
-        let three = |names: [&str; 3]| names.map(plane).into_iter().collect::<Option<Vec<_>>>();
-        let colour = three(["R", "G", "B"]).or_else(|| three(["Y", "Y", "Y"]));
-        let rgb = interleaved(&colour.ok_or("it has no channels R, G and B")?);
-        let se = three(["SE.R", "SE.G", "SE.B"]).map_or(vec![], |planes| interleaved(&planes));
-        let n = plane("N").map_or(vec![], counts);
-        let extent = UVec2::new(side(layer.size.0)?, side(layer.size.1)?);
-        let area = extent.x as usize * extent.y as usize;
-        if rgb.len() != area * 3 || ![0, area * 3].contains(&se.len()) {
-            return Err("its channels are of different sizes".into());
-        }
-        let LayerAttributes { layer_position: at, other, .. } = layer.attributes;
-        let min = (glam::IVec2::new(at.0, at.1) - display.1).max(glam::IVec2::ZERO).as_uvec2();
-        let notes = match other.get(&Text::from("luxel")) {
-            Some(AttributeValue::Text(text)) => serde_json::from_str(&text.to_string()).ok(),
-            _ => None,
-        };
-        let window = Rect::new(min, extent);
-        let size = display.0.max(min + extent);
-        let n = if n.len() == area { n } else { vec![] };
-        Ok(Self { size, window, rgb, se, n, notes: notes.unwrap_or_default() })
-    }
-
-    pub(super) fn frame(&self) -> Frame {
-        let pixels = Pixels::new(self.window.size, &self.rgb, &self.se, self.n.clone());
-        let samples = self.n.iter().copied().max().unwrap_or(0);
-        let of_samples = self.notes["spp"].as_u64().and_then(|spp| spp.try_into().ok());
-        Frame {
-            side: Side::A,
-            name: String::new(),
-            generation: 0,
-            size: self.size,
-            window: self.window,
-            pixels,
-            exposure: self.notes["exposure"].as_f64(),
-            display: match self.notes["display"].as_str() {
-                Some("linear") => Display::Linear,
-                Some("filmic") => Display::Filmic,
-                _ => Display::Srgb,
-            },
-            samples,
-            of_samples: of_samples.unwrap_or(samples),
-            complete: self.notes["complete"].as_bool().unwrap_or(true),
-        }
-    }
-
-    /// The values of a pixel as they stand in the file; nothing outside.
-    pub(super) fn facts(&self, at: UVec2) -> Vec<(String, String)> {
-        let Some(i) = self.index(at) else { return vec![] };
-        let three = |plane: &[f32]| {
-            plane.get(i * 3..i * 3 + 3).map(|v| format!("{} {} {}", v[0], v[1], v[2]))
-        };
-        let n = self.n.get(i).map(u32::to_string);
-        [("radiance", three(&self.rgb)), ("standard error", three(&self.se)), ("samples", n)]
-            .into_iter()
-            .filter_map(|(name, value)| Some((name.to_owned(), value?)))
-            .collect()
-    }
-
-    fn index(&self, at: UVec2) -> Option<usize> {
-        let from = at.checked_sub(self.window.min)?;
-        let inside = from.cmplt(self.window.size).all();
-        inside.then(|| from.y as usize * self.window.size.x as usize + from.x as usize)
-    }
-
-    /// A line about it.
-    pub(super) fn about(&self) -> String {
-        let mut parts = vec![format!("{} × {}", self.size.x, self.size.y)];
-        let spp = self.n.iter().copied().max().map(|n| format!("{n} samples per pixel"));
-        parts.extend(spp);
-        let words = ["color", "integrator"].map(|key| self.notes[key].as_str().map(str::to_owned));
-        parts.extend(words.into_iter().flatten());
-        parts.join(" · ")
+/// What the page shows.
+pub(super) fn frame(picture: &Picture) -> Frame {
+    let pixels = Pixels::new(picture.window.size, &picture.rgb, &picture.se, picture.n.clone());
+    let samples = picture.n.iter().copied().max().unwrap_or(0);
+    let of_samples = picture.notes["spp"].as_u64().and_then(|spp| spp.try_into().ok());
+    let settings = picture.settings();
+    Frame {
+        side: Side::A,
+        name: String::new(),
+        generation: 0,
+        size: picture.size,
+        window: picture.window,
+        pixels,
+        exposure: settings.exposure,
+        display: settings.display,
+        samples,
+        of_samples: of_samples.unwrap_or(samples),
+        complete: picture.notes["complete"].as_bool().unwrap_or(true),
     }
 }
 
-type Decoded = (Layer<AnyChannels<FlatSamples>>, (UVec2, glam::IVec2));
-
-/// The first layer, and the display window's size and place.
-fn decode(from: impl Read + Seek) -> Result<Decoded, String> {
-    let told = |error: exr::error::Error| error.to_string();
-    let reader = exr::block::read(from, false).map_err(told)?;
-    for header in reader.headers() {
-        let (size, n) = (header.layer_size, header.channels.list.len());
-        let values = size.0.checked_mul(size.1).and_then(|area| area.checked_mul(n));
-        if values.is_none_or(|values| values > MOST_VALUES) {
-            let pixels = format!("{} × {} pixels of {n} channels", size.0, size.1);
-            return Err(format!("{pixels} are more than 2^30 values"));
-        }
-    }
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_chunks(reader)
-        .map_err(told)?;
-    let window = image.attributes.display_window;
-    let size = UVec2::new(side(window.size.0)?, side(window.size.1)?);
-    Ok((image.layer_data, (size, glam::IVec2::new(window.position.0, window.position.1))))
+/// The values of a pixel as they stand in the file; nothing outside.
+pub(super) fn facts(picture: &Picture, at: UVec2) -> Vec<(String, String)> {
+    let Some(i) = picture.index(at) else { return vec![] };
+    let three =
+        |plane: &[f32]| plane.get(i * 3..i * 3 + 3).map(|v| format!("{} {} {}", v[0], v[1], v[2]));
+    let n = picture.n.get(i).map(u32::to_string);
+    [("radiance", three(&picture.rgb)), ("standard error", three(&picture.se)), ("samples", n)]
+        .into_iter()
+        .filter_map(|(name, value)| Some((name.to_owned(), value?)))
+        .collect()
 }
 
-fn side(length: usize) -> Result<u32, String> {
-    u32::try_from(length).map_err(|_| format!("{length} pixels in a row are too many"))
-}
-
-fn interleaved(planes: &[&FlatSamples]) -> Vec<f32> {
-    let n = planes.iter().map(|plane| plane.len()).min().unwrap_or(0);
-    let mut all = vec![0.0; n * planes.len()];
-    for (i, plane) in planes.iter().enumerate() {
-        for (pixel, value) in all.chunks_exact_mut(planes.len()).zip(plane.values_as_f32()) {
-            pixel[i] = value;
-        }
-    }
-    all
-}
-
-fn counts(plane: &FlatSamples) -> Vec<u32> {
-    match plane {
-        FlatSamples::U32(counts) => counts.clone(),
-        #[expect(clippy::cast_possible_truncation, reason = "saturates")]
-        #[expect(clippy::cast_sign_loss, reason = "saturates")]
-        floats => floats.values_as_f32().map(|v| v as u32).collect(),
-    }
+/// A line about it.
+pub(super) fn about(picture: &Picture) -> String {
+    let mut parts = vec![format!("{} × {}", picture.size.x, picture.size.y)];
+    let spp = picture.n.iter().copied().max().map(|n| format!("{n} samples per pixel"));
+    parts.extend(spp);
+    let words = ["color", "integrator"].map(|key| picture.notes[key].as_str().map(str::to_owned));
+    parts.extend(words.into_iter().flatten());
+    parts.extend(picture.is_denoised().then(|| "denoised, errors of before".to_owned()));
+    parts.join(" · ")
 }
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
-
-    use exr::prelude::{AnyChannel, Encoding, Image, Vec2, WritableImage, f16};
-    use luxel_core::film::Film;
+    use luxel_core::film::{Film, Rect};
+    use luxel_core::registry::Display;
     use luxel_core::stage;
 
     use super::*;
@@ -195,81 +60,24 @@ mod tests {
     use crate::picture;
     use crate::testing::Folder;
 
-    /// An EXR with these channels, 3 × 2 pixels at (-1, 4), as another program may write it.
-    fn foreign(names: &[&str]) -> Vec<u8> {
-        let plane = |name: &&str| {
-            let values = (0..6_u8).map(|i| f16::from_f32(f32::from(i) + 0.5)).collect();
-            AnyChannel::new(*name, FlatSamples::F16(values))
-        };
-        let channels = AnyChannels::sort(names.iter().map(plane).collect());
-        let about = LayerAttributes { layer_position: Vec2(-1, 4), ..LayerAttributes::default() };
-        let layer = Layer::new((3, 2), about, Encoding::SMALL_FAST_LOSSLESS, channels);
-        let mut file = Cursor::new(vec![]);
-        Image::from_layer(layer).write().to_buffered(&mut file).unwrap();
-        file.into_inner()
-    }
-
-    fn of_bytes(bytes: &[u8]) -> Result<Picture, String> {
-        let (layer, display) = decode(Cursor::new(bytes))?;
-        Picture::of_layer(layer, display)
-    }
-
     #[test]
-    fn a_picture_of_ours_is_read_with_error_samples_and_settings() {
+    fn a_picture_of_ours_is_shown_with_error_samples_and_settings() {
         let folder = Folder::new("view-own");
         let output = Output { exr: folder.path("a.exr"), png: folder.path("a.png") };
         let film = Film::new(UVec2::new(9, 8), Rect::new(UVec2::new(2, 3), UVec2::new(4, 5)));
         let json = r#"{"exposure":9.5,"display":"filmic","spp":7,"complete":false}"#.to_owned();
         picture::write(&output, &film, &stage::Film::default(), &picture::Notes { json }).unwrap();
         let picture = Picture::open(&output.exr).unwrap();
-        let frame = picture.frame();
+        let frame = frame(&picture);
         assert_eq!((frame.size, frame.window), (film.size, film.window));
         assert_eq!((frame.exposure, frame.display), (Some(9.5), Display::Filmic));
         assert_eq!((frame.of_samples, frame.complete), (7, false));
-        let facts = picture.facts(UVec2::new(5, 7));
-        assert_eq!(facts[0], ("radiance".to_owned(), "0 0 0".to_owned()));
-        assert_eq!(facts[1], ("standard error".to_owned(), "inf inf inf".to_owned()));
-        assert_eq!(facts[2], ("samples".to_owned(), "0".to_owned()));
+        let told = facts(&picture, UVec2::new(5, 7));
+        assert_eq!(told[0], ("radiance".to_owned(), "0 0 0".to_owned()));
+        assert_eq!(told[1], ("standard error".to_owned(), "inf inf inf".to_owned()));
+        assert_eq!(told[2], ("samples".to_owned(), "0".to_owned()));
         for outside in [UVec2::new(6, 7), UVec2::new(1, 7), UVec2::MAX] {
-            assert!(picture.facts(outside).is_empty());
-        }
-    }
-
-    #[test]
-    fn pictures_of_others_are_read_if_they_have_colour_or_luminance() {
-        let grey = of_bytes(&foreign(&["Y", "Z"])).unwrap();
-        assert_eq!(grey.rgb[3..6], [1.5; 3]);
-        assert!(grey.frame().complete && grey.se.is_empty());
-        let at = grey.window.min + UVec2::new(2, 1);
-        assert_eq!(grey.facts(at), [("radiance".to_owned(), "5.5 5.5 5.5".to_owned())]);
-        assert!(of_bytes(&foreign(&["R", "G", "B", "A"])).is_ok());
-        let wrong = of_bytes(&foreign(&["Z"])).err().unwrap();
-        assert!(wrong.contains("no channels R, G and B"), "{wrong}");
-    }
-
-    #[test]
-    fn files_that_are_no_picture_are_told_by_name() {
-        let folder = Folder::new("view-wrong");
-        folder.write("a.exr", b"no picture");
-        for name in ["a.exr", "none.exr"] {
-            let wrong = Picture::open(&folder.path(name)).err().unwrap();
-            assert_eq!(wrong.exit, Exit::Input);
-            assert!(wrong.message.contains(name), "{}", wrong.message);
-        }
-    }
-
-    #[test]
-    fn a_damaged_file_is_an_error_or_another_picture_but_no_panic() {
-        let whole = foreign(&["R", "G", "B"]);
-        for end in 0..whole.len() {
-            assert!(of_bytes(&whole[..end]).is_err(), "{end} bytes");
-        }
-        for i in 0..whole.len() {
-            for flip in [1, 0x80, 0xff] {
-                let mut damaged = whole.clone();
-                damaged[i] ^= flip;
-                let _ = of_bytes(&damaged);
-            }
+            assert!(facts(&picture, outside).is_empty());
         }
     }
 }

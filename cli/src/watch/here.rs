@@ -281,6 +281,9 @@ impl Watching<'_, '_> {
 
     /// Ends the render before, but not the writing of its picture, and begins one.
     fn show(&mut self, subject: Subject, edit: Edit) {
+        let options = self.args.render.options();
+        let more = |it: &Shown<'_>| subject.goes_on_from(&it.subject, &options);
+        let first = self.shown.as_ref().filter(|it| more(it)).map(|it| it.sitting.clone());
         if let Some(before) = self.shown.take() {
             before.control.supersede();
             before.sitting.pass();
@@ -297,6 +300,7 @@ impl Watching<'_, '_> {
         let (sits, tray) = (sitting.clone(), self.press.tray().clone());
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
+            first.inspect(|before| sits.go_on_from(before));
             match sits.render(args, &course, &mut look) {
                 Ok(true) => tray.put(sits, guard.saving()),
                 Ok(false) => {}

@@ -50,6 +50,10 @@ struct Shown {
     ink: Ink,
     /// Whether nothing more comes of the render.
     ended: bool,
+    /// What a picture of fewer samples of the same left, to go on with.
+    first: Option<Film>,
+    /// What was measured before another picture took its place: some samples of every pixel.
+    left: Option<Film>,
     /// Whether another picture has taken its place.
     past: bool,
 }
@@ -78,7 +82,8 @@ pub(super) struct Print {
 impl Sitting {
     pub(super) fn new(stage: Arc<Stage>, read: Arc<Read>, edit: Option<Edit>) -> Self {
         let (ended, past) = (false, false);
-        Self(Mutex::new(Shown { stage, read, edit, done: None, ink: Ink::None, ended, past }))
+        let (done, ink, first, left) = (None, Ink::None, None, None);
+        Self(Mutex::new(Shown { stage, read, edit, done, ink, ended, first, left, past }))
     }
 
     fn lock(&self) -> MutexGuard<'_, Shown> {
@@ -105,6 +110,16 @@ impl Sitting {
     pub(super) fn is_lost(&self) -> bool {
         let shown = self.lock();
         shown.ended && shown.done.is_none()
+    }
+
+    /// Goes on with what another one has measured, whose render has ended.
+    pub(super) fn go_on_from(&self, other: &Self) {
+        let before = {
+            let mut other = other.lock();
+            let done = other.done.as_ref().map(|done| done.0.film.clone());
+            done.or_else(|| other.left.take())
+        };
+        self.lock().first = before;
     }
 
     /// Another picture takes its place.
@@ -148,9 +163,12 @@ impl Sitting {
             Options { coarse: args.preview, courteous: args.preview, ..args.render.options() };
         let of_samples = options.samples(&stage);
         let mut first = !args.preview && of_samples > COARSE;
+        let begun = self.lock().first.take();
+        let mut has_all = begun.is_some();
         let mut refused = None;
         let mut seen = |film: &Film, now: Reached| {
             look(film, now);
+            has_all |= now.step == 1;
             let is_some = now.step == 1 && now.samples < of_samples;
             // The picture before may still be on its way to the same file: it comes first.
             if first && is_some && !guard.is_saving() && !control.is_cancelled() {
@@ -165,7 +183,7 @@ impl Sitting {
         let of = (args.file.as_path(), &*stage);
         let measured = measure::measure(
             of,
-            measure::empty(&stage, &options)?,
+            begun.map_or_else(|| measure::empty(&stage, &options), Ok)?,
             &options,
             control,
             !args.quiet,
@@ -176,7 +194,11 @@ impl Sitting {
         }
         let mut shown = self.lock();
         match measured.outcome {
-            Outcome::Cancelled => return Ok(false),
+            Outcome::Cancelled => {
+                // Coarse steps leave samples that nothing else counts.
+                shown.left = has_all.then_some(measured.film);
+                return Ok(false);
+            }
             // A library's code failed: what was measured may be wrong.
             Outcome::Failed => {
                 let (found, sources) = (stage.failures(), &shown.read.sources);

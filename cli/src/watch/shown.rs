@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::thread::ScopedJoinHandle;
 
 use luxel_core::diag::Diagnostic;
-use luxel_core::render::Control;
+use luxel_core::render::{Control, Options, can_take_more};
 use luxel_core::scene::Scene;
 use luxel_core::stage::Stage;
 
@@ -43,14 +43,26 @@ impl Subject {
     /// Whether what is measured for another subject is right for this one too: it is only shown in
     /// another way, or written to another place.
     pub(super) fn is_measured_by(&self, other: &Self) -> bool {
-        let files = |it: &Self| {
-            let mut files = it.files.clone();
-            files.retain(|path, _| !it.texts.contains(path));
-            files
-        };
         self.scene.measured_hash() == other.scene.measured_hash()
             && !other.stage.has_failed()
-            && files(self) == files(other)
+            && self.other_files() == other.other_files()
+    }
+
+    /// Whether what is measured for another subject is the beginning of what this one needs: more
+    /// samples of the same.
+    pub(super) fn goes_on_from(&self, other: &Self, options: &Options) -> bool {
+        self.scene.sampled_hash() == other.scene.sampled_hash()
+            && options.samples(&self.stage) > options.samples(&other.stage)
+            && !other.stage.has_failed()
+            && can_take_more(&self.stage)
+            && self.other_files() == other.other_files()
+    }
+
+    /// Files that are no text.
+    fn other_files(&self) -> Watched {
+        let mut files = self.files.clone();
+        files.retain(|path, _| !self.texts.contains(path));
+        files
     }
 
     /// Other texts say the same now.

@@ -4,6 +4,7 @@
 //! does not depend on tiles or threads.
 
 mod errors;
+mod layer;
 mod pixel;
 mod rect;
 mod save;
@@ -12,6 +13,8 @@ use glam::{DVec3, UVec2};
 
 pub use errors::Errors;
 pub(crate) use errors::Scale;
+pub use layer::{Channel, Layer};
+pub(crate) use layer::{Of, channels};
 pub use pixel::{Pixel, degrees_of_freedom, half_width_95};
 pub use rect::Rect;
 pub use save::Unreadable;
@@ -21,6 +24,8 @@ pub use save::Unreadable;
 pub(crate) struct Tile {
     pub(crate) rect: Rect,
     pub(crate) pixels: Vec<Pixel>,
+    /// Sums of what the layers hold, pixel by pixel.
+    pub(crate) layers: Vec<f64>,
     /// Samples that each of its pixels has been given.
     pub(crate) next: u32,
     /// Samples that each is to have before it is asked again how many it needs.
@@ -41,6 +46,8 @@ pub struct Film {
     pub size: UVec2,
     /// The part of it that is measured.
     pub window: Rect,
+    /// What else it holds.
+    pub layers: Vec<Layer>,
     tiles: Vec<Tile>,
     columns: u32,
 }
@@ -51,14 +58,22 @@ pub(crate) const TILE: u32 = 16;
 impl Film {
     /// An empty film for the part `window` of a picture.
     pub fn new(size: UVec2, window: Rect) -> Self {
+        Self::with_layers(size, window, &[])
+    }
+
+    /// The same that holds more than colour.
+    pub fn with_layers(size: UVec2, window: Rect, layers: &[Layer]) -> Self {
+        let n = channels(layers).len();
         let window = window.intersection(Rect::new(UVec2::ZERO, size));
         let (columns, rows) = (window.size.x.div_ceil(TILE), window.size.y.div_ceil(TILE));
         let tile = |i: u32| {
             let min = window.min + UVec2::new(i % columns, i / columns) * TILE;
             let rect = Rect::new(min, UVec2::splat(TILE)).intersection(window);
-            Tile { rect, pixels: vec![Pixel::default(); rect.area()], next: 0, aim: 0 }
+            let pixels = vec![Pixel::default(); rect.area()];
+            Tile { rect, pixels, layers: vec![0.0; rect.area() * n], next: 0, aim: 0 }
         };
-        Self { size, window, tiles: (0..columns * rows).map(tile).collect(), columns }
+        let tiles = (0..columns * rows).map(tile).collect();
+        Self { size, window, layers: layers.to_vec(), tiles, columns }
     }
 
     /// Samples that have been given to pixels, those that were not finite among them.
@@ -87,6 +102,22 @@ impl Film {
         let tile = &self.tiles[(from.y / TILE * self.columns + from.x / TILE) as usize];
         let inside = at - tile.rect.min;
         &tile.pixels[(inside.y * tile.rect.size.x + inside.x) as usize]
+    }
+
+    /// What the layers hold besides colour: a channel with its value at each pixel, row by row.
+    pub fn channels(&self) -> Vec<(Channel, Vec<f64>)> {
+        let channels = channels(&self.layers);
+        let n = channels.len();
+        let value = |i: usize, at: UVec2| {
+            let from = at - self.window.min;
+            let tile = &self.tiles[(from.y / TILE * self.columns + from.x / TILE) as usize];
+            let inside = at - tile.rect.min;
+            let pixel = (inside.y * tile.rect.size.x + inside.x) as usize;
+            let sums = &tile.layers[pixel * n..][..n];
+            layer::resolve(channels[i], sums[i], (f64::from(tile.next), sums[0]))
+        };
+        let one = |i: usize| (channels[i], self.window.points().map(|at| value(i, at)).collect());
+        (0..n).map(one).collect()
     }
 
     /// Every pixel of the window, row by row.

@@ -4,10 +4,10 @@ use std::io::{self, Write};
 
 use glam::{DVec3, UVec2};
 
-use super::{Film, Pixel, Rect};
+use super::{Film, Layer, Pixel, Rect};
 
 /// What every saved film begins with; the digit counts layouts.
-const MAGIC: &[u8; 8] = b"luxfilm1";
+const MAGIC: &[u8; 8] = b"luxfilm2";
 /// Bytes of a pixel.
 const PIXEL: usize = 8 + 7 * 24;
 
@@ -26,11 +26,16 @@ impl Film {
             to.write_all(&v.x.to_le_bytes())?;
             to.write_all(&v.y.to_le_bytes())?;
         }
+        let layers = Layer::ALL.map(|layer| u8::from(self.layers.contains(&layer)));
+        to.write_all(&layers)?;
         for tile in &self.tiles {
             to.write_all(&tile.next.to_le_bytes())?;
             to.write_all(&tile.aim.to_le_bytes())?;
             for pixel in &tile.pixels {
                 to.write_all(&bytes(pixel))?;
+            }
+            for sum in &tile.layers {
+                to.write_all(&sum.to_le_bytes())?;
             }
         }
         Ok(())
@@ -55,11 +60,17 @@ impl Film {
         if from.0.len() / PIXEL < window.area() {
             return Err(Unreadable("it ends too early"));
         }
-        let mut film = Self::new(size, window);
+        let given = from.take::<{ Layer::ALL.len() }>()?;
+        let layers = Layer::ALL.into_iter().zip(given).filter(|(_, given)| *given != 0);
+        let layers: Vec<Layer> = layers.map(|(layer, _)| layer).collect();
+        let mut film = Self::with_layers(size, window, &layers);
         for tile in &mut film.tiles {
             (tile.next, tile.aim) = (from.u32()?, from.u32()?);
             for pixel in &mut tile.pixels {
                 *pixel = from.pixel()?;
+            }
+            for sum in &mut tile.layers {
+                *sum = from.take().map(f64::from_le_bytes)?;
             }
         }
         if from.0.is_empty() { Ok(film) } else { Err(Unreadable("it goes on after its end")) }
@@ -118,8 +129,10 @@ mod tests {
 
     fn film() -> Film {
         let window = Rect::new(UVec2::new(5, 3), UVec2::new(40, 18));
-        let mut film = Film::new(UVec2::new(64, 64), window);
+        let layers = [Layer::Albedo, Layer::Cost];
+        let mut film = Film::with_layers(UVec2::new(64, 64), window, &layers);
         for (i, tile) in (0_u8..).zip(film.tiles_mut()) {
+            tile.layers[2] = f64::from(i) / 7.0;
             (tile.next, tile.aim) = (u32::from(i), 100);
             for sample in 0..i * 7 {
                 tile.pixels[3].push(DVec3::new(0.1, 1e-30, 1e30) * f64::from(sample));

@@ -11,7 +11,7 @@ use luxel_sdk::params::{Emission, Fault, Param, Quantity, Role, Type};
 use super::Object;
 use super::block::Block;
 use super::colour::{self, Amount};
-use super::context::{Embedded, Reader};
+use super::context::{Embedded, Reader, Reads};
 use super::draft::Draft;
 use super::part::{MeshParts, OWN_BITS};
 use super::patch::Patches;
@@ -228,7 +228,7 @@ impl<'a> Builder<'a> {
             face_bits: draft.face_bits,
             watch,
             needs: None,
-            reads: vec![],
+            reads: Reads::default(),
             warnings: vec![],
         };
         if let Some(fault) = object.is_too_large() {

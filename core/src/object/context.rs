@@ -15,11 +15,11 @@ pub type Embedded = BTreeMap<PathBuf, Arc<[u8]>>;
 
 /// A file that was read: its path and the hash of its bytes, `None` when it could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Read {
-    pub(super) path: PathBuf,
-    pub(super) hash: Option<Hash>,
+struct Read {
+    path: PathBuf,
+    hash: Option<Hash>,
     /// How many bytes those were.
-    pub(super) bytes: usize,
+    bytes: usize,
 }
 
 /// Reads through `Files` and remembers what.
@@ -46,14 +46,9 @@ impl<'a> Reader<'a> {
     }
 
     /// What was read and warned of.
-    pub(super) fn finish(self) -> (Vec<Read>, Vec<String>) {
+    pub fn finish(self) -> (Reads, Vec<String>) {
         let reads = self.reads.into_inner().unwrap_or_else(PoisonError::into_inner);
-        (reads, self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
-    }
-
-    /// The warnings so far.
-    pub fn into_warnings(self) -> Vec<String> {
-        self.finish().1
+        (Reads(reads), self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
     fn read_path(&self, path: &Path) -> Result<Arc<[u8]>, String> {
@@ -67,9 +62,20 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Whether every file is still what it was.
-pub(super) fn unchanged(reads: &[Read], files: &dyn Files, embedded: &Embedded) -> bool {
-    reads.iter().all(|read| hash(&read.path, files, embedded) == read.hash)
+/// Files that were read, as they were then.
+#[derive(Debug, Default)]
+pub struct Reads(Vec<Read>);
+
+impl Reads {
+    /// Whether every file is still what it was.
+    pub fn are_unchanged(&self, files: &dyn Files, embedded: &Embedded) -> bool {
+        self.0.iter().all(|read| hash(&read.path, files, embedded) == read.hash)
+    }
+
+    /// How many bytes that were.
+    pub fn bytes(&self) -> usize {
+        self.0.iter().map(|read| read.bytes).sum()
+    }
 }
 
 /// What stands inside an imported file may have changed as any other.

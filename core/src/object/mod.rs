@@ -37,7 +37,7 @@ use resolve::SCRATCH;
 
 pub use build::{Builder, ColorMode, Objects};
 pub use colour::white;
-pub use context::{Embedded, Reader};
+pub use context::{Embedded, Reader, Reads};
 pub use part::MeshParts;
 pub use resolve::{Resolved, Scratch, Site};
 pub use shelf::{Kept, Shelf};
@@ -87,7 +87,7 @@ pub struct Object {
     /// What becomes of it, if its class came from a library.
     watch: Option<Arc<Watch>>,
     /// Files that were read to build it, with the hash of their bytes.
-    reads: Vec<context::Read>,
+    reads: Reads,
     /// What was warned of while it was built: holds for as long as it is kept.
     warnings: Vec<String>,
 }
@@ -117,12 +117,12 @@ impl Object {
 
     /// Bytes of what was read to build it: what was made of them, only its plugin knows.
     fn bytes_read(&self) -> usize {
-        self.reads.iter().map(|read| read.bytes).sum()
+        self.reads.bytes()
     }
 
     /// Whether it may be used again: its class and those of its parts are still the registry's own,
     /// and none of them has failed.
-    fn is_current(&self, registry: &Registry) -> bool {
+    pub(crate) fn is_current(&self, registry: &Registry) -> bool {
         let class = &self.class;
         let now = registry.class(class.kind, class.name);
         now.is_some_and(|now| now.is_same(class))
@@ -132,7 +132,7 @@ impl Object {
 
     /// Whether the files that it and its parts were built from are what they were.
     fn is_unchanged(&self, files: &dyn Files, embedded: &Embedded) -> bool {
-        context::unchanged(&self.reads, files, embedded)
+        self.reads.are_unchanged(files, embedded)
             && self.parts.iter().all(|part| part.is_unchanged(files, embedded))
     }
 

@@ -65,6 +65,30 @@ pub struct FilmSettings<'a> {
     /// picture is that of one moment.
     #[param(unit = "s", default = 0.0, min = 0)]
     pub shutter: f64,
+    /// Beside colour, how much of the light is scattered on where a path first arrives.
+    #[param(default = false)]
+    pub albedo: bool,
+    /// Beside colour, the shading normal there, in the world.
+    #[param(default = false)]
+    pub normal: bool,
+    /// Beside colour, the place itself, in the world, metres.
+    #[param(default = false)]
+    pub position: bool,
+    /// Beside colour, how far it is, metres.
+    #[param(default = false)]
+    pub depth: bool,
+    /// Beside colour, which material it has: numbers from 1, named in the EXR's attribute.
+    #[param(default = false)]
+    pub material_id: bool,
+    /// Beside colour, which shape it is of: numbers from 1, named in the EXR's attribute.
+    #[param(default = false)]
+    pub object_id: bool,
+    /// Beside colour, how far it moves over the picture while the shutter is open, pixels.
+    #[param(default = false)]
+    pub motion: bool,
+    /// Beside colour, the steps that tracing a path takes: nodes and primitives.
+    #[param(default = false)]
+    pub cost: bool,
     /// Where the EXR is written; the PNG stands beside it. The scene's name if absent.
     #[param(optional)]
     pub file: Text<'a>,

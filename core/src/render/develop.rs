@@ -23,6 +23,10 @@ impl Develop {
         }
     }
 
+    pub(super) fn is_spectral(&self) -> bool {
+        self.spectral
+    }
+
     pub(super) fn sample(&self, l: Spectrum, lambda: &Wavelengths) -> DVec3 {
         if self.spectral {
             self.from_xyz * to_xyz(self.observer, l, lambda)

@@ -8,6 +8,7 @@ mod lattice;
 mod light;
 mod path;
 mod picture;
+mod record;
 mod shadow;
 mod tile;
 mod watched;
@@ -24,6 +25,7 @@ use rayon::prelude::*;
 use self::goal::Plan;
 use self::lattice::Lattice;
 use crate::film::{Film, Rect, Tile};
+use crate::registry::dynamic::remote;
 use crate::stage::Stage;
 
 pub use self::goal::Goal;
@@ -155,7 +157,8 @@ pub fn render_seen(
 ) -> (Film, Outcome) {
     let size = stage.film.resolution;
     let window = options.crop.unwrap_or(Rect::new(UVec2::ZERO, size));
-    let mut film = Film::new(size, window);
+    let layers = if can_go_on(stage) { &*stage.film.layers } else { &[] };
+    let mut film = Film::with_layers(size, window, layers);
     let outcome = render_on(&mut film, stage, options, control, look);
     (film, outcome)
 }
@@ -164,6 +167,12 @@ pub fn render_seen(
 /// integrator owns the picture, which knows what it has seen.
 pub fn can_go_on(stage: &Stage) -> bool {
     stage.integrator.fixed().integrator().as_picture().is_none()
+}
+
+/// Whether a finished picture of the stage can be gone on with for more samples: not where the sampler
+/// is a library's, which may give others when it is asked for more.
+pub fn can_take_more(stage: &Stage) -> bool {
+    can_go_on(stage) && remote(stage.sampler.class()).is_none()
 }
 
 /// Goes on with a film, whose window is what is measured. With the same stage and seed the bits in
@@ -198,9 +207,12 @@ pub fn render_on(
             assert!(film.samples() == 0, "a film that an integrator owns is begun anew");
             return picture::render(owner, stage, (plan, seed), (film, look), (stop, end));
         }
+        let layers = film.layers.clone();
         let worker = || {
             let output = integrator.output();
-            tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output).in_turns(turns)
+            tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output)
+                .in_turns(turns)
+                .recording(&layers)
         };
         passes(film, &plan, options.coarse, &mut |film, lattice, reached| {
             // Until each pixel has a sample no time is over.

@@ -17,10 +17,11 @@ use super::jobs::Jobs;
 use super::lattice::Lattice;
 use super::light::Splat;
 use super::path::Path;
+use super::record::Recorder;
 use super::{Stop, shadow};
 use crate::accel::{Processor, Work};
 use crate::cast;
-use crate::film::{Rect, Tile};
+use crate::film::{Layer, Rect, Tile};
 use crate::object::{ColorMode, Scratch, Site};
 use crate::stage::{Leaving, Moment, Rooms, SceneHit, Stage};
 
@@ -58,6 +59,8 @@ pub(super) struct Worker<'s> {
     /// For a medium's parameters while its phase function is asked.
     medium_scratch: Scratch,
     to_rgb: Develop,
+    /// What else than light is wanted of paths.
+    record: Recorder,
 }
 
 impl<'s> Worker<'s> {
@@ -95,12 +98,18 @@ impl<'s> Worker<'s> {
             scratch: Scratch::default(),
             medium_scratch: Scratch::default(),
             to_rgb: Develop::new(stage, output),
+            record: Recorder::new(&[], LANES),
         }
     }
 
     /// The same, whose rays take turns or do not.
     pub(super) fn in_turns(self, in_turns: bool) -> Self {
         Self { in_turns, ..self }
+    }
+
+    /// The same, which records layers too.
+    pub(super) fn recording(self, layers: &[Layer]) -> Self {
+        Self { record: Recorder::new(layers, LANES), ..self }
     }
 
     /// Adds the samples of a range to the pixels of a tile that a lattice names. A pass that is
@@ -123,6 +132,9 @@ impl<'s> Worker<'s> {
                 estimate.push(self.results[sample * n_pixels + i]);
             }
         }
+        if self.record.is_on() {
+            self.record.add(tile, &self.chosen, n);
+        }
         if lattice.step() == 1 {
             tile.next = end;
         }
@@ -144,6 +156,7 @@ impl<'s> Worker<'s> {
         self.splats.clear();
         self.results.clear();
         self.results.resize(pixels.len() * range.len(), DVec3::ZERO);
+        self.record.clear(pixels.len() * range.len());
         let (origin, width) = (rect.min, rect.size.x);
         let jobs = Jobs::Pixels { origin, width, pixels: &pixels, range };
         let done = !stop.is_asked() && self.run(&jobs, stop);
@@ -210,6 +223,7 @@ impl<'s> Worker<'s> {
         self.paths[lane].start(cast::index(job), &found, u, stage);
         (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
         self.job.ray = found.ray;
+        self.record.start(lane);
         Some(())
     }
 
@@ -262,10 +276,22 @@ impl<'s> Worker<'s> {
             self.processor.run(Trace(self));
             self.processor.run(Shade(self));
         }
+        if self.record.is_on() {
+            self.record();
+        }
         self.arrived.clear();
         self.arrived.extend(self.now.rays.iter().map(|onward| onward.lane));
         let round = Round { host: &StageHost(stage), sampler: self.sampler };
         self.states.arrive_n(&mut self.lanes, &self.arrived, round, &mut self.next);
+    }
+
+    /// What the paths of this round met, for the film's layers.
+    fn record(&mut self) {
+        for Onward { lane, .. } in self.now.rays.iter() {
+            let lane = *lane as usize;
+            let of = (lane, &self.paths[lane]);
+            self.record.arrived(of, &self.lanes[lane].at, self.stage, &self.to_rgb);
+        }
     }
 
     /// Where the rays of this round meet the scene.

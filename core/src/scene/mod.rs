@@ -136,6 +136,8 @@ pub struct Scene {
     pub medium: Option<NodeId>,
     /// What its file says of its picture. Nothing that is measured depends on it, nor any hash.
     pub expectations: Vec<Expectation>,
+    /// Of each node the hash without what every node of its kind may have.
+    own: Vec<Hash>,
 }
 
 impl Scene {
@@ -152,24 +154,40 @@ impl Scene {
     /// Hash of everything that the scene shows: what stands where, and its settings. Labels, places
     /// in files and nodes that nothing uses do not count; nor do the contents of files by path.
     pub fn hash(&self) -> Hash {
-        value::hash_scene(self, self.film.map(|id| self.node(id).hash))
+        value::hash_scene(self, self.without(self.film, &[]), self.without(self.sampler, &[]))
     }
 
     /// The same without what decides only how a picture is shown and where it goes: equal where the
     /// measurement is.
     pub fn measured_hash(&self) -> Hash {
-        let film = self.film.map(|id| {
-            let mut film = self.node(id).clone();
-            film.params.retain(|argument| !SHOWN.contains(&argument.name));
-            value::hash_node(&film, |id| self.node(id).hash)
-        });
-        value::hash_scene(self, film)
+        value::hash_scene(self, self.without(self.film, &SHOWN), self.without(self.sampler, &[]))
+    }
+
+    /// The same without the number of samples: equal where one is measured by the first samples of the
+    /// other, if its sampler gives the same ones.
+    pub fn sampled_hash(&self) -> Hash {
+        let sampler = self.without(self.sampler, &["samples"]);
+        value::hash_scene(self, self.without(self.film, &SHOWN), sampler)
+    }
+
+    /// The hash of a setting without some of its parameters.
+    fn without(&self, setting: Option<NodeId>, names: &[&str]) -> Option<Hash> {
+        let node = self.node(setting?);
+        if !node.params.iter().any(|argument| names.contains(&argument.name)) {
+            return Some(node.hash);
+        }
+        let mut rest = node.clone();
+        rest.params.retain(|argument| !names.contains(&argument.name));
+        Some(value::hash_node(&rest, |id| self.node(id).hash))
     }
 
     /// Hash of a node without the parameters that the host adds to its kind: equal where the object
     /// itself is equal, whatever its surface or what fills it.
     pub fn own_hash(&self, id: NodeId) -> Hash {
-        let node = self.node(id);
+        self.own[id.0 as usize]
+    }
+
+    fn new_own_hash(&self, node: &Node) -> Hash {
         let added = |name: &str| common_params(node.kind).iter().any(|param| param.name == name);
         if !node.params.iter().any(|argument| added(argument.name)) {
             return node.hash;
@@ -185,7 +203,14 @@ impl Scene {
     /// From 2³² nodes on: the budget is far below.
     pub fn add(&mut self, mut node: Node) -> NodeId {
         node.hash = value::hash_node(&node, |id| self.node(id).hash);
+        let own = self.new_own_hash(&node);
+        self.add_hashed(node, own)
+    }
+
+    /// The same of a node whose hashes are known.
+    pub(crate) fn add_hashed(&mut self, node: Node, own: Hash) -> NodeId {
         self.nodes.push(node);
+        self.own.push(own);
         NodeId(u32::try_from(self.nodes.len() - 1).expect("the node budget is far below 2^32"))
     }
 }

@@ -6,6 +6,7 @@ use luxel_sdk::kind::Kind;
 use super::{Argument, Node, NodeId, Scene, Value};
 use crate::accel::Precision;
 use crate::diag::{SourceId, Span};
+use crate::film::Layer;
 
 /// What decides how a picture is measured, whatever the scene shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +64,11 @@ impl Scene {
     /// Replaces how rays meet the triangles of meshes.
     pub fn set_precision(&mut self, precision: Precision) {
         self.set_param(Setting::Film, "precision", Value::Text(precision.word().into()));
+    }
+
+    /// Records a layer beside colour.
+    pub fn add_layer(&mut self, layer: Layer) {
+        self.set_param(Setting::Film, layer.name(), Value::Bool(true));
     }
 
     /// Gives a parameter of a setting another value, which fits its class.

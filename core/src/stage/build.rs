@@ -72,11 +72,12 @@ pub fn build_watched(
     before: Option<&Stage>,
     watch: &Watch,
 ) -> Result<Built, Unbuilt> {
-    let (scene, mut diagnostics) = import::expand(scene, registry, files, watch);
-    let film = Film::of_node(scene.film.map(|id| scene.node(id)));
-    let mode = features::color_mode(&scene, film.color);
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
+    let (scene, assets, mut diagnostics) =
+        import::expand(scene, (registry, files), &cache.assets, watch);
+    let film = Film::of_node(scene.film.map(|id| scene.node(id)));
+    let mode = features::color_mode(&scene, film.color);
     let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(&mesh_part);
@@ -88,7 +89,7 @@ pub fn build_watched(
         splits: Splits::default(),
         builder,
         cache,
-        made: Made::default(),
+        made: Made { assets, ..Made::default() },
         watch,
     };
     match flatten(&scene) {

@@ -118,7 +118,7 @@ impl Moment<'_> {
     }
 
     /// Where a point in the world appears through the centre of the lens; `None` behind it.
-    fn project(self, p: DVec3) -> Option<DVec2> {
+    pub fn project(self, p: DVec3) -> Option<DVec2> {
         let raster = Raster { size: self.film.resolution };
         let mut room = None;
         let place = self.camera_place.at(self.time, &mut room);

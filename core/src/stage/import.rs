@@ -6,6 +6,7 @@ use std::sync::Arc;
 use luxel_sdk::kind::{ImportNode, ImportValue, Imported, Kind};
 use luxel_sdk::params::{Dimension, Param, Type, Unit};
 
+use super::kept::{Assets, Brought};
 use crate::accel::Watch;
 use crate::cast::index;
 use crate::diag::{Diagnostic, Span};
@@ -14,19 +15,21 @@ use crate::object::{Builder, ColorMode, Embedded, Objects, Reader};
 use crate::registry::Registry;
 use crate::registry::dynamic::FAILED;
 use crate::scene::{
-    Argument, Color, Given, Group, GroupId, Node, NodeId, Placed, Pose, Scene, Target, Value,
+    Argument, Color, Given, Group, GroupId, Hash, Node, NodeId, Placed, Pose, Scene, Target, Value,
     conform,
 };
 
-/// The scene with every asset replaced by a group, and what was found wrong.
+/// The scene with every asset replaced by a group, what its assets were found to hold, and what was
+/// found wrong. Files that were read `before` and have not changed are not read again.
 pub(super) fn expand(
     scene: &Scene,
-    registry: &Registry,
-    files: &dyn Files,
+    (registry, files): (&Registry, &dyn Files),
+    before: &Assets,
     watch: &Watch,
-) -> (Scene, Vec<Diagnostic>) {
+) -> (Scene, Assets, Vec<Diagnostic>) {
     let (out, done, cameras) = (scene.clone(), BTreeMap::new(), BTreeMap::new());
-    let mut import = Import { registry, files, watch, out, done, cameras };
+    let assets = Assets::default();
+    let mut import = Import { registry, files, before, assets, watch, out, done, cameras };
     let mut diagnostics = vec![];
     for group in 0..scene.groups.len() {
         let mut items = std::mem::take(&mut import.out.groups[group].items);
@@ -40,12 +43,14 @@ pub(super) fn expand(
         import.camera(camera, pose);
     }
     import.out.root.items = items;
-    (import.out, diagnostics)
+    (import.out, import.assets, diagnostics)
 }
 
 struct Import<'a> {
     registry: &'a Registry,
     files: &'a dyn Files,
+    before: &'a Assets,
+    assets: Assets,
     watch: &'a Watch,
     out: Scene,
     done: BTreeMap<NodeId, Option<GroupId>>,
@@ -90,17 +95,27 @@ impl Import<'_> {
         diagnostics.append(&mut builder.diagnostics);
         let object = object?;
         let embedded = Embedded::new();
+        let may_stay = |it: &&Arc<Brought>| {
+            it.importer.is_current(self.registry) && it.reads.are_unchanged(self.files, &embedded)
+        };
+        let mut wrong = Wrong::default();
+        if let Some(kept) = self.before.all(node.hash).find(may_stay) {
+            warn(node, kept, diagnostics);
+            let (group, _) = self.adopt(node, (&kept.imported, &kept.hashes), &mut wrong);
+            wrong.tell(node, diagnostics);
+            self.assets.put(node.hash, kept.clone());
+            return Some(group);
+        }
         let reader = Reader::new(self.files, &embedded).watched(Some(self.watch));
         let imported = object.fixed().importer().import(&reader);
-        let warnings = reader.into_warnings();
+        let (reads, warnings) = reader.finish();
         match imported {
             Ok(imported) => {
-                for warning in warnings.iter().chain(&imported.warnings) {
-                    diagnostics.push(Diagnostic::warning("E0417", node.span, warning));
-                }
-                let mut wrong = Wrong::default();
-                let group = self.adopt(node, &imported, &mut wrong);
+                let (group, hashes) = self.adopt(node, (&imported, &[]), &mut wrong);
+                let brought = Brought { importer: object, reads, imported, warnings, hashes };
+                warn(node, &brought, diagnostics);
                 wrong.tell(node, diagnostics);
+                self.assets.put(node.hash, Arc::new(brought));
                 Some(group)
             }
             Err(faults) => {
@@ -113,7 +128,13 @@ impl Import<'_> {
         }
     }
 
-    fn adopt(&mut self, asset: &Node, imported: &Imported, wrong: &mut Wrong) -> GroupId {
+    /// The group of what a file holds, and the hashes of its nodes, of which some may be known.
+    fn adopt(
+        &mut self,
+        asset: &Node,
+        (imported, known): (&Imported, &[Hashes]),
+        wrong: &mut Wrong,
+    ) -> (GroupId, Vec<Hashes>) {
         let mut ids: Vec<Option<NodeId>> = vec![];
         for node in &imported.nodes {
             let replaced = asset.overrides.iter().find(|(name, _)| {
@@ -121,7 +142,7 @@ impl Import<'_> {
             });
             let id = match replaced {
                 Some((_, material)) => Some(*material),
-                None => match self.node(node, &ids, asset.span) {
+                None => match self.node(node, &ids, asset.span, known.get(ids.len())) {
                     Ok(id) => Some(id),
                     Err(why) => {
                         let ImportNode { kind, class, .. } = node;
@@ -153,7 +174,8 @@ impl Import<'_> {
         }
         let id = self.group(group);
         self.cameras.extend(camera.map(|camera| (id, camera)));
-        id
+        let hashes = |id: NodeId| [self.out.node(id).hash, self.out.own_hash(id)];
+        (id, ids.into_iter().map(|id| id.map(hashes)).collect())
     }
 
     /// The first camera among things in their places, in the frame that these stand in; kept for
@@ -180,6 +202,7 @@ impl Import<'_> {
         node: &ImportNode,
         ids: &[Option<NodeId>],
         span: Span,
+        known: Option<&Hashes>,
     ) -> Result<NodeId, String> {
         if !MADE.contains(&node.kind) {
             return Err("is of a kind that no file holds".to_owned());
@@ -199,7 +222,7 @@ impl Import<'_> {
         if let Some(lacking) = needed.find(|param| !given(param.name)) {
             return Err(format!("lacks `{}`", lacking.name));
         }
-        Ok(self.out.add(Node {
+        let mut made = Node {
             kind: node.kind,
             class: Arc::from(class.name),
             label: (!node.label.is_empty()).then(|| Arc::from(node.label.as_str())),
@@ -207,7 +230,10 @@ impl Import<'_> {
             overrides: vec![],
             span,
             hash: [0; 32],
-        }))
+        };
+        let Some([hash, own]) = known.copied().flatten() else { return Ok(self.out.add(made)) };
+        made.hash = hash;
+        Ok(self.out.add_hashed(made, own))
     }
 
     /// Whether a value is of the parameter's type. Numbers beyond its range are left to the class:
@@ -231,6 +257,15 @@ impl Import<'_> {
             _ => Ok(()),
         }
     }
+}
+
+/// Of a node that was made: its hash, and the one without what all of its kind may have. The same file,
+/// asked for in the same words, has the same.
+type Hashes = Option<[Hash; 2]>;
+
+fn warn(asset: &Node, Brought { imported, warnings, .. }: &Brought, told: &mut Vec<Diagnostic>) {
+    let warnings = warnings.iter().chain(&imported.warnings);
+    told.extend(warnings.map(|warning| Diagnostic::warning("E0417", asset.span, warning)));
 }
 
 /// Kinds of node that a file of another format may hold.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use luxel_sdk::num::Bounds3;
 
-use super::kept::{Cache, Shaped};
+use super::kept::{Assets, Cache, Shaped};
 use super::lights::LightSource;
 use super::nesting;
 use super::{Eye, Features, Film, Geometry, Lights, MediumStack, Place, Placement, Skin, Stage};
@@ -27,6 +27,7 @@ pub(super) struct Settings {
 /// Lists in the making, each with the index of what is already in it.
 #[derive(Default)]
 pub(super) struct Made {
+    pub(super) assets: Assets,
     pub(super) geometries: Vec<Arc<Geometry>>,
     pub(super) geometry_of: BTreeMap<NodeId, u32>,
     pub(super) shapes: Shelf<Hash, Shaped>,
@@ -68,7 +69,7 @@ impl Made {
         let features = Features { media, open_surfaces, nested, motion };
         watch.name("the scene");
         let top = TopBvh::build_watched(&boxes, watch)?;
-        let mut cache = Cache { objects, shapes: self.shapes };
+        let mut cache = Cache { assets: self.assets, objects, shapes: self.shapes };
         cache.inherit(before);
         let mut stage = Stage {
             lights: Lights::new(self.lights, sphere.1, mode),

@@ -5,6 +5,7 @@ use luxel_sdk::color::Observer;
 
 use crate::accel::Precision;
 use crate::cast::whole;
+use crate::film::Layer;
 use crate::registry::Display;
 use crate::scene::{Argument, Node, Value};
 
@@ -38,6 +39,8 @@ pub struct Film {
     pub time: f64,
     /// How long it stays open, seconds.
     pub shutter: f64,
+    /// What is recorded beside colour.
+    pub layers: Vec<Layer>,
     /// Where the EXR is written.
     pub file: Option<String>,
 }
@@ -53,6 +56,7 @@ impl Default for Film {
             precision: Precision::Standard,
             time: 0.0,
             shutter: 0.0,
+            layers: vec![],
             file: None,
         }
     }
@@ -98,10 +102,12 @@ impl Film {
                 ("precision", Value::Text(word)) => {
                     film.precision = Precision::of_word(word).unwrap_or_default();
                 }
+                (name, Value::Bool(true)) => film.layers.extend(Layer::of_name(name)),
                 ("file", Value::Text(name)) => film.file = Some(name.to_string()),
                 _ => {}
             }
         }
+        film.layers.sort_by_key(|layer| Layer::ALL.iter().position(|other| other == layer));
         film
     }
 }

@@ -56,23 +56,12 @@ fn compact(old: &Scene) -> Scene {
     let root = compactor.items(&old.root);
     let slots = [old.camera, old.film, old.integrator, old.sampler, old.filter, old.medium];
     let slots = slots.map(|slot| slot.map(|id| compactor.node(id)));
-    let [camera, film, integrator, sampler, filter, medium] = slots;
-    let camera_pose = old.camera_pose.clone();
-    let expectations = old.expectations.clone();
-    let Scene { nodes, groups, .. } = compactor.new;
-    Scene {
-        nodes,
-        groups,
-        root,
-        camera,
-        camera_pose,
-        film,
-        integrator,
-        sampler,
-        filter,
-        medium,
-        expectations,
-    }
+    let mut new = compactor.new;
+    [new.camera, new.film, new.integrator, new.sampler, new.filter, new.medium] = slots;
+    new.camera_pose = old.camera_pose.clone();
+    new.expectations.clone_from(&old.expectations);
+    new.root = root;
+    new
 }
 
 struct Compactor<'a> {

@@ -19,6 +19,54 @@ pub(crate) fn go_on(context: &dyn BuildContext) -> Result<(), String> {
     if context.cancelled() { Err(STOPPED.to_owned()) } else { Ok(()) }
 }
 
+/// Items, until the work is not wanted any more: what was made of them is whole only if `go_on` says so
+/// afterwards.
+pub(crate) fn wanted<I: IntoIterator>(
+    items: I,
+    context: &dyn BuildContext,
+) -> Wanted<'_, I::IntoIter> {
+    Wanted { items: items.into_iter(), context, n: 0 }
+}
+
+/// Items that end when the work is not wanted any more.
+#[derive(Clone)]
+pub(crate) struct Wanted<'a, I> {
+    items: I,
+    context: &'a dyn BuildContext,
+    n: usize,
+}
+
+impl<I: Iterator> Iterator for Wanted<'_, I> {
+    type Item = I::Item;
+
+    fn next(&mut self) -> Option<I::Item> {
+        if self.n.is_multiple_of(STRIDE) && self.context.cancelled() {
+            return None;
+        }
+        self.n += 1;
+        self.items.next()
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (0, self.items.size_hint().1)
+    }
+}
+
+/// All items.
+///
+/// # Errors
+/// If the work is not wanted any more.
+pub(crate) fn gather<I: IntoIterator>(
+    items: I,
+    context: &dyn BuildContext,
+) -> Result<Vec<I::Item>, String> {
+    let items = items.into_iter();
+    let mut out = Vec::with_capacity(items.size_hint().0);
+    out.extend(wanted(items, context));
+    go_on(context)?;
+    Ok(out)
+}
+
 /// Bytes in memory, for decoders that read piece by piece: they end with an error once they are not
 /// wanted any more.
 pub(crate) struct Stoppable<'a> {
@@ -98,11 +146,26 @@ pub(crate) mod testing {
             self.looks.get() > self.most
         }
     }
+
+    /// Does some work that is not wanted any more after each number of looks, or some of them if there
+    /// are many: it has to fail then, a few looks later. Returns how many the whole work takes.
+    pub(crate) fn ends_wherever<T, E>(work: impl Fn(&Patience) -> Result<T, E>) -> usize {
+        let whole = Patience::endless();
+        assert!(work(&whole).is_ok(), "the whole work fails");
+        let looks = whole.looks.get();
+        for most in (0..looks).step_by(looks / 50 + 1) {
+            let patience = Patience::of(most);
+            assert!(work(&patience).is_err(), "it was done after {most} looks of {looks}");
+            let after = patience.looks.get() - most;
+            assert!(after <= 20, "went on for {after} looks after {most} of {looks}");
+        }
+        looks
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::testing::Patience;
+    use super::testing::{Patience, ends_wherever};
     use super::*;
 
     #[test]
@@ -116,5 +179,13 @@ mod tests {
         assert_eq!(stopped.to_string(), STOPPED);
         let mut lines = Stoppable::new(&bytes, &endless);
         assert_eq!(lines.fill_buf().unwrap().len(), PIECE);
+    }
+
+    #[test]
+    fn items_come_until_they_are_not_wanted() {
+        let n = 3 * STRIDE + 1;
+        assert_eq!(gather(0..n, &Patience::endless()), Ok((0..n).collect()));
+        assert_eq!(wanted(0..n, &Patience::of(2)).count(), 2 * STRIDE);
+        assert_eq!(ends_wherever(|patience| gather(0..n, patience)), 5);
     }
 }

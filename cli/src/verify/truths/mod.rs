@@ -36,9 +36,7 @@ pub(super) fn test(
 ) -> Result<(), Failure> {
     let bench = Bench::new(run, precision);
     scene::test(only, &bench, rows)?;
-    if colour::ID.starts_with(only) {
-        colour::test(&bench, rows)?;
-    }
+    colour::test(only, &bench, rows)?;
     rows.extend(unit::rows(&bench)?.into_iter().filter(|row| row.id.starts_with(only)));
     Ok(())
 }

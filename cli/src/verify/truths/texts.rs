@@ -8,7 +8,8 @@ pub(super) const LIST: &str = include_str!("truths.txt");
 /// Measured reflectances of a colour chart.
 pub(super) const CHART: &str = include_str!("colour/colorchecker_n_ohta.csv");
 
-const SCENES: [(&str, &str); 18] = [
+const SCENES: [(&str, &str); 21] = [
+    ("absorbing.scene", include_str!("absorbing.scene")),
     ("beer.scene", include_str!("beer.scene")),
     ("checker.scene", include_str!("checker.scene")),
     ("cos4.scene", include_str!("cos4.scene")),
@@ -21,6 +22,8 @@ const SCENES: [(&str, &str); 18] = [
     ("media_outside.scene", include_str!("media_outside.scene")),
     ("radiance_n2.scene", include_str!("radiance_n2.scene")),
     ("receiver.scene", include_str!("receiver.scene")),
+    ("rects.scene", include_str!("rects.scene")),
+    ("roof.scene", include_str!("roof.scene")),
     ("single_slab.scene", include_str!("single_slab.scene")),
     ("slab.scene", include_str!("slab.scene")),
     ("tilted.scene", include_str!("tilted.scene")),

@@ -5,7 +5,8 @@ use luxel_core::files::MemoryFiles;
 use luxel_core::object::{Scratch, Site};
 use luxel_core::stage::Stage;
 use luxel_sdk::color::{
-    K_CD, Observer, Spectrum, blackbody, glass, illuminant, srgb_decode, srgb_encode, xyz_to_xy,
+    K_CD, Observer, RgbSpace, Spectrum, blackbody, glass, illuminant, srgb_decode, srgb_encode,
+    xyz_to_xy,
 };
 use luxel_sdk::kind::{Phase, Raster};
 use luxel_sdk::scattering::{conductor_reflectance, dielectric_reflectance, refract};
@@ -19,13 +20,16 @@ pub(super) fn rows(bench: &Bench<'_>) -> Result<Vec<Row>, Failure> {
     let stage = stage(bench)?;
     Ok([
         snell(),
+        critical(),
         dielectric(),
+        hemisphere(),
         conductor(),
         bk7(),
         whites(),
         planckian(),
         photometry(),
         transfer(),
+        matrix(),
         pinhole(&stage),
         phase(&stage),
     ]
@@ -64,6 +68,51 @@ fn dielectric() -> Vec<Row> {
     // Half of what is reflected of the one polarisation that is.
     rows.push(row("fresnel.brewster", (56.309932474020215, 0.07396449704142012)));
     rows
+}
+
+/// From which angle on all light stays inside: the least at which the reflectance is exactly 1.
+fn critical() -> Vec<Row> {
+    let cases =
+        [(1.5, 41.810314895778596), (1.333, 48.60662639169028), (2.417, 24.439743865451863)];
+    let row = |(n, expected): (f32, f64)| {
+        let (mut low, mut high) = (0.0, 90.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            let reflected = dielectric_reflectance(direction(middle).z, 1.0 / n);
+            if reflected < 1.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Row::exact("tir.critical", &format!("n {n}"), (expected, high), (1e-6, 0.0))
+    };
+    cases.map(row).to_vec()
+}
+
+/// What a smooth surface reflects of even light, from outside and from inside: 2∫R·μ dμ by the
+/// midpoint rule, whose error is below 1e-6 also where all light begins to stay inside.
+fn hemisphere() -> Vec<Row> {
+    let cases = [
+        (1.33, [0.06593084929940543, 0.4719491487926991]),
+        (1.5, [0.09177795934235121, 0.5963457597077116]),
+        (2.4, [0.21018130201044674, 0.8628786982657025]),
+    ];
+    let mean = |eta: f32| {
+        let n = 20_000_u16;
+        let at = |i: u16| (f64::from(i) + 0.5) / f64::from(n);
+        let one =
+            |mu: f64| f64::from(dielectric_reflectance(DVec3::splat(mu).as_vec3().z, eta)) * mu;
+        (0..n).map(|i| one(at(i))).sum::<f64>() * 2.0 / f64::from(n)
+    };
+    let rows = |(n, [outside, inside]): (f32, [f64; 2])| {
+        let row = |from: &str, expected, eta| {
+            let case = format!("n {n}, {from}");
+            Row::exact("fresnel.diffuse", &case, (expected, mean(eta)), (1e-5, 0.0))
+        };
+        [row("outside", outside, n), row("inside", inside, 1.0 / n)]
+    };
+    cases.map(rows).concat()
 }
 
 fn conductor() -> Vec<Row> {
@@ -130,6 +179,22 @@ fn transfer() -> Vec<Row> {
         row("encode 0.0031308", 0.040449936, srgb_encode(0.0031308)),
         row("decode 0.5", 0.21404114048223255, srgb_decode(0.5)),
     ]
+}
+
+/// From linear sRGB to XYZ.
+fn matrix() -> Vec<Row> {
+    let expected = [
+        [0.4123907992659594, 0.35758433938387796, 0.1804807884018343],
+        [0.2126390058715103, 0.7151686787677559, 0.07219231536073371],
+        [0.019330818715591825, 0.11919477979462596, 0.9505321522496607],
+    ];
+    let measured = RgbSpace::LinearSrgb.to_xyz();
+    let row = |(i, j): (usize, usize)| {
+        let case = format!("{} of {}", ["X", "Y", "Z"][i], ["R", "G", "B"][j]);
+        let values = (expected[i][j], measured.col(j)[i]);
+        Row::exact("srgb.matrix", &case, values, (0.0, 1e-4))
+    };
+    (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(row).collect()
 }
 
 fn planckian() -> Vec<Row> {

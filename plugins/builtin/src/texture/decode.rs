@@ -10,8 +10,9 @@ use luxel_sdk::Choice;
 use luxel_sdk::color::{RgbSpace, srgb_decode};
 use luxel_sdk::params::BuildContext;
 
+use super::jpeg;
 use crate::sniff;
-use crate::stop::Stoppable;
+use crate::stop::{Stoppable, go_on};
 
 /// The largest side that is read, pixels.
 const MAX_SIDE: u32 = 1 << 16;
@@ -92,7 +93,7 @@ pub(crate) struct Pixels {
 ///
 /// # Errors
 /// What the file is and what is wrong with it; the decoder's own words stand in brackets. That it is not
-/// wanted any more: the pixels of a JPEG are not waited for either way, they come in one piece.
+/// wanted any more.
 pub(crate) fn decode(bytes: &[u8], context: &dyn BuildContext) -> Result<Pixels, String> {
     let format = ::image::guess_format(bytes).ok();
     let name = match format {
@@ -116,6 +117,13 @@ pub(crate) fn decode(bytes: &[u8], context: &dyn BuildContext) -> Result<Pixels,
     let room = (bytes.len() as u64).saturating_mul(MAX_BYTES.1).saturating_add(MAX_BYTES.0);
     limits.max_alloc = Some(room.min(MAX_ALLOC));
     reader.limits(limits);
+    let sound = || jpeg::sound(bytes, (MAX_SIDE, room.min(MAX_ALLOC)), context);
+    if name == "JPEG"
+        && let Some(picture) = sound()
+    {
+        return Pixels::new(picture).ok_or_else(|| "a JPEG picture without pixels".to_owned());
+    }
+    go_on(context)?;
     let picture = reader
         .decode()
         .map_err(|error| format!("{} {name} picture {}", article(name), wrong(bytes, &error)))?;

@@ -3,6 +3,7 @@
 mod checker;
 mod decode;
 mod image;
+mod jpeg;
 mod scale;
 mod vertex_color;
 

@@ -5,6 +5,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, accessor::sparse};
 
 use super::source::{Source, sub_slice};
+use crate::stop::{gather, go_on, wanted};
 
 impl Source<'_> {
     fn accessor(&self, index: Index<Accessor>) -> Result<&Accessor, String> {
@@ -43,7 +44,7 @@ impl Source<'_> {
             reason = "were unsigned"
         )]
         let whole = numbers.into_iter().map(|[x]| x as u32);
-        Ok(whole.collect())
+        gather(whole, self.context)
     }
 
     fn elements<const N: usize>(
@@ -73,7 +74,7 @@ impl Source<'_> {
                     return Err(format!("a stride of {stride} for elements of {size} bytes"));
                 }
                 let start = accessor.byte_offset.map_or(0, |offset| offset.0);
-                rows(bytes, start, count, size, stride)?.map(read).collect()
+                gather(rows(bytes, start, count, size, stride)?.map(read), self.context)?
             }
         };
         if let Some(sparse) = &accessor.sparse {
@@ -101,13 +102,13 @@ impl Source<'_> {
         let places = rows(places, sparse.indices.byte_offset.0, count, width, width)?;
         let values = rows(values, sparse.values.byte_offset.0, count, size, size)?;
         let n = out.len();
-        for (place, value) in places.zip(values) {
+        for (place, value) in wanted(places.zip(values), self.context) {
             let place = number(component, place, false);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "unsigned")]
             let target = out.get_mut(place as usize);
             *target.ok_or_else(|| format!("sparse index {place} of {n} elements"))? = read(value);
         }
-        Ok(())
+        go_on(self.context)
     }
 }
 

@@ -9,6 +9,7 @@ use gltf::json::{Accessor, Index};
 use luxel_sdk::kind::{ImportValue, Kind};
 
 use super::Builder;
+use crate::stop::gather;
 
 /// What has been made of the file's meshes and accessors.
 #[derive(Default)]
@@ -104,9 +105,12 @@ impl Builder<'_> {
             // Rows of a picture count from the top here, and from the bottom in the scene.
             Use::Coordinates => {
                 let uvs = self.source.floats::<2>(index)?;
-                uvs.into_iter().flat_map(|[u, v]| [u, 1.0 - v]).collect()
+                gather(uvs.into_iter().flat_map(|[u, v]| [u, 1.0 - v]), self.source.context)?.into()
             }
-            Use::Indices => self.source.indices(index)?.into_iter().map(f64::from).collect(),
+            Use::Indices => {
+                let indices = self.source.indices(index)?;
+                gather(indices.into_iter().map(f64::from), self.source.context)?.into()
+            }
         };
         self.meshes.tables.insert(key, table.clone());
         Ok(table)
@@ -147,7 +151,8 @@ impl Builder<'_> {
             (false, 0) => [corners[i], corners[i + 1], corners[i + 2]],
             (false, _) => [corners[i + 1], corners[i], corners[i + 2]],
         };
-        Ok((0..corners.len() - 2).flat_map(triangle).collect())
+        let all = (0..corners.len() - 2).flat_map(triangle);
+        Ok(gather(all, self.source.context)?.into())
     }
 }
 

@@ -19,7 +19,7 @@ const LEAST_BUDGET: u64 = 1 << 20;
 /// An opened file.
 pub(super) struct Source<'a> {
     path: &'a str,
-    context: &'a dyn BuildContext,
+    pub(super) context: &'a dyn BuildContext,
     /// The description.
     pub(super) root: Root,
     buffers: Vec<Arc<[u8]>>,

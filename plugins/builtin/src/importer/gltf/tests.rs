@@ -8,6 +8,8 @@ use glam::DVec3;
 use luxel_sdk::params::Text;
 
 use super::*;
+use crate::stop::STRIDE;
+use crate::stop::testing::{Patience, ends_wherever};
 
 const BOX: &[u8] = include_bytes!("../../../../../tests/data/gltf/box_sparse.gltf");
 const BOX_BIN: &[u8] = include_bytes!("../../../../../tests/data/gltf/box_sparse.bin");
@@ -294,6 +296,53 @@ fn many_readings_of_few_bytes_run_out_of_budget() {
     );
     let faults = import(&json).unwrap_err();
     assert!(faults[0].message.contains("more than the file's size warrants"), "{faults:?}");
+}
+
+#[test]
+fn reading_tables_ends_soon_after_it_is_not_wanted_any_more() {
+    let n = 50_000u32;
+    let floats = (0..3 * n).map(|i| i as f32).flat_map(f32::to_le_bytes);
+    let bytes: Vec<u8> = floats.chain((0..n).flat_map(u32::to_le_bytes)).collect();
+    let json = format!(
+        r#"{{ "asset": {{ "version": "2.0" }},
+            "buffers": [{{ "byteLength": {all}, "uri": "a.bin" }}],
+            "bufferViews": [{{ "buffer": 0, "byteLength": {points} }},
+                {{ "buffer": 0, "byteOffset": {points}, "byteLength": {places} }}],
+            "accessors": [
+                {{ "bufferView": 0, "componentType": 5126, "count": {n}, "type": "VEC3" }},
+                {{ "bufferView": 1, "componentType": 5125, "count": {n}, "type": "SCALAR" }}],
+            "meshes": [{{ "primitives":
+                [{{ "attributes": {{ "POSITION": 0 }}, "indices": 1, "mode": 5 }}] }}],
+            "nodes": [{{ "mesh": 0 }}], "scenes": [{{ "nodes": [0] }}] }}"#,
+        all = 16 * n,
+        points = 12 * n,
+        places = 4 * n,
+    );
+    let looks = ends_wherever(|patience| {
+        let host = Impatient { files: [json.as_bytes(), &bytes].map(Into::into), patience };
+        params().import(&host)
+    });
+    // Points, places, and the triangles that they make.
+    assert!(looks >= 3 * n as usize / STRIDE, "{looks} looks");
+}
+
+/// A glTF file and its buffer, for a host that may lose interest.
+struct Impatient<'a> {
+    files: [Arc<[u8]>; 2],
+    patience: &'a Patience,
+}
+
+impl BuildContext for Impatient<'_> {
+    fn read(&self, _path: &str) -> Result<Arc<[u8]>, String> {
+        Ok(self.files[0].clone())
+    }
+    fn read_beside(&self, _base: &str, _path: &str) -> Result<Arc<[u8]>, String> {
+        Ok(self.files[1].clone())
+    }
+    fn warn(&self, _message: &str) {}
+    fn cancelled(&self) -> bool {
+        self.patience.cancelled()
+    }
 }
 
 #[test]

@@ -6,8 +6,10 @@ use std::fmt;
 use glam::{DMat3, DVec3, Vec3};
 use luxel_sdk::kind::TriangleMesh;
 use luxel_sdk::num::Bounds3;
+use luxel_sdk::params::BuildContext;
 
 use super::Shading;
+use crate::stop::wanted;
 
 /// Most points of a mesh: more than the corners of as many triangles as a mesh may have, and every
 /// place among them fits 32 bits.
@@ -62,7 +64,8 @@ impl Axes {
         }
         let middle = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
         let centre = self.turn * (middle * self.unit);
-        let mut out = Vec::with_capacity(points.size_hint().0);
+        let (least, most) = points.size_hint();
+        let mut out = Vec::with_capacity(most.unwrap_or(least));
         for (i, p) in points.clone().enumerate() {
             let local = (self.turn * ((p - middle) * self.unit)).as_vec3();
             if !(local.is_finite() && centre.is_finite()) {
@@ -124,8 +127,13 @@ pub(super) fn fan(corners: &[u32], out: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// Settles the normals; the number of given ones that had no direction and were made anew.
-pub(super) fn finish(mesh: &mut TriangleMesh, smooth: Shading) -> usize {
+/// Settles the normals, while that is wanted; the number of given ones that had no direction and were
+/// made anew.
+pub(super) fn finish(
+    mesh: &mut TriangleMesh,
+    smooth: Shading,
+    context: &dyn BuildContext,
+) -> usize {
     let made = match smooth {
         Shading::Flat => {
             mesh.normals = Vec::new();
@@ -138,12 +146,12 @@ pub(super) fn finish(mesh: &mut TriangleMesh, smooth: Shading) -> usize {
         return 0;
     }
     if mesh.normals.is_empty() {
-        mesh.normals = vertex_normals(mesh);
+        mesh.normals = vertex_normals(mesh, context);
         return 0;
     }
     let lost = mesh.normals.iter().filter(|n| **n == Vec3::ZERO).count();
     if lost > 0 {
-        let made = vertex_normals(mesh);
+        let made = vertex_normals(mesh, context);
         for (n, made) in mesh.normals.iter_mut().zip(made) {
             *n = if *n == Vec3::ZERO { made } else { *n };
         }
@@ -157,15 +165,16 @@ pub(super) fn angle(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// A normal for each point: the mean of its faces' normals, weighted by their angles there. Points
-/// at the same place share it, so that seams of textures do not show.
+/// at the same place share it, so that seams of textures do not show. Not of all, once that is not
+/// wanted any more.
 ///
 /// # Source
 /// Thürmer & Wüthrich 1998, "Computing Vertex Normals from Polygonal Facets".
-fn vertex_normals(mesh: &TriangleMesh) -> Vec<Vec3> {
+fn vertex_normals(mesh: &TriangleMesh, context: &dyn BuildContext) -> Vec<Vec3> {
     // Adding zero makes −0 the same place as 0.
     let key = |i: u32| (mesh.points[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
     let mut sums: HashMap<[u32; 3], DVec3> = HashMap::with_capacity(mesh.points.len());
-    for triangle in &mesh.indices {
+    for triangle in wanted(&mesh.indices, context) {
         let p = triangle.map(|i| mesh.points[i as usize].as_dvec3());
         let Some(n) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else { continue };
         for k in 0..3 {
@@ -175,5 +184,5 @@ fn vertex_normals(mesh: &TriangleMesh) -> Vec<Vec3> {
     }
     let n_points = u32::try_from(mesh.points.len()).expect("readers check the number of points");
     let of = |i| sums.get(&key(i)).and_then(|n| n.try_normalize()).unwrap_or(DVec3::Y).as_vec3();
-    (0..n_points).map(of).collect()
+    wanted(0..n_points, context).map(of).collect()
 }

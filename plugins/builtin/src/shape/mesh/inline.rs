@@ -2,42 +2,47 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use luxel_sdk::kind::TriangleMesh;
-use luxel_sdk::params::Fault;
+use luxel_sdk::params::{BuildContext, Fault};
 
-use super::Mesh;
 use super::assemble::{Axes, check_n_points, fan};
 use super::polygons::Polygons;
+use super::{Mesh, stopped};
+use crate::stop::{go_on, wanted};
 
 /// Takes the tables apart; all that is wrong with them at once.
-pub(super) fn build(mesh: &Mesh<'_>) -> Result<TriangleMesh, Vec<Fault>> {
-    let tables = Tables::read(mesh)?;
-    let points = tables.points.iter().map(|p| DVec3::from_array(*p));
-    let rebased = tables.axes.rebase(points);
+pub(super) fn build(
+    mesh: &Mesh<'_>,
+    context: &dyn BuildContext,
+) -> Result<TriangleMesh, Vec<Fault>> {
+    let tables = Tables::read(mesh, context)?;
+    let rebased = tables.axes.rebase(tables.places(context));
     let mut out = rebased.map_err(|bad| vec![Fault::mesh("points", bad.to_string())])?;
-    for face in tables.starts.windows(2) {
+    for face in wanted(tables.starts.windows(2), context) {
         fan(&tables.corners[face[0] as usize..face[1] as usize], &mut out.indices);
     }
-    (out.normals, out.uvs) = (tables.normals(), tables.uvs());
-    out.colors = tables.colors();
+    (out.normals, out.uvs) = (tables.normals(context), tables.uvs(context));
+    out.colors = tables.colors(context);
+    go_on(context).map_err(stopped)?;
     Ok(out)
 }
 
 /// The same, with faces as they were given.
-pub(super) fn polygons(mesh: &Mesh<'_>) -> Result<Polygons, Vec<Fault>> {
-    let tables = Tables::read(mesh)?;
-    let points = tables.points.iter().map(|p| DVec3::from_array(*p));
-    let rebased = tables.axes.rebase(points.clone());
+pub(super) fn polygons(
+    mesh: &Mesh<'_>,
+    context: &dyn BuildContext,
+) -> Result<Polygons, Vec<Fault>> {
+    let tables = Tables::read(mesh, context)?;
+    let rebased = tables.axes.rebase(tables.places(context));
     rebased.map_err(|bad| vec![Fault::mesh("points", bad.to_string())])?;
-    let (normals, uvs, colors) = (tables.normals(), tables.uvs(), tables.colors());
-    let mut out = Polygons {
-        points: points.map(|p| tables.axes.point(p)).collect(),
-        starts: tables.starts,
-        corners: tables.corners,
-        ..Polygons::default()
-    };
+    let (normals, uvs) = (tables.normals(context), tables.uvs(context));
+    let colors = tables.colors(context);
+    let points = tables.places(context).map(|p| tables.axes.point(p)).collect();
+    go_on(context).map_err(stopped)?;
+    let mut out =
+        Polygons { points, starts: tables.starts, corners: tables.corners, ..Polygons::default() };
     (out.normals, out.uvs) = (out.spread(&normals), out.spread(&uvs));
     out.colors = out.spread(&colors);
-    out.weld();
+    out.weld(context).map_err(stopped)?;
     Ok(out)
 }
 
@@ -53,7 +58,7 @@ struct Tables<'a> {
 }
 
 impl<'a> Tables<'a> {
-    fn read(mesh: &Mesh<'a>) -> Result<Self, Vec<Fault>> {
+    fn read(mesh: &Mesh<'a>, context: &dyn BuildContext) -> Result<Self, Vec<Fault>> {
         let mut faults = vec![];
         let points = groups::<3>("points", mesh.points.get(), &mut faults);
         if let Err(message) = check_n_points(points.len()) {
@@ -73,29 +78,36 @@ impl<'a> Tables<'a> {
             }
         }
         let out_of_range = |x: &f64| !(0.0..=1.0).contains(x);
-        if let Some(i) = colors.as_flattened().iter().position(out_of_range) {
+        if let Some(i) = wanted(colors.as_flattened(), context).position(out_of_range) {
             let message = format!("colour {} has {}, outside [0, 1]", i / 3, mesh.colors.get()[i]);
             faults.push(Fault::mesh("colors", message));
         }
         let what = if sides.is_empty() { "triangle" } else { "face" };
-        let corners = corners(indices, &starts, points.len(), what);
+        let corners = corners((indices, &starts), points.len(), what, context);
         let corners = corners.map_err(|fault| faults.push(fault)).unwrap_or_default();
+        go_on(context).map_err(stopped)?;
         let axes = Axes { turn: mesh.up.turn(), ..Axes::METRES };
         let tables = Self { axes, points, normals, uvs, colors, corners, starts };
         if faults.is_empty() { Ok(tables) } else { Err(faults) }
     }
 
-    fn normals(&self) -> Vec<Vec3> {
+    // All of these end early when nobody wants them any more.
+
+    fn places(&self, context: &'a dyn BuildContext) -> impl Iterator<Item = DVec3> + Clone {
+        wanted(self.points, context).map(|p| DVec3::from_array(*p))
+    }
+
+    fn normals(&self, context: &dyn BuildContext) -> Vec<Vec3> {
         let unit = |n: &[f64; 3]| DVec3::from_array(*n).normalize_or_zero().as_vec3();
-        self.normals.iter().map(|n| self.axes.normal(unit(n))).collect()
+        wanted(self.normals, context).map(|n| self.axes.normal(unit(n))).collect()
     }
 
-    fn colors(&self) -> Vec<Vec3> {
-        self.colors.iter().map(|c| DVec3::from_array(*c).as_vec3()).collect()
+    fn colors(&self, context: &dyn BuildContext) -> Vec<Vec3> {
+        wanted(self.colors, context).map(|c| DVec3::from_array(*c).as_vec3()).collect()
     }
 
-    fn uvs(&self) -> Vec<Vec2> {
-        self.uvs.iter().map(|uv| finite_uv(DVec2::from_array(*uv))).collect()
+    fn uvs(&self, context: &dyn BuildContext) -> Vec<Vec2> {
+        wanted(self.uvs, context).map(|uv| finite_uv(DVec2::from_array(*uv))).collect()
     }
 }
 
@@ -155,15 +167,16 @@ fn starts(n_indices: usize, sides: &[f64], faults: &mut Vec<Fault>) -> Vec<u32> 
     out
 }
 
+/// As many as are wanted.
 fn corners(
-    indices: &[f64],
-    starts: &[u32],
+    (indices, starts): (&[f64], &[u32]),
     n_points: usize,
     what: &str,
+    context: &dyn BuildContext,
 ) -> Result<Vec<u32>, Fault> {
     let n = starts.last().map_or(0, |end| *end as usize);
     let mut out = Vec::with_capacity(n);
-    for (i, x) in indices[..n].iter().enumerate() {
+    for (i, x) in wanted(indices[..n].iter().enumerate(), context) {
         let Some(corner) = index(*x, n_points) else {
             let face = starts.partition_point(|start| *start as usize <= i).saturating_sub(1);
             let message =

@@ -23,6 +23,7 @@ use self::assemble::Axes;
 use self::subdivide::Scheme;
 use super::up::Up;
 use crate::sniff;
+use crate::stop::go_on;
 
 /// What is done about shading normals.
 #[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,7 +169,8 @@ impl Mesh<'_> {
     ) -> Result<TriangleMesh, Vec<Fault>> {
         let made = self.subdivide > 0 || self.displace.is_given();
         let mut mesh = if made { self.refined(context, apart)? } else { self.plain(context)? };
-        let repaired = assemble::finish(&mut mesh, self.smooth);
+        let repaired = assemble::finish(&mut mesh, self.smooth, context);
+        go_on(context).map_err(stopped)?;
         if repaired > 0 {
             let path = self.file.path.get();
             let name = if path.is_empty() { "the mesh" } else { path };
@@ -191,7 +193,7 @@ impl Mesh<'_> {
     /// Triangles as they were given.
     fn plain(&self, context: &dyn BuildContext) -> Result<TriangleMesh, Vec<Fault>> {
         if self.file.path.get().is_empty() {
-            return inline::build(self);
+            return inline::build(self, context);
         }
         self.read(context, ply::read, obj::read)
     }
@@ -199,7 +201,7 @@ impl Mesh<'_> {
     /// Triangles that are made of the given faces.
     fn refined(&self, context: &dyn BuildContext, apart: bool) -> Result<TriangleMesh, Vec<Fault>> {
         let faces = if self.file.path.get().is_empty() {
-            inline::polygons(self)?
+            inline::polygons(self, context)?
         } else {
             self.read(context, ply::polygons, obj_faces::read)?
         };
@@ -209,9 +211,10 @@ impl Mesh<'_> {
                 scheme: self.scheme,
                 creases: self.creases.get(),
             };
-            subdivide::subdivide(faces.clean(), settings, context)?
+            let faces = faces.clean(context).map_err(stopped)?;
+            subdivide::subdivide(faces, settings, context)?
         } else {
-            faces.fans()
+            faces.fans(context).map_err(stopped)?
         };
         let mut field = "subdivide";
         if self.displace.is_given() {
@@ -222,9 +225,9 @@ impl Mesh<'_> {
                 edge: self.edge,
             };
             field = "displace_by";
-            net = displace::displace(net, settings, self.smooth)?;
+            net = displace::displace(net, settings, self.smooth, context)?;
         }
-        net.into_mesh(apart).map_err(|bad| vec![Fault::mesh(field, bad.to_string())])
+        net.into_mesh(apart, context).map_err(|message| vec![Fault::mesh(field, message)])
     }
 
     /// What a file holds, by what it is rather than by what it is called.
@@ -249,6 +252,11 @@ impl Mesh<'_> {
         };
         found.map_err(|message| vec![Fault::file("file", format!("{path}: {message}"))])
     }
+}
+
+/// The fault of a mesh that is not wanted any more.
+fn stopped(message: String) -> Vec<Fault> {
+    vec![Fault::mesh("file", message)]
 }
 
 /// What is said of bytes that are no OBJ file, which is text and has no beginning of its own.

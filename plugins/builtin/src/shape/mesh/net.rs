@@ -4,8 +4,10 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::kind::TriangleMesh;
+use luxel_sdk::params::BuildContext;
 
-use super::assemble::{Axes, BadPoint};
+use super::assemble::Axes;
+use crate::stop::{go_on, wanted};
 
 /// Most triangles that subdivision and displacement make: about a gigabyte while they are made.
 pub(super) const MOST_TRIANGLES: u64 = 1 << 23;
@@ -37,11 +39,15 @@ impl Net {
     /// `apart`, for each corner, whatever it shares with others at this moment.
     ///
     /// # Errors
-    /// A place that single precision does not reach.
-    pub(super) fn into_mesh(self, apart: bool) -> Result<TriangleMesh, BadPoint> {
+    /// A place that single precision does not reach. That it is not wanted any more.
+    pub(super) fn into_mesh(
+        self,
+        apart: bool,
+        context: &dyn BuildContext,
+    ) -> Result<TriangleMesh, String> {
         let mut known = HashMap::with_capacity(self.places.len());
         let (mut first, mut indices) = (vec![], Vec::with_capacity(self.triangles.len()));
-        for (i, triangle) in self.triangles.iter().enumerate() {
+        for (i, triangle) in wanted(self.triangles.iter().enumerate(), context) {
             let mut corners = [0; 3];
             for k in 0..3 {
                 let corner = 3 * i + k;
@@ -59,7 +65,8 @@ impl Net {
         }
         drop(known);
         let place = |corner: &usize| self.places[self.triangles[corner / 3][corner % 3] as usize];
-        let mesh = Axes::METRES.rebase(first.iter().map(place))?;
+        let mesh = Axes::METRES.rebase(wanted(first.iter().map(place), context))?;
+        go_on(context)?;
         let (uvs, normals) = (all(&first, &self.uvs), all(&first, &self.normals));
         Ok(TriangleMesh { indices, uvs, normals, colors: all(&first, &self.colors), ..mesh })
     }

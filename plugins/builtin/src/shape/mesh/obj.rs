@@ -10,7 +10,7 @@ use tobj::LoadOptions;
 
 use super::assemble::{Axes, MOST_POINTS};
 use super::inline::unit_color;
-use crate::stop::{STRIDE, Stoppable, go_on};
+use crate::stop::{STRIDE, Stoppable, go_on, wanted};
 
 const OPTIONS: LoadOptions =
     LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
@@ -37,11 +37,12 @@ pub(super) fn read(
     let (models, _) = loaded.map_err(|error| error.to_string().to_lowercase())?;
     let meshes: Vec<_> = models.into_iter().map(|model| model.mesh).collect();
     let points = meshes.iter().flat_map(|m| m.positions.as_chunks().0);
-    let rebased = axes.rebase(points.map(|p| DVec3::from_array(*p)));
+    let rebased = axes.rebase(wanted(points.map(|p| DVec3::from_array(*p)), context));
     let mut out = rebased.map_err(|bad| match line_of(&text, bad.p) {
         Some(line) => format!("line {line}: this point {}", bad.what),
         None => bad.to_string(),
     })?;
+    go_on(context)?;
     let any_normals = meshes.iter().any(|m| !m.normals.is_empty());
     let any_uvs = meshes.iter().any(|m| !m.texcoords.is_empty());
     for mesh in &meshes {

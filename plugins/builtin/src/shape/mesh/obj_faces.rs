@@ -9,7 +9,7 @@ use super::assemble::Axes;
 use super::inline::finite_uv;
 use super::obj::{Most, TOO_MANY, check, color_of};
 use super::polygons::Polygons;
-use crate::stop::{STRIDE, go_on};
+use crate::stop::{STRIDE, go_on, wanted};
 
 /// All groups of the file as one mesh.
 ///
@@ -37,8 +37,9 @@ pub(super) fn read(
     if faces.n_faces() == 0 {
         return Err("an OBJ file without a face (no line `f 1 2 3`)".to_owned());
     }
-    let rebased = Axes::METRES.rebase(faces.points.iter().copied());
+    let rebased = Axes::METRES.rebase(wanted(faces.points.iter().copied(), context));
     rebased.map_err(|bad| format!("line {}: this point {}", lines[bad.i] + 1, bad.what))?;
+    go_on(context)?;
     // Where no corner has them, there are none.
     if faces.uvs.iter().all(|uv| uv.is_nan()) {
         faces.uvs.clear();

@@ -4,7 +4,10 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec3};
 
+use luxel_sdk::params::BuildContext;
+
 use super::net::Net;
+use crate::stop::{gather, go_on, wanted};
 
 /// Faces of a mesh as they were given.
 #[derive(Clone, Debug, Default)]
@@ -41,22 +44,29 @@ impl Polygons {
 
     /// Makes points at the same place one: where each point has coordinates of its own, seams of
     /// these have torn the surface apart.
-    pub(super) fn weld(&mut self) {
+    ///
+    /// # Errors
+    /// If it is not wanted any more.
+    pub(super) fn weld(&mut self, context: &dyn BuildContext) -> Result<(), String> {
         // Adding zero makes −0 the same place as 0.
         let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
         let mut first = HashMap::with_capacity(self.points.len());
         let points = (0..).zip(&self.points);
-        self.same = points.map(|(i, p)| *first.entry(key(*p)).or_insert(i)).collect();
-        for corner in &mut self.corners {
+        self.same = gather(points.map(|(i, p)| *first.entry(key(*p)).or_insert(i)), context)?;
+        for corner in wanted(&mut self.corners, context) {
             *corner = self.same[*corner as usize];
         }
+        go_on(context)
     }
 
     /// Drops corners that repeat the one before, and faces with fewer than three that are left.
-    pub(super) fn clean(self) -> Self {
+    ///
+    /// # Errors
+    /// If it is not wanted any more.
+    pub(super) fn clean(self, context: &dyn BuildContext) -> Result<Self, String> {
         let mut out =
             Self { points: self.points, starts: vec![0], same: self.same, ..Self::default() };
-        for face in self.starts.windows(2) {
+        for face in wanted(self.starts.windows(2), context) {
             let range = face[0]..face[1];
             let before = |i: u32| if i == range.start { range.end - 1 } else { i - 1 };
             let corner = |i: u32| self.corners[i as usize];
@@ -73,30 +83,41 @@ impl Polygons {
             }
             out.starts.push(out.corners.len().try_into().expect("there are no more than before"));
         }
-        out
+        go_on(context)?;
+        Ok(out)
     }
 
     /// Every face as a fan about its first corner.
-    pub(super) fn fans(self) -> Net {
+    ///
+    /// # Errors
+    /// If it is not wanted any more.
+    pub(super) fn fans(self, context: &dyn BuildContext) -> Result<Net, String> {
         let mut kept = vec![];
-        for face in self.starts.windows(2) {
+        for face in wanted(self.starts.windows(2), context) {
             kept.extend((face[0] + 1..face[1].max(1) - 1).map(|i| [face[0], i, i + 1]));
         }
-        let triangles = kept.iter().map(|t| t.map(|i| self.corners[i as usize])).collect();
-        Net {
+        let triangles = gather(kept.iter().map(|t| t.map(|i| self.corners[i as usize])), context)?;
+        Ok(Net {
             places: self.points,
             triangles,
-            uvs: pick(&kept, &self.uvs),
-            normals: pick(&kept, &self.normals),
-            colors: pick(&kept, &self.colors),
-        }
+            uvs: pick(&kept, &self.uvs, context)?,
+            normals: pick(&kept, &self.normals, context)?,
+            colors: pick(&kept, &self.colors, context)?,
+        })
     }
 }
 
 /// What the corners of triangles have, triangle by triangle; nothing where there is nothing.
-pub(super) fn pick<T: Copy>(triangles: &[[u32; 3]], of_corners: &[T]) -> Vec<T> {
+///
+/// # Errors
+/// If it is not wanted any more.
+pub(super) fn pick<T: Copy>(
+    triangles: &[[u32; 3]],
+    of_corners: &[T],
+    context: &dyn BuildContext,
+) -> Result<Vec<T>, String> {
     if of_corners.is_empty() {
-        return vec![];
+        return Ok(vec![]);
     }
-    triangles.iter().flatten().map(|i| of_corners[*i as usize]).collect()
+    gather(triangles.as_flattened().iter().map(|i| of_corners[*i as usize]), context)
 }

@@ -8,12 +8,13 @@ mod tessellate;
 
 use glam::{DVec3, Vec2};
 use luxel_sdk::kind::TextureRef;
-use luxel_sdk::params::Fault;
+use luxel_sdk::params::{BuildContext, Fault};
 
 use self::tessellate::tessellate;
 use super::Shading;
 use super::assemble::angle;
 use super::net::{MOST_TRIANGLES, Net};
+use crate::stop::{gather, go_on, wanted};
 
 /// What is asked for.
 #[derive(Clone, Copy)]
@@ -30,15 +31,18 @@ pub(super) struct Settings<'a> {
 /// Splits and moves triangles; their normals are made anew.
 ///
 /// # Errors
-/// An edge that would make more triangles than there may be; a texture that fails.
+/// An edge that would make more triangles than there may be; a texture that fails. That it is not wanted
+/// any more.
 pub(super) fn displace(
     mut net: Net,
     settings: Settings<'_>,
     smooth: Shading,
+    context: &dyn BuildContext,
 ) -> Result<Net, Vec<Fault>> {
-    give_normals(&mut net, smooth);
+    let stopped = |message| vec![Fault::mesh("displace", message)];
+    give_normals(&mut net, smooth, context).map_err(stopped)?;
     let edge = settings.edge;
-    let net = tessellate(net, edge, MOST_TRIANGLES).map_err(|many| {
+    let net = tessellate(net, edge, MOST_TRIANGLES, context).map_err(|many| {
         let n = if many.triangles < 1e15 {
             format!("about {:.0}", many.triangles)
         } else {
@@ -51,39 +55,42 @@ pub(super) fn displace(
         );
         vec![Fault::mesh("edge", message)]
     })?;
-    let mut net = moved(net, settings)?;
+    go_on(context).map_err(stopped)?;
+    let mut net = moved(net, settings, context)?;
     net.normals = vec![];
     if smooth != Shading::Flat {
-        let normals = net.place_normals();
-        net.set_normals(&normals);
+        net.smoothen(context).map_err(stopped)?;
     }
     Ok(net)
 }
 
 /// Sees to it that each corner has a direction to move in.
-fn give_normals(net: &mut Net, smooth: Shading) {
-    if smooth == Shading::Flat {
-        net.flatten();
-    } else if net.normals.is_empty() {
-        if smooth == Shading::Smooth {
-            let normals = net.place_normals();
-            net.set_normals(&normals);
-        } else {
-            net.flatten();
-        }
+fn give_normals(net: &mut Net, smooth: Shading, context: &dyn BuildContext) -> Result<(), String> {
+    match smooth {
+        Shading::Flat => net.flatten(context),
+        _ if !net.normals.is_empty() => Ok(()),
+        Shading::Smooth => net.smoothen(context),
+        Shading::Keep => net.flatten(context),
     }
 }
 
 /// Moves each place.
-fn moved(mut net: Net, settings: Settings<'_>) -> Result<Net, Vec<Fault>> {
-    let along = net.mean_by_angle(|corner, face| {
+fn moved(
+    mut net: Net,
+    settings: Settings<'_>,
+    context: &dyn BuildContext,
+) -> Result<Net, Vec<Fault>> {
+    let stopped = |message| vec![Fault::mesh("displace", message)];
+    let given = |corner: usize, face| {
         // A given normal without a direction leaves the face's.
         let n = net.normals[corner].as_dvec3();
         if n == DVec3::ZERO { face } else { n }
-    });
+    };
+    let along = net.mean_by_angle(given, context).map_err(stopped)?;
     let mut heights = vec![(0.0f64, 0u32); net.places.len()];
     let mut said: Vec<Option<(Vec2, f64)>> = vec![None; net.places.len()];
-    for (corner, place) in net.triangles.iter().flatten().map(|i| *i as usize).enumerate() {
+    let corners = net.triangles.as_flattened().iter().map(|i| *i as usize);
+    for (corner, place) in wanted(corners.enumerate(), context) {
         let uv = net.uvs.get(corner).copied().unwrap_or(Vec2::ZERO);
         let value = match said[place] {
             Some((before, value)) if before == uv => value,
@@ -98,35 +105,45 @@ fn moved(mut net: Net, settings: Settings<'_>) -> Result<Net, Vec<Fault>> {
         heights[place].0 += value;
         heights[place].1 += 1;
     }
-    for ((place, along), (sum, n)) in net.places.iter_mut().zip(along).zip(heights) {
+    let places = net.places.iter_mut().zip(along).zip(heights);
+    for ((place, along), (sum, n)) in wanted(places, context) {
         if n > 0 {
             *place += along * (settings.by * (sum / f64::from(n) - settings.from));
         }
     }
+    go_on(context).map_err(stopped)?;
     Ok(net)
 }
 
 impl Net {
     /// Gives each corner the normal of its triangle.
-    fn flatten(&mut self) {
+    fn flatten(&mut self, context: &dyn BuildContext) -> Result<(), String> {
         let each = |t: &[u32; 3]| [self.face_normal(*t).as_vec3(); 3];
-        self.normals = self.triangles.iter().flat_map(each).collect();
+        self.normals = gather(self.triangles.iter().flat_map(each), context)?;
+        Ok(())
     }
 
-    /// For each place the mean of its triangles' normals, weighted by their angles there; zero where
-    /// they have none.
+    /// Gives the corners of each place the mean of its triangles' normals, weighted by their angles
+    /// there; zero where they have none.
     ///
     /// # Source
     /// Thürmer & Wüthrich 1998, "Computing Vertex Normals from Polygonal Facets".
-    fn place_normals(&self) -> Vec<DVec3> {
-        self.mean_by_angle(|_, face| face)
+    fn smoothen(&mut self, context: &dyn BuildContext) -> Result<(), String> {
+        let of_places = self.mean_by_angle(|_, face| face, context)?;
+        let corners = self.triangles.as_flattened().iter();
+        self.normals = gather(corners.map(|i| of_places[*i as usize].as_vec3()), context)?;
+        Ok(())
     }
 
     /// For each place the mean of a vector of its corners, weighted by their angles; `vector` is
     /// given the corner, counted over all triangles, and the normal of its triangle.
-    fn mean_by_angle(&self, vector: impl Fn(usize, DVec3) -> DVec3) -> Vec<DVec3> {
+    fn mean_by_angle(
+        &self,
+        vector: impl Fn(usize, DVec3) -> DVec3,
+        context: &dyn BuildContext,
+    ) -> Result<Vec<DVec3>, String> {
         let mut sums = vec![DVec3::ZERO; self.places.len()];
-        for (i, triangle) in self.triangles.iter().enumerate() {
+        for (i, triangle) in wanted(self.triangles.iter().enumerate(), context) {
             let face = self.face_normal(*triangle);
             let p = triangle.map(|i| self.places[i as usize]);
             for k in 0..3 {
@@ -134,13 +151,7 @@ impl Net {
                 sums[triangle[k] as usize] += vector(3 * i + k, face) * angle(a, b);
             }
         }
-        sums.into_iter().map(DVec3::normalize_or_zero).collect()
-    }
-
-    /// Gives the corners of each place one normal.
-    fn set_normals(&mut self, of_places: &[DVec3]) {
-        let corners = self.triangles.iter().flatten();
-        self.normals = corners.map(|i| of_places[*i as usize].as_vec3()).collect();
+        gather(sums.into_iter().map(DVec3::normalize_or_zero), context)
     }
 }
 

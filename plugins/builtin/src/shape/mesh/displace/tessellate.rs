@@ -8,8 +8,10 @@ use std::collections::HashMap;
 use std::ops::{Add, Mul};
 
 use glam::{DVec3, Vec2, Vec3};
+use luxel_sdk::params::BuildContext;
 
 use super::super::net::Net;
+use crate::stop::wanted;
 
 /// What splitting would need more triangles than there may be for.
 #[derive(Clone, Copy, Debug)]
@@ -20,28 +22,39 @@ pub(super) struct TooMany {
     pub(super) fits: Option<f64>,
 }
 
-/// Splits triangles until no edge is longer than `most`, metres.
+/// Splits triangles until no edge is longer than `most`, metres, or until that is not wanted any more:
+/// some triangles may be missing then.
 ///
 /// # Errors
 /// Where that takes more than `limit` triangles, before they are made.
-pub(super) fn tessellate(mut net: Net, most: f64, limit: u64) -> Result<Net, TooMany> {
-    let too_many =
-        |net: &Net| TooMany { triangles: estimate(net, most), fits: fitting(net, most, limit) };
+pub(super) fn tessellate(
+    mut net: Net,
+    most: f64,
+    limit: u64,
+    context: &dyn BuildContext,
+) -> Result<Net, TooMany> {
+    let too_many = |net: &Net| TooMany {
+        triangles: estimate(net, most, context),
+        fits: fitting(net, (most, limit), context),
+    };
     // An estimate may be off by as much.
-    if estimate(&net, most) > 4.0 * limit as f64 || net.triangles.len() as u64 > limit {
+    if estimate(&net, most, context) > 4.0 * limit as f64 || net.triangles.len() as u64 > limit {
         return Err(too_many(&net));
     }
     let given =
         Net { places: net.places.clone(), triangles: net.triangles.clone(), ..Net::default() };
     loop {
-        let split = Split::find(&net, most);
+        let split = Split::find(&net, most, context);
         if split.middles.is_empty() {
             return Ok(net);
         }
-        if split.n_triangles(&net) > limit {
+        if split.n_triangles(&net, context) > limit {
             return Err(too_many(&given));
         }
-        net = split.apply(&net);
+        net = split.apply(&net, context);
+        if context.cancelled() {
+            return Ok(net);
+        }
     }
 }
 
@@ -61,9 +74,11 @@ fn edges([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
 }
 
 impl Split {
-    fn find(net: &Net, most: f64) -> Self {
-        let mut out = Self { middles: HashMap::new(), places: vec![] };
-        for edge in net.triangles.iter().flat_map(|t| edges(*t)) {
+    fn find(net: &Net, most: f64, context: &dyn BuildContext) -> Self {
+        // Two triangles join at most edges. A table that grows takes its time in one piece.
+        let middles = HashMap::with_capacity(net.triangles.len() * 3 / 2);
+        let mut out = Self { middles, places: vec![] };
+        for edge in wanted(&net.triangles, context).flat_map(|t| edges(*t)) {
             let [a, b] = [edge.0, edge.1].map(|i| net.places[i as usize]);
             // The same in both directions. NaN is not split, nor an edge between whose ends no number
             // lies.
@@ -79,17 +94,17 @@ impl Split {
         out
     }
 
-    fn n_triangles(&self, net: &Net) -> u64 {
+    fn n_triangles(&self, net: &Net, context: &dyn BuildContext) -> u64 {
         let split =
             |t: &[u32; 3]| edges(*t).iter().filter(|e| self.middles.contains_key(*e)).count();
-        net.triangles.iter().map(|t| 1 + split(t) as u64).sum()
+        wanted(&net.triangles, context).map(|t| 1 + split(t) as u64).sum()
     }
 
-    fn apply(self, net: &Net) -> Net {
+    fn apply(self, net: &Net, context: &dyn BuildContext) -> Net {
         let mut places = net.places.clone();
         places.extend(&self.places);
         let mut out = Net { places, ..Net::default() };
-        for (i, triangle) in net.triangles.iter().enumerate() {
+        for (i, triangle) in wanted(net.triangles.iter().enumerate(), context) {
             let found = edges(*triangle).map(|edge| self.middles.get(&edge).copied());
             let (parts, n) = pattern(found.map(|middle| middle.is_some()), |a, b| {
                 let place = |i: usize| {
@@ -157,7 +172,7 @@ fn pattern(split: [bool; 3], length: impl Fn(usize, usize) -> f64) -> ([[u8; 3];
 }
 
 /// About how many triangles edges of at most this length make: by how often each edge is halved.
-fn estimate(net: &Net, most: f64) -> f64 {
+fn estimate(net: &Net, most: f64, context: &dyn BuildContext) -> f64 {
     let of = |triangle: &[u32; 3]| {
         let n = edges(*triangle).map(|(a, b)| {
             let length = net.places[a as usize].distance(net.places[b as usize]);
@@ -166,18 +181,19 @@ fn estimate(net: &Net, most: f64) -> f64 {
         let (long, short) = (n[0].max(n[1]).max(n[2]), n[0].min(n[1]).min(n[2]));
         long * short * (2.0 - short / long)
     };
-    net.triangles.iter().map(of).sum()
+    wanted(&net.triangles, context).map(of).sum()
 }
 
 /// An edge that makes as many triangles as there may be, or a little fewer; none where there are too
 /// many already.
-fn fitting(net: &Net, most: f64, limit: u64) -> Option<f64> {
+fn fitting(net: &Net, (most, limit): (f64, u64), context: &dyn BuildContext) -> Option<f64> {
     let length = |(a, b): (u32, u32)| net.places[a as usize].distance(net.places[b as usize]);
-    let longest = net.triangles.iter().flat_map(|t| edges(*t)).map(length).fold(0.0, f64::max);
+    let triangles = wanted(&net.triangles, context);
+    let longest = triangles.flat_map(|t| edges(*t)).map(length).fold(0.0, f64::max);
     // Shorter ones split a single edge into more than there may be.
     let mut edge = most.max(longest / (2.0 * limit as f64));
     while edge <= longest {
-        if estimate(net, edge) <= 0.5 * limit as f64 {
+        if estimate(net, edge, context) <= 0.5 * limit as f64 {
             break;
         }
         edge *= 1.25;

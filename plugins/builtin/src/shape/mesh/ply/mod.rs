@@ -51,7 +51,7 @@ pub(super) fn polygons(
     out.points = points;
     (out.normals, out.uvs) = (out.spread(&mesh.normals), out.spread(&mesh.uvs));
     out.colors = out.spread(&mesh.colors);
-    out.weld();
+    out.weld(context)?;
     Ok(out)
 }
 
@@ -150,7 +150,10 @@ fn vertices(
         (Some(stride), Encoding::Little | Encoding::Big) => {
             let rows = reader.take(stride * e.count)?;
             let rows = rows.chunks_exact(stride.max(1));
-            strided((e, &layout), rows, reader.encoding, axes, exact)
+            let mesh = strided((e, &layout), reader.wanted(rows), reader.encoding, axes, exact)?;
+            // Whether there were all of them.
+            reader.go_on(0)?;
+            Ok(mesh)
         }
         _ => listed((e, &layout), reader, axes, exact),
     }

@@ -3,7 +3,7 @@
 use luxel_sdk::params::BuildContext;
 
 use super::super::inline::index;
-use crate::stop::{STRIDE, go_on};
+use crate::stop::{STRIDE, Wanted, go_on, wanted};
 
 /// How the data are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,6 +105,11 @@ impl<'a> Reader<'a> {
     /// Before element `i` of many: whether the file is still wanted.
     pub(super) fn go_on(&self, i: usize) -> Result<(), String> {
         if i.is_multiple_of(STRIDE) { go_on(self.context) } else { Ok(()) }
+    }
+
+    /// These, as long as the file is wanted.
+    pub(super) fn wanted<I: IntoIterator>(&self, items: I) -> Wanted<'a, I::IntoIter> {
+        wanted(items, self.context)
     }
 
     /// What has not been read.

@@ -2,37 +2,54 @@
 
 use glam::{DVec3, Vec3};
 use luxel_sdk::num::gamma64;
+use luxel_sdk::params::BuildContext;
 
 use super::Scheme;
 use super::masks::{self, Ring};
 use super::rules::{Around, Rule, SharpPoints, beta, in_the_limit, placed};
 use super::topology::{Level, NONE};
+use crate::stop::{go_on, wanted};
 
 /// The limit of each point. What is still sharp for a number of levels counts as sharp for ever if
 /// it is for at least one, and is blended if it is for less.
 ///
+/// # Errors
+/// If it is not wanted any more.
+///
 /// # Source
 /// Halstead, Kass & `DeRose` 1993 for quads; Loop 1987 for triangles; Hoppe et al. 1994 for creases.
-pub(super) fn points(level: &Level, scheme: Scheme) -> Vec<DVec3> {
+pub(super) fn points(
+    level: &Level,
+    scheme: Scheme,
+    context: &dyn BuildContext,
+) -> Result<Vec<DVec3>, String> {
     let across = |c: usize| level.points[level.corners[c / 4 * 4 + (c + 2) % 4] as usize];
     let around = match scheme {
-        Scheme::CatmullClark => Around::all(level, across),
-        Scheme::Loop => Around::all(level, |_| DVec3::ZERO),
+        Scheme::CatmullClark => Around::all(level, across, context)?,
+        Scheme::Loop => Around::all(level, |_| DVec3::ZERO, context)?,
     };
-    let sharp = SharpPoints::find(level, in_the_limit);
+    let sharp = SharpPoints::find(level, in_the_limit, context)?;
     let smooth = |n: f64, p: DVec3, around: &Around| match scheme {
         Scheme::CatmullClark => (p * (n * n) + around.far * 4.0 + around.faces) / (n * (n + 5.0)),
         Scheme::Loop => p + (around.far - p * n) / (0.375 / beta(n) + n),
     };
-    let mut out = placed(level, &around, &sharp, smooth, |p, ends| (p * 4.0 + ends) / 6.0);
-    darts(level, scheme, &sharp, &mut out);
-    out
+    let curve = |p, ends| (p * 4.0 + ends) / 6.0;
+    let mut out = placed(level, (&around, &sharp), smooth, curve, context)?;
+    darts(level, scheme, &sharp, &mut out, context);
+    go_on(context)?;
+    Ok(out)
 }
 
 /// Brings points in which a sharp edge ends to their limit.
-fn darts(level: &Level, scheme: Scheme, sharp: &SharpPoints, out: &mut [DVec3]) {
+fn darts(
+    level: &Level,
+    scheme: Scheme,
+    sharp: &SharpPoints,
+    out: &mut [DVec3],
+    context: &dyn BuildContext,
+) {
     let (mut fan, mut ring) = (vec![], Ring::default());
-    for (corner, point) in (0..).zip(&level.corners) {
+    for (corner, point) in wanted((0..).zip(&level.corners), context) {
         let Some(found) = sharp.get(*point) else { continue };
         let edge = level.edges[corner as usize] as usize;
         if !matches!(found.now, Rule::Dart) || level.sharp[edge] <= 0.0 {
@@ -106,11 +123,18 @@ fn dart_normal(scheme: Scheme, ring: &mut Ring, sharp: usize) -> DVec3 {
 }
 
 /// The limit's normal for each corner: one for all corners of a point between its creases.
-pub(super) fn normals(level: &Level, scheme: Scheme) -> Vec<Vec3> {
-    let sharp = SharpPoints::find(level, in_the_limit);
+///
+/// # Errors
+/// If it is not wanted any more.
+pub(super) fn normals(
+    level: &Level,
+    scheme: Scheme,
+    context: &dyn BuildContext,
+) -> Result<Vec<Vec3>, String> {
+    let sharp = SharpPoints::find(level, in_the_limit, context)?;
     let mut out = vec![Vec3::NAN; level.corners.len()];
     let (mut fan, mut ring) = (vec![], Ring::default());
-    for corner in 0..u32::try_from(out.len()).unwrap_or(NONE) {
+    for corner in wanted(0..u32::try_from(out.len()).unwrap_or(NONE), context) {
         if !out[corner as usize].is_nan() {
             continue;
         }
@@ -134,7 +158,8 @@ pub(super) fn normals(level: &Level, scheme: Scheme) -> Vec<Vec3> {
             out[*corner as usize] = normal;
         }
     }
-    out
+    go_on(context)?;
+    Ok(out)
 }
 
 /// Puts what lies about a point into its ring, relative to it.

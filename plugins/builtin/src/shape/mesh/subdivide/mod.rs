@@ -14,10 +14,11 @@ mod refine;
 mod limit;
 mod masks;
 
+use glam::{Vec2, Vec3};
 use luxel_sdk::Choice;
 use luxel_sdk::params::{BuildContext, Fault};
 
-use self::topology::{Level, Sides};
+use self::topology::Level;
 use super::net::{MOST_TRIANGLES, Net};
 use super::polygons::Polygons;
 
@@ -44,30 +45,34 @@ pub(super) struct Settings<'a> {
 /// Refines faces and brings their points to the limit surface, with its normals.
 ///
 /// # Errors
-/// Faces that the scheme does not take, a crease that is none, more triangles than there may be.
+/// Faces that the scheme does not take, a crease that is none, more triangles than there may be. That
+/// it is not wanted any more.
 pub(super) fn subdivide(
     faces: Polygons,
     settings: Settings<'_>,
     context: &dyn BuildContext,
 ) -> Result<Net, Vec<Fault>> {
     check(&faces, settings).map_err(|fault| vec![fault])?;
-    let (mut uvs, mut colors) = (faces.uvs.clone(), faces.colors.clone());
-    let mut level = Level::build(faces, settings.creases)?;
-    for _ in 0..settings.levels {
-        if context.cancelled() {
-            break;
-        }
-        uvs = refine::values(&level, settings.scheme, &uvs);
-        colors = refine::values(&level, settings.scheme, &colors);
-        level = refine::refine(&level, settings.scheme);
+    let carried = (faces.uvs.clone(), faces.colors.clone());
+    let level = Level::build(faces, settings.creases, context)?;
+    refined(level, settings, carried, context)
+        .map_err(|message| vec![Fault::mesh("subdivide", message)])
+}
+
+fn refined(
+    mut level: Level,
+    Settings { levels, scheme, .. }: Settings<'_>,
+    (mut uvs, mut colors): (Vec<Vec2>, Vec<Vec3>),
+    context: &dyn BuildContext,
+) -> Result<Net, String> {
+    for _ in 0..levels {
+        uvs = refine::values(&level, scheme, &uvs, context)?;
+        colors = refine::values(&level, scheme, &colors, context)?;
+        level = refine::refine(&level, scheme, context)?;
     }
-    // Cancelled before the first level.
-    if matches!(level.sides, Sides::Each { .. }) {
-        return Ok(Net::default());
-    }
-    let normals = limit::normals(&level, settings.scheme);
-    let places = limit::points(&level, settings.scheme);
-    Ok(level.into_net(places, &uvs, &normals, &colors))
+    let normals = limit::normals(&level, scheme, context)?;
+    let places = limit::points(&level, scheme, context)?;
+    level.into_net(places, (&uvs, &normals, &colors), context)
 }
 
 fn check(faces: &Polygons, settings: Settings<'_>) -> Result<(), Fault> {

@@ -7,19 +7,29 @@
 use std::iter::Sum;
 use std::ops::{Add, Mul};
 
+use luxel_sdk::params::BuildContext;
+
 use super::Scheme;
 use super::rules::{after_a_level, middles, moved, of_corners, of_edges};
 use super::topology::{Level, NONE, Sides};
+use crate::stop::{go_on, wanted};
 
 /// Splits every face.
-pub(super) fn refine(level: &Level, scheme: Scheme) -> Level {
+///
+/// # Errors
+/// If it is not wanted any more.
+pub(super) fn refine(
+    level: &Level,
+    scheme: Scheme,
+    context: &dyn BuildContext,
+) -> Result<Level, String> {
     let own_middles = match scheme {
-        Scheme::CatmullClark => middles(level),
+        Scheme::CatmullClark => middles(level, context)?,
         Scheme::Loop => vec![],
     };
-    let of_corners = of_corners(level, scheme, &own_middles);
-    let mut points = moved(level, scheme, &of_corners);
-    points.extend(of_edges(level, scheme, &of_corners));
+    let of_corners = of_corners(level, scheme, &own_middles, context)?;
+    let mut points = moved(level, scheme, &of_corners, context)?;
+    points.extend(of_edges(level, scheme, &of_corners, context)?);
     drop(of_corners);
     points.extend(own_middles);
     let n_points = points.len();
@@ -35,12 +45,14 @@ pub(super) fn refine(level: &Level, scheme: Scheme) -> Level {
     };
     out.pins.resize(n_points, 0.0);
     match scheme {
-        Scheme::CatmullClark => quads(level, &mut out),
-        Scheme::Loop => triangles(level, &mut out),
+        Scheme::CatmullClark => quads(level, &mut out, context),
+        Scheme::Loop => triangles(level, &mut out, context),
     }
+    go_on(context)?;
     out.sharp.resize(out.ends.len(), 0.0);
-    join(level, &mut out);
-    out
+    join(level, &mut out, context);
+    go_on(context)?;
+    Ok(out)
 }
 
 /// What faces become of points and edges: how both are counted at the next level.
@@ -82,10 +94,11 @@ impl<'a> Split<'a> {
 
 /// Each corner becomes a quad: the corner, the middle of its edge, that of its face, and that of the
 /// edge before.
-fn quads(level: &Level, out: &mut Level) {
+fn quads(level: &Level, out: &mut Level, context: &dyn BuildContext) {
     let split = Split::new(level);
-    out.ends.extend(split.halves());
-    for (face, range) in (split.n_points + split.n_edges..).zip(level.faces()) {
+    out.ends.extend(wanted(split.halves(), context));
+    let middles = split.n_points + split.n_edges..;
+    for (face, range) in wanted(middles.zip(level.faces()), context) {
         for corner in range {
             let corner = u32::try_from(corner).expect("corners are counted in u32");
             let before = level.before(corner);
@@ -103,10 +116,10 @@ fn quads(level: &Level, out: &mut Level) {
 }
 
 /// Each corner becomes a triangle, and what is left in the middle a fourth.
-fn triangles(level: &Level, out: &mut Level) {
+fn triangles(level: &Level, out: &mut Level, context: &dyn BuildContext) {
     let split = Split::new(level);
-    out.ends.extend(split.halves());
-    for range in level.faces() {
+    out.ends.extend(wanted(split.halves(), context));
+    for range in wanted(level.faces(), context) {
         let first = u32::try_from(range.start).expect("corners are counted in u32");
         let corners = [first, first + 1, first + 2];
         for corner in corners {
@@ -123,10 +136,10 @@ fn triangles(level: &Level, out: &mut Level) {
 }
 
 /// Finds which sides make each edge: those of an edge at which no faces join stay apart.
-fn join(level: &Level, out: &mut Level) {
+fn join(level: &Level, out: &mut Level, context: &dyn BuildContext) {
     let apart = |edge: usize| level.joins.get(edge / 2).is_some_and(|join| join[0] == NONE);
     out.joins = vec![[NONE; 2]; out.ends.len()];
-    for (side, edge) in (0..).zip(out.edges.iter().map(|edge| *edge as usize)) {
+    for (side, edge) in wanted((0..).zip(out.edges.iter().map(|edge| *edge as usize)), context) {
         if !apart(edge) {
             let join = &mut out.joins[edge];
             let free = usize::from(join[0] != NONE);
@@ -137,15 +150,23 @@ fn join(level: &Level, out: &mut Level) {
 
 /// What corners carry, at the next level: linear within each face, and alike on both sides of an
 /// edge to the last bit where it is alike at its ends.
-pub(super) fn values<T>(level: &Level, scheme: Scheme, of_corners: &[T]) -> Vec<T>
+///
+/// # Errors
+/// If it is not wanted any more.
+pub(super) fn values<T>(
+    level: &Level,
+    scheme: Scheme,
+    of_corners: &[T],
+    context: &dyn BuildContext,
+) -> Result<Vec<T>, String>
 where
     T: Copy + Add<Output = T> + Mul<f32, Output = T> + Sum,
 {
     if of_corners.is_empty() {
-        return vec![];
+        return Ok(vec![]);
     }
     let mut out = Vec::with_capacity(4 * of_corners.len());
-    for range in level.faces() {
+    for range in wanted(level.faces(), context) {
         let own = &of_corners[range];
         let n = own.len();
         let middle = |i: usize| (own[i] + own[(i + 1) % n]) * 0.5;
@@ -161,5 +182,6 @@ where
             out.extend((0..n).map(middle));
         }
     }
-    out
+    go_on(context)?;
+    Ok(out)
 }

@@ -1,9 +1,11 @@
 //! Where points come to be, and which rule each follows.
 
 use glam::DVec3;
+use luxel_sdk::params::BuildContext;
 
 use super::Scheme;
 use super::topology::{Level, NONE};
+use crate::stop::{gather, go_on, wanted};
 
 /// What surrounds a point.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,19 +19,27 @@ pub(super) struct Around {
 }
 
 impl Around {
-    /// Of each point; `of_face` gives each corner what its face adds.
-    pub(super) fn all(level: &Level, of_corner: impl Fn(usize) -> DVec3) -> Vec<Self> {
+    /// Of each point; `of_corner` gives each corner what its face adds.
+    ///
+    /// # Errors
+    /// If it is not wanted any more.
+    pub(super) fn all(
+        level: &Level,
+        of_corner: impl Fn(usize) -> DVec3,
+        context: &dyn BuildContext,
+    ) -> Result<Vec<Self>, String> {
         let mut out = vec![Self::default(); level.points.len()];
-        for [a, b] in level.ends.iter().map(|ends| ends.map(|i| i as usize)) {
+        for [a, b] in wanted(&level.ends, context).map(|ends| ends.map(|i| i as usize)) {
             for (at, other) in [(a, b), (b, a)] {
                 out[at].n += 1;
                 out[at].far += level.points[other];
             }
         }
-        for (i, corner) in level.corners.iter().enumerate() {
+        for (i, corner) in wanted(level.corners.iter().enumerate(), context) {
             out[*corner as usize].faces += of_corner(i);
         }
-        out
+        go_on(context)?;
+        Ok(out)
     }
 }
 
@@ -103,9 +113,16 @@ pub(super) struct SharpPoints {
 impl SharpPoints {
     /// Finds them; `later` says what stays of a sharpness.
     ///
+    /// # Errors
+    /// If it is not wanted any more.
+    ///
     /// # Source
     /// `DeRose`, Kass & Truong 1998, appendix B; a rule that changes is blended as `OpenSubdiv` does.
-    pub(super) fn find(level: &Level, later: fn(f32) -> f32) -> Self {
+    pub(super) fn find(
+        level: &Level,
+        later: fn(f32) -> f32,
+        context: &dyn BuildContext,
+    ) -> Result<Self, String> {
         let mut slots = vec![NONE; level.points.len()];
         let mut tallies: Vec<Tally> = vec![];
         let fade = |tally: &mut Tally, sharp: f32| {
@@ -121,7 +138,8 @@ impl SharpPoints {
             }
             slots[i as usize] as usize
         };
-        for (ends, sharp) in level.ends.iter().zip(&level.sharp).filter(|(_, s)| **s > 0.0) {
+        let edges = wanted(level.ends.iter().zip(&level.sharp), context);
+        for (ends, sharp) in edges.filter(|(_, s)| **s > 0.0) {
             for (at, other) in [(ends[0], ends[1]), (ends[1], ends[0])] {
                 let i = slot(at, &mut tallies);
                 let (tally, far) = (&mut tallies[i], level.points[other as usize]);
@@ -133,7 +151,8 @@ impl SharpPoints {
                 fade(tally, *sharp);
             }
         }
-        for (i, pin) in (0..).zip(&level.pins).filter(|(_, pin)| **pin > 0.0) {
+        let pins = wanted((0..).zip(&level.pins), context);
+        for (i, pin) in pins.filter(|(_, pin)| **pin > 0.0) {
             let i = slot(i, &mut tallies);
             tallies[i].now.pinned = true;
             tallies[i].later.pinned = later(*pin) > 0.0;
@@ -144,7 +163,7 @@ impl SharpPoints {
             let weight = if n > 0.0 { f64::from(tally.fading) / n } else { 1.0 };
             Sharp { now: tally.now.rule(), later: tally.later.rule(), weight }
         });
-        Self { sharp: sharp.collect(), slots }
+        Ok(Self { sharp: gather(sharp, context)?, slots })
     }
 
     /// The rules of a point, if it is sharp.
@@ -173,24 +192,32 @@ impl SharpPoints {
 }
 
 /// The middle of each face.
-pub(super) fn middles(level: &Level) -> Vec<DVec3> {
+///
+/// # Errors
+/// As all here: if it is not wanted any more.
+pub(super) fn middles(level: &Level, context: &dyn BuildContext) -> Result<Vec<DVec3>, String> {
     let middle = |range: std::ops::Range<usize>| {
         let n = range.len() as f64;
         range.map(|c| level.points[level.corners[c] as usize]).sum::<DVec3>() / n
     };
-    level.faces().map(middle).collect()
+    gather(level.faces().map(middle), context)
 }
 
 /// What each corner's face adds to its point and its edge: its middle, or the point opposite.
-pub(super) fn of_corners(level: &Level, scheme: Scheme, middles: &[DVec3]) -> Vec<DVec3> {
+pub(super) fn of_corners(
+    level: &Level,
+    scheme: Scheme,
+    middles: &[DVec3],
+    context: &dyn BuildContext,
+) -> Result<Vec<DVec3>, String> {
     match scheme {
         Scheme::CatmullClark => {
             let faces = level.faces().zip(middles);
-            faces.flat_map(|(range, middle)| range.map(move |_| *middle)).collect()
+            gather(faces.flat_map(|(range, middle)| range.map(move |_| *middle)), context)
         }
         Scheme::Loop => {
             let opposite = |c: u32| level.points[level.corners[level.before(c) as usize] as usize];
-            (0..).take(level.corners.len()).map(opposite).collect()
+            gather((0..).take(level.corners.len()).map(opposite), context)
         }
     }
 }
@@ -199,33 +226,43 @@ pub(super) fn of_corners(level: &Level, scheme: Scheme, middles: &[DVec3]) -> Ve
 /// many neighbours a point has, the point, and what lies around it.
 pub(super) fn placed(
     level: &Level,
-    around: &[Around],
-    sharp: &SharpPoints,
+    (around, sharp): (&[Around], &SharpPoints),
     smooth: impl Fn(f64, DVec3, &Around) -> DVec3,
     curve: fn(DVec3, DVec3) -> DVec3,
-) -> Vec<DVec3> {
+    context: &dyn BuildContext,
+) -> Result<Vec<DVec3>, String> {
     let place = |((i, p), around): ((u32, &DVec3), &Around)| {
         if around.n == 0 {
             return *p;
         }
         sharp.place(i, *p, smooth(f64::from(around.n), *p, around), curve)
     };
-    (0..).zip(&level.points).zip(around).map(place).collect()
+    gather((0..).zip(&level.points).zip(around).map(place), context)
 }
 
 /// Where the given points are at the next level.
-pub(super) fn moved(level: &Level, scheme: Scheme, of_corners: &[DVec3]) -> Vec<DVec3> {
-    let around = Around::all(level, |c| of_corners[c]);
-    let sharp = SharpPoints::find(level, after_a_level);
+pub(super) fn moved(
+    level: &Level,
+    scheme: Scheme,
+    of_corners: &[DVec3],
+    context: &dyn BuildContext,
+) -> Result<Vec<DVec3>, String> {
+    let around = Around::all(level, |c| of_corners[c], context)?;
+    let sharp = SharpPoints::find(level, after_a_level, context)?;
     let smooth = |n: f64, p: DVec3, around: &Around| match scheme {
         Scheme::CatmullClark => (around.faces / n + around.far / n + p * (n - 2.0)) / n,
         Scheme::Loop => p + (around.far - p * n) * beta(n),
     };
-    placed(level, &around, &sharp, smooth, |p, ends| (p * 6.0 + ends) / 8.0)
+    placed(level, (&around, &sharp), smooth, |p, ends| (p * 6.0 + ends) / 8.0, context)
 }
 
 /// The points that edges make at the next level.
-pub(super) fn of_edges(level: &Level, scheme: Scheme, of_corners: &[DVec3]) -> Vec<DVec3> {
+pub(super) fn of_edges(
+    level: &Level,
+    scheme: Scheme,
+    of_corners: &[DVec3],
+    context: &dyn BuildContext,
+) -> Result<Vec<DVec3>, String> {
     let point = |((ends, join), sharp): ((&[u32; 2], &[u32; 2]), &f32)| {
         let [a, b] = ends.map(|i| level.points[i as usize]);
         let middle = (a + b) * 0.5;
@@ -239,7 +276,7 @@ pub(super) fn of_edges(level: &Level, scheme: Scheme, of_corners: &[DVec3]) -> V
         };
         smooth + (middle - smooth) * f64::from(*sharp)
     };
-    level.ends.iter().zip(&level.joins).zip(&level.sharp).map(point).collect()
+    gather(level.ends.iter().zip(&level.joins).zip(&level.sharp).map(point), context)
 }
 
 /// Loop's weight of each neighbour of a point with n of them: `1/n (5/8 − (3/8 + cos(2π/n)/4)²)`.

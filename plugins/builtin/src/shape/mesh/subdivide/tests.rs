@@ -1,24 +1,12 @@
 //! Known surfaces, and what must hold of all.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec2};
 use luxel_sdk::sampling::Rng;
 
 use super::*;
-
-struct Nobody;
-
-impl BuildContext for Nobody {
-    fn read(&self, _path: &str) -> Result<Arc<[u8]>, String> {
-        Err("there is no file".to_owned())
-    }
-    fn read_beside(&self, _base: &str, path: &str) -> Result<Arc<[u8]>, String> {
-        self.read(path)
-    }
-    fn warn(&self, _message: &str) {}
-}
+use crate::stop::testing::{Patience, ends_wherever};
 
 fn polygons(points: &[[f64; 3]], faces: &[&[u32]]) -> Polygons {
     let mut out = Polygons {
@@ -66,7 +54,7 @@ fn octahedron() -> Polygons {
 }
 
 fn run(faces: &Polygons, scheme: Scheme, levels: u32, creases: &[f64]) -> Net {
-    subdivide(faces.clone(), Settings { levels, scheme, creases }, &Nobody).unwrap()
+    subdivide(faces.clone(), Settings { levels, scheme, creases }, &Patience::endless()).unwrap()
 }
 
 /// Edges with how often they are run along in each direction.
@@ -176,7 +164,7 @@ fn a_plane_stays_a_plane() {
 }
 
 fn all_edges(faces: &Polygons, sharpness: f64) -> Vec<f64> {
-    let level = Level::build(faces.clone(), &[]).unwrap();
+    let level = Level::build(faces.clone(), &[], &Patience::endless()).unwrap();
     let each = |[a, b]: &[u32; 2]| [f64::from(*a), f64::from(*b), sharpness];
     level.ends.iter().flat_map(each).collect()
 }
@@ -336,7 +324,7 @@ fn seams_of_coordinates_do_not_tear() {
     assert_eq!(net.places, bare.places);
     assert_eq!(net.uvs.len(), 3 * net.triangles.len());
     let n_places = net.places.len();
-    let mesh = net.into_mesh(false).unwrap();
+    let mesh = net.into_mesh(false, &Patience::endless()).unwrap();
     // A place on an edge of the cube has two corner points, one at its corners three.
     assert_eq!(mesh.points.len(), n_places + 12 * 7 + 8 * 2);
     assert!(
@@ -352,7 +340,7 @@ fn seams_of_coordinates_do_not_tear() {
 fn what_cannot_be_subdivided_is_refused() {
     let settings = |levels, scheme| Settings { levels, scheme, creases: &[] };
     let refuse = |faces: Polygons, settings: Settings<'_>| {
-        let faults = subdivide(faces, settings, &Nobody).unwrap_err();
+        let faults = subdivide(faces, settings, &Patience::endless()).unwrap_err();
         (faults[0].field, faults[0].message.clone())
     };
     let (field, message) = refuse(cube(), settings(1, Scheme::Loop));
@@ -386,12 +374,34 @@ fn no_faces_however_joined_are_fatal() {
             .collect();
         let faces: Vec<&[u32]> = faces.iter().map(|f| &f[..]).collect();
         let scheme = if round % 2 == 0 { Scheme::CatmullClark } else { Scheme::Loop };
-        let faces = polygons(&points, &faces).clean();
-        if let Ok(net) = subdivide(faces, Settings { levels: 2, scheme, creases: &[] }, &Nobody) {
+        let faces = polygons(&points, &faces).clean(&Patience::endless()).unwrap();
+        if let Ok(net) =
+            subdivide(faces, Settings { levels: 2, scheme, creases: &[] }, &Patience::endless())
+        {
             assert!(net.places.iter().all(|p| p.is_finite()));
             for n in &net.normals {
                 assert!((n.length() - 1.0).abs() <= 2.0 * f32::EPSILON, "{n}");
             }
         }
+    }
+}
+
+#[test]
+fn subdividing_ends_soon_after_it_is_not_wanted_any_more() {
+    let mut faces = cube();
+    faces.uvs = vec![Vec2::ONE; faces.corners.len()];
+    faces.colors = vec![Vec3::ONE; faces.corners.len()];
+    for (scheme, faces) in [(Scheme::CatmullClark, faces), (Scheme::Loop, octahedron())] {
+        let settings = |levels| Settings { levels, scheme, creases: &[0.0, 2.0, 1.5] };
+        let looks = |levels| {
+            let faces = || faces.clone();
+            ends_wherever(|patience| {
+                let net = subdivide(faces(), settings(levels), patience)?;
+                net.into_mesh(false, patience).map_err(|told| vec![Fault::mesh("file", told)])
+            })
+        };
+        // Not only between the levels: the last two have most of the faces.
+        let (few, many) = (looks(4), looks(6));
+        assert!(many > 2 * few, "{scheme:?}: {few} looks for 4 levels, {many} for 6");
     }
 }

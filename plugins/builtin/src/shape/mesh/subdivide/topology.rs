@@ -1,11 +1,12 @@
 //! How faces join, level by level.
 
 use glam::{DVec3, Vec2, Vec3};
-use luxel_sdk::params::Fault;
+use luxel_sdk::params::{BuildContext, Fault};
 
 use super::super::inline::index;
 use super::super::net::Net;
 use super::super::polygons::{Polygons, pick};
+use crate::stop::{gather, go_on, wanted};
 
 /// No corner.
 pub(super) const NONE: u32 = u32::MAX;
@@ -47,8 +48,12 @@ impl Level {
     /// The first level, with creases of two points and a sharpness each.
     ///
     /// # Errors
-    /// Creases along no edge.
-    pub(super) fn build(faces: Polygons, creases: &[f64]) -> Result<Self, Vec<Fault>> {
+    /// Creases along no edge; that it is not wanted any more.
+    pub(super) fn build(
+        faces: Polygons,
+        creases: &[f64],
+        context: &dyn BuildContext,
+    ) -> Result<Self, Vec<Fault>> {
         let Polygons { points, starts, corners, same, .. } = faces;
         let face_of = (0..).zip(starts.windows(2));
         let face_of = face_of.flat_map(|(i, f)| (f[0]..f[1]).map(move |_| i)).collect();
@@ -63,22 +68,49 @@ impl Level {
             sharp: vec![],
             pins: vec![0.0; n_points],
         };
-        level.join();
-        level.pin_corners();
+        let stopped = |message| vec![Fault::mesh("subdivide", message)];
+        level.join(context).map_err(stopped)?;
+        level.pin_corners(context).map_err(stopped)?;
         level.crease(creases, &same)?;
         Ok(level)
     }
 
-    /// Finds the edges.
-    fn join(&mut self) {
+    /// The sides of faces by the points at their ends, the lesser first, then in their order.
+    fn sides(&self, context: &dyn BuildContext) -> Result<Vec<(u32, u32, u32)>, String> {
         let n = u32::try_from(self.corners.len()).expect("corners are counted in u32");
+        let ends = |h: u32| {
+            let (a, b) = (self.corners[h as usize], self.corners[self.next(h) as usize]);
+            (a.min(b), a.max(b), h)
+        };
+        // Where the sides of each first point begin; counted, then summed up.
+        let mut begins = vec![0u32; self.points.len() + 1];
+        wanted(0..n, context).for_each(|h| begins[ends(h).0 as usize + 1] += 1);
+        let mut sum = 0;
+        for begin in wanted(&mut begins, context) {
+            sum += *begin;
+            *begin = sum;
+        }
+        go_on(context)?;
+        let (mut next, mut sides) = (begins.clone(), vec![(0, 0, 0); self.corners.len()]);
+        for side in wanted(0..n, context).map(ends) {
+            let at = &mut next[side.0 as usize];
+            sides[*at as usize] = side;
+            *at += 1;
+        }
+        for of_point in wanted(begins.windows(2), context) {
+            sides[of_point[0] as usize..of_point[1] as usize].sort_unstable();
+        }
+        go_on(context)?;
+        Ok(sides)
+    }
+
+    /// Finds the edges.
+    fn join(&mut self, context: &dyn BuildContext) -> Result<(), String> {
         let ends = |h: u32| (self.corners[h as usize], self.corners[self.next(h) as usize]);
-        let mut sides: Vec<(u32, u32, u32)> =
-            (0..n).map(|h| (ends(h).0.min(ends(h).1), ends(h).0.max(ends(h).1), h)).collect();
-        sides.sort_unstable();
+        let sides = self.sides(context)?;
         let mut of_corners = vec![NONE; self.corners.len()];
         let (mut all, mut joins, mut sharp) = (vec![], vec![], vec![]);
-        for group in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        for group in wanted(sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)), context) {
             for side in group {
                 of_corners[side.2 as usize] = u32::try_from(all.len()).expect("as many as corners");
             }
@@ -93,15 +125,16 @@ impl Level {
             sharp.push(if is_sharp { f32::INFINITY } else { 0.0 });
         }
         (self.edges, self.ends, self.joins, self.sharp) = (of_corners, all, joins, sharp);
+        go_on(context)
     }
 
     /// Points of a single face, and points where surfaces touch in nothing else, stay where they are.
-    fn pin_corners(&mut self) {
+    fn pin_corners(&mut self, context: &dyn BuildContext) -> Result<(), String> {
         let mut faces = vec![0u32; self.points.len()];
         let mut fans = vec![0u32; self.points.len()];
         let mut closed = vec![false; self.points.len()];
         let mut seen = vec![false; self.corners.len()];
-        for corner in 0..u32::try_from(self.corners.len()).unwrap_or(NONE) {
+        for corner in wanted(0..u32::try_from(self.corners.len()).unwrap_or(NONE), context) {
             let point = self.corners[corner as usize] as usize;
             faces[point] += 1;
             if seen[corner as usize] {
@@ -118,6 +151,7 @@ impl Level {
             let touches = closed[i] && fans[i] > 1;
             *pin = if faces[i] == 1 || touches { f32::INFINITY } else { 0.0 };
         }
+        go_on(context)
     }
 
     fn crease(&mut self, creases: &[f64], same: &[u32]) -> Result<(), Vec<Fault>> {
@@ -227,27 +261,31 @@ impl Level {
     }
 
     /// The triangles of a level whose faces are alike; quads are cut from their first corner.
-    pub(super) fn triangles(&self) -> Option<Vec<[u32; 3]>> {
-        let Sides::All(n) = self.sides else { return None };
-        let faces = (0..u32::try_from(self.corners.len()).ok()?).step_by(n as usize);
-        Some(match n {
-            3 => faces.map(|c| [c, c + 1, c + 2]).collect(),
-            _ => faces.flat_map(|c| [[c, c + 1, c + 2], [c, c + 2, c + 3]]).collect(),
-        })
+    fn triangles(&self, context: &dyn BuildContext) -> Result<Vec<[u32; 3]>, String> {
+        let Sides::All(n) = self.sides else { return Ok(vec![]) };
+        let n_corners = u32::try_from(self.corners.len()).expect("corners are counted in u32");
+        let faces = (0..n_corners).step_by(n as usize);
+        match n {
+            3 => gather(faces.map(|c| [c, c + 1, c + 2]), context),
+            _ => gather(faces.flat_map(|c| [[c, c + 1, c + 2], [c, c + 2, c + 3]]), context),
+        }
     }
 
     /// The same as triangles, at other places.
+    ///
+    /// # Errors
+    /// If it is not wanted any more.
     pub(super) fn into_net(
         self,
         places: Vec<DVec3>,
-        uvs: &[Vec2],
-        normals: &[Vec3],
-        colors: &[Vec3],
-    ) -> Net {
-        let triangles = self.triangles().unwrap_or_default();
-        let (uvs, normals) = (pick(&triangles, uvs), pick(&triangles, normals));
-        let colors = pick(&triangles, colors);
-        let triangles = triangles.iter().map(|t| t.map(|i| self.corners[i as usize])).collect();
-        Net { places, triangles, uvs, normals, colors }
+        (uvs, normals, colors): (&[Vec2], &[Vec3], &[Vec3]),
+        context: &dyn BuildContext,
+    ) -> Result<Net, String> {
+        let triangles = self.triangles(context)?;
+        let uvs = pick(&triangles, uvs, context)?;
+        let normals = pick(&triangles, normals, context)?;
+        let colors = pick(&triangles, colors, context)?;
+        let points = triangles.iter().map(|t| t.map(|i| self.corners[i as usize]));
+        Ok(Net { places, triangles: gather(points, context)?, uvs, normals, colors })
     }
 }

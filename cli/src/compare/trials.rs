@@ -1,0 +1,115 @@
+//! Two seeds of a scene are the same, and a bias of 1 % in a material is found: tried many times.
+//!
+//! `LUXEL_SEEDS=200 cargo test --release -p luxel trials` takes the long form.
+
+use std::path::Path;
+
+use luxel_core::files::MemoryFiles;
+use luxel_core::registry::Registry;
+use luxel_core::render::{Control, Options, render};
+use luxel_core::stage::{self, Stage};
+
+use super::judge::{POWER, judge};
+use super::numbers::Numbers;
+use super::pair::Pair;
+use super::verdict::{Limits, Verdict, Word};
+use crate::picture::{self, Notes, Picture};
+
+/// A ball on a ground under a sky.
+const SCENE: &str = "scene 1
+    param rho: float = 0.5
+    camera perspective { look = look_at(from = (0, 1, 4) m, to = (0, 0.5, 0) m, up = (0, 1, 0)), fov = 13 deg }
+    film rgb { resolution = (32, 32) }
+    sampler sobol { samples = 16 }
+    integrator path { light_sampling = false }
+    light constant { scale = 1 }
+    shape sphere { center = (0, 0.5, 0) m, radius = 50 cm, material = material diffuse { reflectance = rho } }
+    shape plane { point = (0, 0, 0) m, normal = (0, 1, 0), material = material diffuse { reflectance = 0.8 } }";
+
+fn stage(rho: &str) -> Stage {
+    let mut registry = Registry::new();
+    for classes in luxel_builtin::CLASSES {
+        registry.add("builtin", classes).unwrap();
+    }
+    let files = MemoryFiles::default().with("a.scene", SCENE.as_bytes());
+    let settings =
+        luxel_lang::Settings { set: vec![("rho".into(), rho.into())], ..Default::default() };
+    let loaded = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
+    let scene = loaded.scene.unwrap_or_else(|| panic!("{:?}", loaded.diagnostics));
+    stage::build(&scene, &registry, &files, None).unwrap().stage
+}
+
+/// A picture as a file gives it back.
+fn picture(stage: &Stage, seed: u32, spp: u32) -> Picture {
+    let options = Options { seed: Some(seed), spp: Some(spp), ..Options::default() };
+    let film = render(stage, &options, &Control::default()).0;
+    picture::reread(&film, &Notes { json: format!(r#"{{"seed":{seed}}}"#) })
+}
+
+/// The word, the relative bias that is seen, and how large a difference there is.
+fn verdict(a: Picture, b: Picture) -> (Word, f64, f64) {
+    let limits = Limits { alpha: 0.01, bias: 0.01 };
+    let pair = Pair::new(a, b).unwrap();
+    let judged = judge(&pair, limits.alpha);
+    let word = Verdict::of(&pair, &Numbers::of(&pair), &judged, limits).word;
+    (word, judged.detectable.whole, judged.whole[0].relative())
+}
+
+/// How many pairs of seeds are tried.
+fn trials() -> u32 {
+    #[expect(clippy::disallowed_methods, reason = "the long form is asked for from outside")]
+    std::env::var("LUXEL_SEEDS").map_or(10, |trials| trials.parse().unwrap())
+}
+
+/// The least number of successes of `n` trials that one run in a thousand falls short of, if each
+/// succeeds with the probability `p`.
+fn least(n: u32, p: f64) -> u32 {
+    // By logarithms: all failing has no float beyond a few hundred trials.
+    let (mut sum, mut term) = (0.0, f64::from(n) * (1.0 - p).ln());
+    for k in 0..n {
+        sum += f64::exp(term);
+        if sum > 1e-3 {
+            return k;
+        }
+        term += (f64::from(n - k) / f64::from(k + 1) * p / (1.0 - p)).ln();
+    }
+    n
+}
+
+/// Which of two renders of each trial differ: of the same scene, and of one with another reflectance.
+fn words(rho: &str, spp: u32) -> Vec<(Word, f64)> {
+    let (a, b) = (stage(rho), stage("0.5"));
+    let trial = |seed| {
+        let (word, seen, _) = verdict(picture(&a, seed, spp), picture(&b, seed + 100_000, spp));
+        (word, seen)
+    };
+    (0..trials()).map(trial).collect()
+}
+
+#[test]
+fn two_seeds_of_one_scene_are_the_same() {
+    let words = words("0.5", 48);
+    let same = words.iter().filter(|(word, _)| *word == Word::Same).count();
+    println!("{same} of {} are the same", words.len());
+    // At least 19 of 20, 190 of 200.
+    assert!(same * 20 >= words.len() * 19, "{words:?}");
+}
+
+#[test]
+fn a_bias_of_a_hundredth_in_one_material_is_found_with_the_stated_power() {
+    // Equal seeds: nearly all of the noise is common, and what is left is the bias.
+    let (brighter, plain) = (stage("0.505"), stage("0.5"));
+    let (_, _, bias) = verdict(picture(&brighter, 1, 256), picture(&plain, 1, 256));
+    let words = words("0.505", 48);
+    let seen = words.iter().map(|(_, seen)| *seen).fold(0.0, f64::max);
+    let found = words.iter().filter(|(word, _)| *word == Word::Different).count();
+    println!("{found} of {} found; bias {bias}, stated {seen}", words.len());
+    assert!(seen <= bias, "the picture's mean is off by {bias}, and {seen} is seen");
+    assert!(found >= least(trials(), POWER) as usize, "{words:?}");
+}
+
+#[test]
+fn the_least_number_of_successes_is_the_binomials() {
+    // SciPy 1.17: the largest k with stats.binom.cdf(k - 1, n, 0.95) <= 1e-3.
+    assert_eq!([20, 200, 1000].map(|n| least(n, 0.95)), [15, 179, 927]);
+}

@@ -1,0 +1,30 @@
+//! A picture smoothed, as a person does it.
+
+use super::program::{Folder, SCENE};
+
+#[test]
+fn a_denoised_picture_stands_beside_the_measured_one_and_gets_no_verdict() {
+    let folder = Folder::new("denoise").with("a.scene", SCENE);
+    assert_eq!(folder.luxel(&["render", "a.scene", "-q"]).code, 0);
+    let measured = folder.read("a.exr");
+    let done = folder.luxel(&["denoise", "a.exr"]);
+    assert!(done.code == 0 && done.out.contains("wrote a-denoised.exr"), "{done:?}");
+    assert!(done.out.contains("those of the measured picture"), "{done:?}");
+    assert_eq!(folder.read("a.exr"), measured);
+    assert!(folder.read("a-denoised.png").starts_with(b"\x89PNG"));
+    let compared = folder.luxel(&["compare", "a-denoised.exr", "a.exr"]);
+    assert!(compared.code == 3 && compared.out.contains("A is denoised"), "{compared:?}");
+    let again = folder.luxel(&["denoise", "a-denoised.exr"]);
+    assert!(again.code == 1 && again.err.contains("denoised already"), "{again:?}");
+    let over = folder.luxel(&["denoise", "a.exr", "-o", "a"]);
+    assert!(over.code == 2 && over.err.contains("would take the place"), "{over:?}");
+    assert_eq!(folder.read("a.exr"), measured);
+}
+
+#[test]
+fn a_picture_that_says_nothing_of_its_error_is_not_denoised() {
+    let folder = Folder::new("denoise-foreign").with("text.exr", "no picture");
+    let done = folder.luxel(&["denoise", "text.exr"]);
+    assert!(done.code == 1 && done.err.contains("cannot read the picture"), "{done:?}");
+    assert_eq!(folder.names(), ["text.exr"]);
+}

@@ -100,7 +100,7 @@ pub(crate) const MOST_SECONDS: f64 = 4e7;
 /// Side of the largest picture; as the film's schema says.
 const MAX_SIDE: u32 = 65536;
 
-fn size(text: &str) -> Result<UVec2, String> {
+pub(crate) fn size(text: &str) -> Result<UVec2, String> {
     let sides = text.split_once(['x', 'X']).map(|(w, h)| (w.parse(), h.parse()));
     match sides {
         Some((Ok(w @ 1..=MAX_SIDE), Ok(h @ 1..=MAX_SIDE))) => Ok(UVec2::new(w, h)),

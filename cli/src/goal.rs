@@ -29,7 +29,7 @@ impl GoalArgs {
 }
 
 /// `1%` or `0.01`.
-fn share(text: &str) -> Result<f64, String> {
+pub(crate) fn share(text: &str) -> Result<f64, String> {
     let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
     let found = number.trim().parse().ok().map(|x: f64| x / unit);
     let found = found.filter(|x| (1e-6..=1.0).contains(x));
@@ -37,7 +37,7 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 /// `30s`, `5min`, `1.5h`; seconds without a unit.
-fn duration(text: &str) -> Result<Duration, String> {
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match &text[digits.len()..] {
         "" | "s" => 1.0,

@@ -23,6 +23,7 @@ mod preview;
 mod progress;
 mod render;
 mod report;
+mod study;
 mod summary;
 #[cfg(test)]
 mod testing;
@@ -30,6 +31,7 @@ mod verify;
 mod view;
 mod watch;
 mod words;
+mod written;
 
 use std::process::ExitCode;
 
@@ -64,6 +66,7 @@ enum Command {
     Denoise(denoise::Args),
     Check(check::Args),
     Verify(verify::Args),
+    Study(study::Args),
     List(list::Args),
     Describe(describe::Args),
     Plugin(plugin::Args),
@@ -89,6 +92,7 @@ fn main() -> ExitCode {
         Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
         Command::Verify(args) => verify::run(args),
+        Command::Study(args) => study::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),
         Command::Plugin(args) => plugin::run(args),

@@ -15,6 +15,7 @@ mod plugin;
 #[cfg(test)]
 pub(crate) mod program;
 mod resume;
+mod study;
 mod verify;
 mod watch;
 

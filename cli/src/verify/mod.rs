@@ -15,9 +15,10 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use luxel_core::render::Options;
+use luxel_core::stage::Stage;
 
 use self::row::{Row, Verdict};
-use self::run::Run;
+pub(crate) use self::run::Run;
 use crate::args::{self, LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure};
 use crate::load;
@@ -95,6 +96,14 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let holds = rows.iter().all(|row| row.verdict == Verdict::Holds);
     Ok(if done? && holds { Exit::Fine } else { Exit::Input })
+}
+
+/// One of the program's own scenes with some parameters set, ready.
+///
+/// # Errors
+/// A scene that the classes at hand cannot make.
+pub(crate) fn own_scene(name: &str, set: &[(String, String)], run: &Run) -> Result<Stage, Failure> {
+    truths::stage(name, set, run)
 }
 
 fn own_truths(args: &Args, run: &Run, rows: &mut Vec<Row>) -> Result<bool, Failure> {

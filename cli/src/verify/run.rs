@@ -30,22 +30,24 @@ impl Stop {
 }
 
 /// With what pictures are made.
-pub(super) struct Run {
-    pub(super) plugins: Plugins,
+pub(crate) struct Run {
+    pub(crate) plugins: Plugins,
     /// Samples, seed and threads, where the command line says them.
-    pub(super) options: Options,
+    pub(crate) options: Options,
     stop: Arc<Stop>,
+    /// Whether a line tells how far a picture is.
+    line: bool,
 }
 
 /// What is told of a run that was interrupted.
-const INTERRUPTED: &str = "interrupted: what had not been measured by then was not tested";
+const INTERRUPTED: &str = "interrupted: what had not been measured by then is not told";
 
 impl Run {
     /// From now on, Ctrl-C ends the picture in hand and begins no other; a later one leaves at once.
     ///
     /// # Errors
     /// If the system refuses to tell of it.
-    pub(super) fn new(plugins: Plugins, options: Options) -> Result<Self, Failure> {
+    pub(crate) fn new(plugins: Plugins, options: Options) -> Result<Self, Failure> {
         let stop = Arc::<Stop>::default();
         let heard = stop.clone();
         Guard::default().on_ctrl_c(move || {
@@ -53,16 +55,21 @@ impl Run {
             heard.watch.cancel();
             heard.control().cancel();
         })?;
-        Ok(Self { plugins, options, stop })
+        Ok(Self { plugins, options, stop, line: true })
+    }
+
+    /// The same, for whoever tells of its course in another way.
+    pub(crate) fn silent(self) -> Self {
+        Self { line: false, ..self }
     }
 
     /// How scenes are read and made ready.
-    pub(super) fn course(&self) -> Course {
+    pub(crate) fn course(&self) -> Course {
         Course { watch: self.stop.watch.clone(), line: true, ..Course::default() }
     }
 
     /// The failure of what was interrupted, if it was.
-    pub(super) fn interrupted(&self) -> Option<Failure> {
+    pub(crate) fn interrupted(&self) -> Option<Failure> {
         let pressed = self.stop.pressed.load(Ordering::Relaxed);
         pressed.then(|| Failure::new(Exit::Incomplete, INTERRUPTED))
     }
@@ -71,7 +78,7 @@ impl Run {
     ///
     /// # Errors
     /// Ctrl-C; a failure in a plugin; what `measure` says.
-    pub(super) fn film(
+    pub(crate) fn film(
         &self,
         (name, stage): (&Path, &Stage),
         options: &Options,
@@ -84,7 +91,7 @@ impl Run {
         }
         let empty = measure::empty(stage, options)?;
         let of = (name, stage);
-        let measured = measure::measure(of, empty, options, &control, true, &mut |_, _| {})?;
+        let measured = measure::measure(of, empty, options, &control, self.line, &mut |_, _| {})?;
         match measured.outcome {
             Outcome::Complete => Ok(measured.film),
             Outcome::Cancelled => Err(Failure::new(Exit::Incomplete, INTERRUPTED)),

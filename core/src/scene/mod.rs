@@ -10,16 +10,14 @@ mod diff;
 mod expect;
 mod pose;
 mod print;
+mod setting;
 mod value;
 
 use std::sync::Arc;
 
-use glam::UVec2;
 use luxel_sdk::kind::Kind;
 
-use crate::accel::Precision;
-use crate::diag::{SourceId, Span};
-use crate::film::Layer;
+use crate::diag::Span;
 use crate::registry::common_params;
 
 pub use color::Color;
@@ -30,6 +28,7 @@ pub use diff::{Difference, How, called, diff};
 pub use expect::{Area, Claim, Expectation, Expected};
 pub use pose::{Key, Pose, Step};
 pub use print::print;
+pub use setting::Setting;
 pub use value::{Hash, Value};
 
 /// Parameters of a film that no sample depends on.
@@ -152,38 +151,6 @@ impl Scene {
         &self.groups[id.0 as usize]
     }
 
-    /// Gives the film another size, in pixels; a scene without a film gets one.
-    pub fn set_resolution(&mut self, size: UVec2) {
-        self.set_film("resolution", Value::Vector(size.as_dvec2().to_array().to_vec()));
-    }
-
-    /// Replaces how rays meet the triangles of meshes.
-    pub fn set_precision(&mut self, precision: Precision) {
-        self.set_film("precision", Value::Text(precision.word().into()));
-    }
-
-    /// Records a layer beside colour.
-    pub fn add_layer(&mut self, layer: Layer) {
-        self.set_film(layer.name(), Value::Bool(true));
-    }
-
-    fn set_film(&mut self, name: &'static str, value: Value) {
-        let span = Span::new(SourceId(0), 0, 0);
-        let old = self.film.map(|id| self.node(id).clone());
-        let mut film = old.unwrap_or_else(|| Node {
-            kind: Kind::Film,
-            class: "auto".into(),
-            label: None,
-            params: vec![],
-            overrides: vec![],
-            span,
-            hash: [0; 32],
-        });
-        film.params.retain(|argument| argument.name != name);
-        film.params.push(Argument { name, value, span });
-        self.film = Some(self.add(film));
-    }
-
     /// Hash of everything that the scene shows: what stands where, and its settings. Labels, places
     /// in files and nodes that nothing uses do not count; nor do the contents of files by path.
     pub fn hash(&self) -> Hash {
@@ -251,6 +218,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diag::SourceId;
 
     fn camera(label: &str, focal: f64) -> Scene {
         let mut scene = Scene::default();
@@ -290,8 +258,8 @@ mod tests {
     fn how_a_picture_is_shown_does_not_count_for_what_is_measured() {
         let with = |name, value: Value| {
             let mut scene = camera("a", 0.05);
-            scene.set_resolution(UVec2::new(3, 4));
-            scene.set_film(name, value);
+            scene.set_resolution(glam::UVec2::new(3, 4));
+            scene.set_param(Setting::Film, name, value);
             (scene.hash(), scene.measured_hash())
         };
         let plain = with("resolution", Value::Vector(vec![3.0, 4.0]));
@@ -301,20 +269,5 @@ mod tests {
         }
         let time = with("shutter", Value::Text("x".into()));
         assert!(time.0 != plain.0 && time.1 != plain.1);
-    }
-
-    #[test]
-    fn what_is_set_replaces_the_films() {
-        let mut scene = camera("a", 0.05);
-        for size in [UVec2::new(3, 4), UVec2::new(5, 6)] {
-            scene.set_resolution(size);
-            let film = scene.film.map(|id| scene.node(id));
-            assert_eq!(crate::stage::Film::of_node(film).resolution, size);
-        }
-        for precision in [Precision::Exact, Precision::Fast] {
-            scene.set_precision(precision);
-            let film = crate::stage::Film::of_node(scene.film.map(|id| scene.node(id)));
-            assert_eq!((film.precision, film.resolution), (precision, UVec2::new(5, 6)));
-        }
     }
 }

@@ -21,7 +21,7 @@ use crate::files::Files;
 use crate::object::{Builder, Object};
 use crate::registry::Registry;
 use crate::registry::dynamic::{FAILED, remote};
-use crate::scene::{Node, NodeId, Pose, Scene, Value};
+use crate::scene::{Node, NodeId, Pose, Scene, Setting, Value};
 
 /// A stage with the warnings that arose.
 #[derive(Debug)]
@@ -405,13 +405,13 @@ impl Maker<'_> {
         let camera_place =
             scene.camera.and_then(|id| self.stand(&scene.camera_pose, scene.node(id).span));
         let outside = scene.medium.and_then(|id| self.medium(id));
-        let mut pick = |id: Option<NodeId>, kind, name| match id {
+        let mut pick = |id: Option<NodeId>, setting: Setting| match id {
             Some(id) => self.builder.build(id),
-            None => Some(self.builder.preset(kind, name)),
+            None => Some(self.builder.preset(setting.kind(), setting.default_class())),
         };
-        let integrator = pick(scene.integrator, Kind::Integrator, "path");
-        let sampler = pick(scene.sampler, Kind::Sampler, "sobol");
-        let filter = pick(scene.filter, Kind::Filter, "blackman_harris");
+        let integrator = pick(scene.integrator, Setting::Integrator);
+        let sampler = pick(scene.sampler, Setting::Sampler);
+        let filter = pick(scene.filter, Setting::Filter);
         Some(Settings {
             camera: camera?,
             camera_place: camera_place?,

@@ -9,11 +9,20 @@ mod texts;
 mod unit;
 
 use luxel_core::accel::Precision;
+use luxel_core::stage::Stage;
 
 use self::bench::Bench;
 use super::row::Row;
 use super::run::Run;
 use crate::exit::Failure;
+
+/// One of the scenes with some parameters set.
+///
+/// # Errors
+/// One that the classes at hand cannot make.
+pub(super) fn stage(name: &str, set: &[(String, String)], run: &Run) -> Result<Stage, Failure> {
+    Bench::new(run, None).stage(name, &texts::files(), set)
+}
 
 /// Tests every truth whose name begins so; what is found is kept even if it ends early.
 ///

@@ -1,0 +1,88 @@
+//! How the error falls with the number of samples: variance = v / nᵖ.
+
+use super::estimate::Number;
+
+/// Standard errors within which a power is taken for that of independent samples.
+const SAME: f64 = 2.0;
+
+/// A straight line through logarithms.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fit {
+    /// Variance of a picture with one sample per pixel, if the line held so far down.
+    v: f64,
+    /// p, as it is used: 1 where it may well be 1.
+    power: f64,
+    /// p, as it was measured.
+    pub(super) measured: Number,
+}
+
+impl Fit {
+    /// Of two numbers of samples or more, with the variance of each; `None` where there is no noise.
+    ///
+    /// All count alike: seldom samples make small variances look more certain than they are.
+    pub(super) fn of(points: &[(u32, Number)]) -> Option<Self> {
+        let n = points.len() as f64;
+        if points.len() < 2 || points.iter().any(|(_, variance)| variance.value <= 0.0) {
+            return None;
+        }
+        let x = |spp: u32| f64::from(spp).ln();
+        let middle = points.iter().map(|(spp, _)| x(*spp)).sum::<f64>() / n;
+        let spread: f64 = points.iter().map(|(spp, _)| (x(*spp) - middle).powi(2)).sum();
+        let (mut slope, mut square, mut height) = (0.0, 0.0, 0.0);
+        for (spp, variance) in points {
+            let weight = (x(*spp) - middle) / spread;
+            slope += weight * variance.value.ln();
+            square += (weight * variance.error / variance.value).powi(2);
+            height += variance.value.ln() / n;
+        }
+        let measured = Number { value: -slope, error: square.sqrt() };
+        let is_one = (measured.value - 1.0).abs() <= SAME * measured.error;
+        let power = if is_one { 1.0 } else { measured.value };
+        Some(Self { v: (height + power * middle).exp(), power, measured })
+    }
+
+    /// Samples at which the variance is that; not whole.
+    pub(super) fn samples(&self, variance: f64) -> f64 {
+        (self.v / variance).powf(1.0 / self.power)
+    }
+
+    /// Samples at which it is `target`, where it was `found` with `n`.
+    pub(super) fn corrected(&self, n: f64, found: f64, target: f64) -> f64 {
+        n * (found / target).powf(1.0 / self.power)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fit(power: f64, error: f64) -> Fit {
+        let point = |n: u32| {
+            let value = 3.0 * f64::from(n).powf(-power);
+            (n, Number { value, error: error * value })
+        };
+        Fit::of(&[4, 16, 64].map(point)).unwrap()
+    }
+
+    #[test]
+    fn a_power_law_is_found_and_a_power_of_nearly_one_is_one() {
+        let steep = fit(1.5, 0.01);
+        assert!((steep.measured.value - 1.5).abs() < 1e-12);
+        // ln 4 between neighbours: the slope's error is that of a point over √2 ln 4.
+        assert!((steep.measured.error - 0.01 / (2.0_f64.sqrt() * 4.0_f64.ln())).abs() < 1e-12);
+        assert!((steep.samples(3.0 / 1000.0) - 100.0).abs() < 1e-9);
+        let nearly = fit(1.001, 0.01);
+        assert!(
+            nearly.power.to_bits() == 1.0_f64.to_bits()
+                && (nearly.measured.value - 1.001).abs() < 1e-12
+        );
+        assert!((nearly.corrected(10.0, 0.3, 0.1) - 30.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn where_nothing_scatters_there_is_nothing_to_fit() {
+        let none = Number::default();
+        assert!(Fit::of(&[(4, none), (16, none)]).is_none());
+        assert!(Fit::of(&[(4, Number { value: 1.0, error: 0.1 })]).is_none());
+    }
+}

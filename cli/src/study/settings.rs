@@ -1,0 +1,41 @@
+//! Settings as lines to paste into a scene.
+
+use luxel_core::diag::Sources;
+use luxel_core::registry::Registry;
+use luxel_core::scene::{Node, Scene, Setting, Value};
+use luxel_sdk::params::Dimension as Unit;
+
+use super::sweep::Change;
+use crate::written::value;
+
+/// The sampler with its number of samples, and what else differs from the scene.
+///
+/// # Errors
+/// As `Change::apply`.
+pub(super) fn lines(
+    scene: &Scene,
+    change: Option<&Change>,
+    samples: u32,
+    registry: &Registry,
+    sources: &Sources,
+) -> Result<String, String> {
+    let mut scene = scene.clone();
+    if let Some(change) = change {
+        change.apply(&mut scene, registry)?;
+    }
+    let samples = Value::Number(f64::from(samples), Unit::NONE);
+    scene.set_param(Setting::Sampler, "samples", samples);
+    let other = change.map(|change| change.dimension.setting());
+    let other = other.filter(|setting| *setting != Setting::Sampler);
+    let settings = std::iter::once(Setting::Sampler).chain(other);
+    let nodes = settings.filter_map(|setting| scene.setting(setting));
+    Ok(nodes.map(|node| line(node, registry, sources)).collect::<Vec<_>>().join("\n"))
+}
+
+fn line(node: &Node, registry: &Registry, sources: &Sources) -> String {
+    let field = |argument| value(argument, node, registry, sources);
+    let fields = node.params.iter().map(|given| format!("{} = {}", given.name, field(given)));
+    let fields = fields.collect::<Vec<_>>().join(", ");
+    let inside = if fields.is_empty() { "{}".to_owned() } else { format!("{{ {fields} }}") };
+    format!("{} {} {inside}", node.kind, node.class)
+}

@@ -8,6 +8,7 @@ mod compare;
 mod denoise;
 mod describe;
 mod exit;
+mod explain;
 mod files;
 mod goal;
 mod interrupt;
@@ -63,6 +64,7 @@ enum Command {
     Compare(compare::Args),
     Denoise(denoise::Args),
     Check(check::Args),
+    Explain(explain::Args),
     Verify(verify::Args),
     List(list::Args),
     Describe(describe::Args),
@@ -88,6 +90,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
+        Command::Explain(args) => explain::run(args),
         Command::Verify(args) => verify::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),

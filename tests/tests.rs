@@ -25,6 +25,8 @@ mod edits;
 #[cfg(test)]
 mod extremes;
 #[cfg(test)]
+mod features;
+#[cfg(test)]
 #[path = "../cli/src/verify/generated.rs"]
 mod generated;
 #[cfg(test)]

@@ -10,6 +10,7 @@
 mod boundary;
 mod document;
 mod errors;
+mod features;
 #[path = "../../cli/src/verify/generated.rs"]
 mod generated;
 mod parse;
@@ -55,7 +56,7 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last two are not among `all`: they take long.
-const BENCHES: [Bench; 16] = [
+const BENCHES: [Bench; 17] = [
     of_crates("parse", |_| {
         parse::run();
         Ok(())
@@ -69,6 +70,7 @@ const BENCHES: [Bench; 16] = [
         Ok(())
     }),
     of_crates("pictures", |_| pictures::run()),
+    of_crates("features", |_| features::run()),
     of_crates("builds", |plan| {
         rays::builds(plan.embree.as_deref(), plan.python.as_deref());
         Ok(())

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use luxel_core::files::MemoryFiles;
 use luxel_core::registry::Registry;
+use luxel_core::scene::Scene;
 use luxel_core::stage::{self, Stage};
 
 /// The built-ins.
@@ -33,9 +34,17 @@ pub(crate) fn stage_with(
     text: &str,
 ) -> Result<Stage, String> {
     let files = files.with("a.scene", text.as_bytes());
-    let settings = luxel_lang::Settings::default();
-    let loaded = luxel_lang::load(Path::new("a.scene"), &files, registry, &settings);
-    let scene = loaded.scene.ok_or_else(|| format!("{:?}", loaded.diagnostics))?;
+    let scene = scene_in(registry, &files)?;
     let built = stage::build(&scene, registry, &files, None);
     built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
+}
+
+/// What the text `a.scene` among some files says.
+///
+/// # Errors
+/// What is wrong with it.
+pub(crate) fn scene_in(registry: &Registry, files: &MemoryFiles) -> Result<Scene, String> {
+    let settings = luxel_lang::Settings::default();
+    let loaded = luxel_lang::load(Path::new("a.scene"), files, registry, &settings);
+    loaded.scene.ok_or_else(|| format!("{:?}", loaded.diagnostics))
 }

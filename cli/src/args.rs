@@ -9,6 +9,9 @@ use glam::UVec2;
 use luxel_core::accel::Precision;
 use luxel_core::film::{Layer, Rect};
 use luxel_core::render::Options;
+use luxel_core::scene::{Feature, Scene};
+
+use crate::exit::{Exit, Failure};
 
 /// How a scene is read.
 #[derive(Args, Clone, Debug, Default)]
@@ -26,6 +29,33 @@ pub(crate) struct LoadArgs {
     /// `position`, `depth`, `material_id`, `object_id`, `motion`, `cost`
     #[arg(long = "aov", value_name = "LAYER,…", value_delimiter = ',', value_parser = layer)]
     pub(crate) layers: Vec<Layer>,
+    /// Have the code of a feature run though the scene may not require it, which changes no bit:
+    /// `media`, `open_surfaces`, `nested`, `motion`, `light_choice`
+    #[arg(long = "require", value_name = "FEATURE,…", value_delimiter = ',', value_parser = requirable)]
+    pub(crate) required: Vec<Feature>,
+    /// Model less than the scene requires: `spectral`, `media`, `nested`, `motion`, `layers`
+    #[arg(long = "drop", value_name = "FEATURE,…", value_delimiter = ',', value_parser = droppable)]
+    pub(crate) dropped: Vec<Feature>,
+}
+
+impl LoadArgs {
+    /// Changes what a scene requires and what is left out of it.
+    ///
+    /// # Errors
+    /// A feature that is both required and dropped.
+    pub(crate) fn change_features(&self, scene: &mut Scene) -> Result<(), Failure> {
+        for feature in &self.required {
+            scene.require(*feature).map_err(|why| refused(*feature, why))?;
+        }
+        for feature in &self.dropped {
+            scene.leave_out(*feature).map_err(|why| refused(*feature, why))?;
+        }
+        Ok(())
+    }
+}
+
+fn refused(feature: Feature, why: &str) -> Failure {
+    Failure::new(Exit::Usage, format!("`{}`: {why}", feature.name()))
 }
 
 /// Where plugin libraries come from.
@@ -113,6 +143,22 @@ fn layer(text: &str) -> Result<Layer, String> {
     Layer::of_name(text.trim()).ok_or_else(|| format!("expected some of {}", names()))
 }
 
+fn feature(text: &str) -> Result<Feature, String> {
+    let names = || Feature::ALL.map(Feature::name).join(", ");
+    Feature::of_name(text.trim()).ok_or_else(|| format!("expected some of {}", names()))
+}
+
+fn requirable(text: &str) -> Result<Feature, String> {
+    let feature = feature(text)?;
+    feature.unrequirable().map_or(Ok(feature), |why| Err(why.to_owned()))
+}
+
+fn droppable(text: &str) -> Result<Feature, String> {
+    let feature = feature(text)?;
+    feature.dropped()?;
+    Ok(feature)
+}
+
 fn precision(text: &str) -> Result<Precision, String> {
     Precision::of_word(text).ok_or_else(|| "expected fast, standard or exact".to_owned())
 }
@@ -137,6 +183,20 @@ pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn features_are_read_or_refused_with_the_reason() {
+        assert_eq!(requirable(" media"), Ok(Feature::Media));
+        assert_eq!(droppable("spectral"), Ok(Feature::Spectral));
+        assert!(requirable("fog").unwrap_err().contains("light_choice, layers"));
+        assert!(requirable("spectral").unwrap_err().contains("film spectral"));
+        assert!(droppable("open_surfaces").unwrap_err().contains("drop `media`"));
+        let both = vec![Feature::Motion];
+        let args = LoadArgs { required: both.clone(), dropped: both, ..LoadArgs::default() };
+        let refused = args.change_features(&mut Scene::default()).unwrap_err();
+        assert_eq!(refused.message, "`motion`: it is both required and dropped");
+        assert_eq!(refused.exit, Exit::Usage);
+    }
 
     #[test]
     fn sizes_crops_and_assignments_are_read_or_refused() {

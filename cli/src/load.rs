@@ -106,7 +106,8 @@ pub(crate) struct Text {
 /// Reads a scene, whose picture is to have `size` if one is given.
 ///
 /// # Errors
-/// A panic below, as our fault. The author's mistakes are among what was found.
+/// A panic below, as our fault; a feature both required and dropped. The author's mistakes are among
+/// what was found.
 pub(crate) fn read(
     path: &Path,
     args: &LoadArgs,
@@ -114,7 +115,7 @@ pub(crate) fn read(
     plugins: &Plugins,
     Course { beat, known, .. }: &Course,
 ) -> Result<Text, Failure> {
-    blaming(&path.display().to_string(), || {
+    let mut text = blaming(&path.display().to_string(), || {
         let files = DiskFiles::new(path, &args.allow_path).knowing(known);
         beat.reading(files.shared());
         beat.phase(Phase::Loading);
@@ -136,7 +137,9 @@ pub(crate) fn read(
         }
         let luxel_lang::Loaded { diagnostics, sources, params, .. } = read;
         Text { scene, diagnostics, sources, files, params }
-    })
+    })?;
+    text.scene.as_mut().map_or(Ok(()), |scene| args.change_features(scene))?;
+    Ok(text)
 }
 
 /// Makes what was read ready to trace, keeping what has not changed since `before`.

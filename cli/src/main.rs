@@ -8,6 +8,7 @@ mod compare;
 mod denoise;
 mod describe;
 mod exit;
+mod explain;
 mod files;
 mod goal;
 mod interrupt;
@@ -65,6 +66,7 @@ enum Command {
     Compare(compare::Args),
     Denoise(denoise::Args),
     Check(check::Args),
+    Explain(explain::Args),
     Verify(verify::Args),
     Study(study::Args),
     List(list::Args),
@@ -91,6 +93,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
+        Command::Explain(args) => explain::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Study(args) => study::run(args),
         Command::List(args) => list::run(args),

@@ -39,6 +39,7 @@ Examples:
   luxel render scenes/cornell.scene --time 30s
   luxel render scenes/cornell.scene --resume
   luxel render scenes/cornell.scene --aov albedo,normal,depth
+  luxel render scenes/motion.scene --drop motion
   luxel render scenes/cornell.scene --crop 100,100,64,64 --json
   luxel render scenes/cornell.scene --isolate")]
 pub(crate) struct Args {

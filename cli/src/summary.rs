@@ -3,7 +3,7 @@
 use glam::{DVec3, UVec2};
 use luxel_core::film::{Errors, Film, Layer};
 use luxel_core::render::{Goal, Options, Outcome};
-use luxel_core::scene::{NodeId, called};
+use luxel_core::scene::{Feature, NodeId, called};
 use luxel_core::stage::Stage;
 use serde_json::{Value, json};
 
@@ -37,6 +37,8 @@ pub(crate) struct Summary {
     error: Option<Errors>,
     scene: String,
     files: String,
+    /// What the scene requires and was not modelled.
+    dropped: Vec<Feature>,
     /// What the numbers of layers mean, by layer: names, the first of which is number 1.
     names: Value,
     /// Samples that were not finite.
@@ -75,6 +77,7 @@ impl Summary {
             error: Errors::of_film(film, goal.error.unwrap_or(f64::INFINITY)),
             scene: hex(stage.scene.hash()),
             files: files.hash().to_hex().to_string(),
+            dropped: stage.scene.left_out().collect(),
             names: names(stage, film),
             bad: film.bad_samples(),
         }
@@ -89,6 +92,9 @@ impl Summary {
         let mut settings = self.common_settings();
         if self.names.as_object().is_some_and(|names| !names.is_empty()) {
             settings["names"] = self.names.clone();
+        }
+        if !self.dropped.is_empty() {
+            settings["dropped"] = self.dropped.iter().map(|it| it.name()).collect();
         }
         settings
     }
@@ -155,7 +161,7 @@ impl Summary {
             "wrote {exr} and {png}{done}\n\
              {size}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
              mean radiance ({:.4}, {:.4}, {:.4}) W/m²/sr\n\
-             {error}{reached}",
+             {error}{reached}{dropped}",
             mean.x,
             mean.y,
             mean.z,
@@ -168,6 +174,7 @@ impl Summary {
             rate = self.rate() / 1e6,
             error = self.error_words(),
             reached = self.reached_words(),
+            dropped = self.dropped_words(),
         )
     }
 
@@ -203,6 +210,14 @@ impl Summary {
                 "the {asked} asked for is not reached: {tiles} tiles are above, {above} pixels\n"
             ),
         }
+    }
+
+    fn dropped_words(&self) -> String {
+        let line = |feature: &Feature| {
+            let instead = feature.dropped().unwrap_or_default();
+            format!("`{}` was dropped: {instead}\n", feature.name())
+        };
+        self.dropped.iter().map(line).collect()
     }
 
     /// `640 x 480`, or of a crop `64 x 64 at (100, 50) of 640 x 480`.

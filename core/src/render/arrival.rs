@@ -297,13 +297,13 @@ impl Numbers {
     #[inline(always)]
     fn draw(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
         if wants.has(Wants::DIRECT) && wants.has(Wants::SCATTER) {
-            let choice = samples.next_1d_if(stage.lights.is_choice());
+            let choice = samples.next_1d_if(stage.features.light_choice);
             let [[u, v], scatter] = samples.next_2d_pair();
             return Self { light: [choice, u, v], scatter };
         }
         let mut numbers = Self { light: [0.0; 3], scatter: [0.0; 2] };
         if wants.has(Wants::DIRECT) {
-            let choice = samples.next_1d_if(stage.lights.is_choice());
+            let choice = samples.next_1d_if(stage.features.light_choice);
             let [u, v] = samples.next_2d();
             numbers.light = [choice, u, v];
         } else if wants.has(Wants::SCATTER) {

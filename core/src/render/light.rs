@@ -64,7 +64,7 @@ impl Worker<'_> {
         if stage.mode == ColorMode::Spectral {
             self.paths[lane].palette = Palette::new(Wavelengths::sample(u));
         }
-        let moment = moment(stage, &mut samples);
+        let moment = moment(stage, &samples);
         self.paths[lane].time = moment.time;
         let palette = &self.paths[lane].palette;
         let found = moment.emit(bundle.emitters, palette, &numbers, &mut self.scratch)?;

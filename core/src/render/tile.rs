@@ -216,7 +216,7 @@ impl<'s> Worker<'s> {
         let [in_pixel, lens] = samples.next_2d_pair();
         let [dx, dy] = self.stage.filter.fixed().filter().sample(in_pixel);
         let u = samples.next_1d_if(self.stage.mode == ColorMode::Spectral);
-        let stage = moment(self.stage, &mut samples);
+        let stage = moment(self.stage, &samples);
         let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
         let p = pixel.as_dvec2() + 0.5 + offset;
         let found = stage.camera_ray(p, lens)?;
@@ -467,10 +467,18 @@ impl Work for Fly<'_, '_> {
     }
 }
 
-/// The moment that a path sees. Where nothing moves no number is taken, and pictures stay as they are.
-pub(super) fn moment<'s>(stage: &'s Stage, samples: &mut Samples<'_>) -> Moment<'s> {
-    let u = if stage.features.motion { samples.next_1d() } else { 0.0 };
-    stage.at(stage.time_of(u))
+/// Tells the times of paths from their other numbers.
+const TIME: u32 = 0x71_3e;
+
+/// The moment that a path sees. Its number is of a stream of its own: the others are the same whether
+/// something moves or not.
+pub(super) fn moment<'s>(stage: &'s Stage, samples: &Samples<'_>) -> Moment<'s> {
+    if !stage.features.motion {
+        return stage.opening();
+    }
+    let path = samples.at();
+    let at = SampleAt { stream: hash_combine(path.stream, TIME), dimension: 0, ..path };
+    stage.at(stage.time_of(samples.source().get_1d(at)))
 }
 
 /// What an integrator may ask the host while a path arrives.

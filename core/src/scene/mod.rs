@@ -8,11 +8,13 @@ mod color;
 mod conform;
 mod diff;
 mod expect;
+mod feature;
 mod pose;
 mod print;
 mod setting;
 mod value;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use luxel_sdk::kind::Kind;
@@ -26,6 +28,7 @@ pub use conform::{
 };
 pub use diff::{Difference, How, called, diff};
 pub use expect::{Area, Claim, Expectation, Expected};
+pub use feature::Feature;
 pub use pose::{Key, Pose, Step};
 pub use print::print;
 pub use setting::Setting;
@@ -33,6 +36,9 @@ pub use value::{Hash, Value};
 
 /// Parameters of a film that no sample depends on.
 const SHOWN: [&str; 3] = ["exposure", "display", "file"];
+
+/// Why a feature is not both required and dropped.
+const BOTH: &str = "it is both required and dropped";
 
 /// Names a node among `Scene::nodes`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -136,6 +142,10 @@ pub struct Scene {
     pub medium: Option<NodeId>,
     /// What its file says of its picture. Nothing that is measured depends on it, nor any hash.
     pub expectations: Vec<Expectation>,
+    /// Modelled though the scene may not require it. No bit of a picture depends on it, nor any hash.
+    required: BTreeSet<Feature>,
+    /// Left out though the scene may require it.
+    dropped: BTreeSet<Feature>,
     /// Of each node the hash without what every node of its kind may have.
     own: Vec<Hash>,
 }
@@ -149,6 +159,49 @@ impl Scene {
     /// The group of that name. Names come from this scene.
     pub fn group(&self, id: GroupId) -> &Group {
         &self.groups[id.0 as usize]
+    }
+
+    /// Has a feature modelled, whether the scene requires it or not. Changes no bit of a picture.
+    ///
+    /// # Errors
+    /// Why that cannot be.
+    pub fn require(&mut self, feature: Feature) -> Result<(), &'static str> {
+        if self.dropped.contains(&feature) {
+            return Err(BOTH);
+        }
+        if let Some(why) = feature.unrequirable() {
+            return Err(why);
+        }
+        self.required.insert(feature);
+        Ok(())
+    }
+
+    /// Leaves a feature out, whether the scene requires it or not: less is modelled.
+    ///
+    /// # Errors
+    /// Why that cannot be.
+    pub fn leave_out(&mut self, feature: Feature) -> Result<(), &'static str> {
+        if self.required.contains(&feature) {
+            return Err(BOTH);
+        }
+        feature.dropped()?;
+        self.dropped.insert(feature);
+        Ok(())
+    }
+
+    /// Whether a feature is to be modelled even if the scene does not require it.
+    pub fn is_required(&self, feature: Feature) -> bool {
+        self.required.contains(&feature)
+    }
+
+    /// What is left out even if the scene requires it, in the order of `Feature::ALL`.
+    pub fn left_out(&self) -> impl Iterator<Item = Feature> + '_ {
+        self.dropped.iter().copied()
+    }
+
+    /// Whether a feature is left out even if the scene requires it.
+    pub fn leaves_out(&self, feature: Feature) -> bool {
+        self.dropped.contains(&feature)
     }
 
     /// Hash of everything that the scene shows: what stands where, and its settings. Labels, places
@@ -269,5 +322,34 @@ mod tests {
         }
         let time = with("shutter", Value::Text("x".into()));
         assert!(time.0 != plain.0 && time.1 != plain.1);
+    }
+
+    #[test]
+    fn what_is_dropped_counts_for_the_hash_and_what_is_required_does_not() {
+        let mut scene = camera("a", 0.05);
+        let plain = [scene.hash(), scene.measured_hash(), scene.sampled_hash()];
+        scene.require(Feature::Media).unwrap();
+        assert_eq!([scene.hash(), scene.measured_hash(), scene.sampled_hash()], plain);
+        scene.leave_out(Feature::Motion).unwrap();
+        assert_ne!(scene.hash(), plain[0]);
+        assert_ne!(scene.measured_hash(), plain[1]);
+        assert_ne!(scene.sampled_hash(), plain[2]);
+        let mut other = camera("a", 0.05);
+        other.leave_out(Feature::Nested).unwrap();
+        assert_ne!(scene.hash(), other.hash());
+    }
+
+    #[test]
+    fn what_cannot_be_required_or_dropped_is_refused() {
+        let mut scene = camera("a", 0.05);
+        assert!(scene.require(Feature::Spectral).unwrap_err().contains("film spectral"));
+        assert!(scene.require(Feature::Layers).unwrap_err().contains("--aov"));
+        assert!(scene.leave_out(Feature::OpenSurfaces).unwrap_err().contains("drop `media`"));
+        assert!(scene.leave_out(Feature::LightChoice).unwrap_err().contains("missing"));
+        scene.require(Feature::Media).unwrap();
+        assert_eq!(scene.leave_out(Feature::Media), Err(BOTH));
+        scene.leave_out(Feature::Motion).unwrap();
+        assert_eq!(scene.require(Feature::Motion), Err(BOTH));
+        assert!(scene.left_out().eq([Feature::Motion]));
     }
 }

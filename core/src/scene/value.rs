@@ -67,6 +67,9 @@ pub(super) fn hash_scene(scene: &Scene, film: Option<Hash>, sampler: Option<Hash
     for setting in [of(camera), film, of(integrator), sampler, of(filter), of(medium)] {
         hasher.update(&setting.unwrap_or([0; 32]));
     }
+    for feature in scene.left_out() {
+        hasher.update(feature.name().as_bytes()).update(&[0]);
+    }
     *hasher.finalize().as_bytes()
 }
 

@@ -12,7 +12,7 @@ use super::kept::{Anew, Cache, Shaped};
 use super::lights::LightSource;
 use super::made::{Made, Settings};
 use super::motion::{Motion, Splits};
-use super::{Film, Geometry, Mesh, Place, Placement, Skin, Stage};
+use super::{Film, Geometry, Mesh, Place, Placement, Reasons, Skin, Stage};
 use super::{failures, features, import, shining};
 use crate::accel::{BuildError, Watch};
 use crate::cast::{index, whole};
@@ -21,7 +21,7 @@ use crate::files::Files;
 use crate::object::{Builder, Object};
 use crate::registry::Registry;
 use crate::registry::dynamic::{FAILED, remote};
-use crate::scene::{Node, NodeId, Pose, Scene, Setting, Value};
+use crate::scene::{Feature, Node, NodeId, Pose, Scene, Setting, Value};
 
 /// A stage with the warnings that arose.
 #[derive(Debug)]
@@ -76,8 +76,10 @@ pub fn build_watched(
     let cache = before.map_or(&none, |stage| &stage.cache);
     let (scene, assets, mut diagnostics) =
         import::expand(scene, (registry, files), &cache.assets, watch);
-    let film = Film::of_node(scene.film.map(|id| scene.node(id)));
+    let film = Film::of_scene(&scene);
     let mode = features::color_mode(&scene, film.color);
+    let mut reasons = Reasons::default();
+    reasons.add_settings(&scene, (mode, &film));
     let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(&mesh_part);
@@ -89,7 +91,7 @@ pub fn build_watched(
         splits: Splits::default(),
         builder,
         cache,
-        made: Made { assets, ..Made::default() },
+        made: Made { assets, reasons, ..Made::default() },
         watch,
     };
     match flatten(&scene) {
@@ -154,6 +156,7 @@ impl Maker<'_> {
 
     fn light(&mut self, flat: &Flat) {
         let Some(object) = self.builder.build(flat.node) else { return };
+        self.requires(Feature::LightChoice, flat.node);
         if object.fixed().light().form() == LightForm::Surface {
             match self.child(flat.node, "shape") {
                 Some(shape) => self.shape(flat, shape, Some(object)),
@@ -162,6 +165,9 @@ impl Maker<'_> {
             return;
         }
         if let Some(place) = self.stand(&flat.pose, flat.span) {
+            if place.is_moving() {
+                self.requires(Feature::Motion, flat.node);
+            }
             self.made.lights.push(LightSource::Free { object, place });
             let group = self.group(flat.node);
             self.made.group_of.push(group);
@@ -238,9 +244,17 @@ impl Maker<'_> {
     fn shape(&mut self, flat: &Flat, shape: NodeId, light: Option<Arc<Object>>) {
         let Some(geometry) = self.geometry(shape) else { return };
         let Some(place) = self.stand(&flat.pose, flat.span) else { return };
-        let interior = self.interior(shape, flat.material);
-        let skin = self.skin(shape, flat.material, light.is_some(), interior.is_some());
+        let filling = self.filling(shape, flat.material);
+        let skin = self.skin(shape, flat.material, light.is_some(), filling.is_some());
         let Some(skin) = skin else { return };
+        let has_media = !self.scene.leaves_out(Feature::Media);
+        if skin == Skin::Open && !has_media {
+            return;
+        }
+        if place.is_moving() || self.made.geometries[geometry as usize].is_moving() {
+            self.requires(Feature::Motion, shape);
+        }
+        let interior = filling.filter(|_| has_media).and_then(|id| self.medium(id));
         let placement = Placement {
             geometry,
             place,
@@ -335,12 +349,16 @@ impl Maker<'_> {
         }
     }
 
-    fn interior(&mut self, shape: NodeId, inherited: Option<NodeId>) -> Option<u32> {
+    /// The medium that fills a shape, by itself or by its material.
+    fn filling(&self, shape: NodeId, inherited: Option<NodeId>) -> Option<NodeId> {
         let material = self.child(shape, "material").or(inherited);
-        let medium = self
-            .child(shape, "interior")
-            .or_else(|| material.and_then(|material| self.child(material, "interior")))?;
-        self.medium(medium)
+        self.child(shape, "interior")
+            .or_else(|| material.and_then(|material| self.child(material, "interior")))
+    }
+
+    /// Notes that a node requires a feature.
+    fn requires(&mut self, feature: Feature, id: NodeId) {
+        self.made.reasons.add(feature, id, self.scene.node(id).span);
     }
 
     fn medium(&mut self, id: NodeId) -> Option<u32> {
@@ -348,6 +366,7 @@ impl Maker<'_> {
             return Some(*index);
         }
         let object = self.builder.build(id)?;
+        self.requires(Feature::Media, id);
         self.made.media.push(object);
         let last = index(self.made.media.len() - 1);
         self.made.medium_of.insert(id, last);
@@ -404,7 +423,13 @@ impl Maker<'_> {
         let camera = scene.camera.and_then(|id| self.builder.build(id));
         let camera_place =
             scene.camera.and_then(|id| self.stand(&scene.camera_pose, scene.node(id).span));
-        let outside = scene.medium.and_then(|id| self.medium(id));
+        if let (Some(id), Some(place)) = (scene.camera, &camera_place)
+            && place.is_moving()
+        {
+            self.requires(Feature::Motion, id);
+        }
+        let has_media = !scene.leaves_out(Feature::Media);
+        let outside = scene.medium.filter(|_| has_media).and_then(|id| self.medium(id));
         let mut pick = |id: Option<NodeId>, setting: Setting| match id {
             Some(id) => self.builder.build(id),
             None => Some(self.builder.preset(setting.kind(), setting.default_class())),

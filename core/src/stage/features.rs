@@ -1,11 +1,15 @@
-//! What a scene requires, so that nothing else is modelled.
+//! What a scene requires and who requires it, so that nothing else is modelled.
 
+use std::collections::BTreeMap;
+
+use crate::diag::Span;
+use crate::film::Layer;
 use crate::object::ColorMode;
-use crate::scene::{Color, Node, Scene, Value};
+use crate::scene::{Color, Feature, Node, NodeId, Scene, Value};
 
-use super::ColorChoice;
+use super::{ColorChoice, Film, Stage};
 
-/// What the render has to do for this scene.
+/// What chooses code when rays are followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is asked for on its own")]
 pub struct Features {
@@ -17,6 +21,8 @@ pub struct Features {
     pub nested: bool,
     /// Something moves while the shutter is open.
     pub motion: bool,
+    /// There are several lights, or triangles of one, to choose from.
+    pub light_choice: bool,
 }
 
 impl Features {
@@ -31,23 +37,111 @@ impl Features {
     pub fn is_open(&self) -> bool {
         self.open_surfaces || self.nested
     }
+
+    /// These, and those that a scene is to be rendered with in any case.
+    pub(super) fn and_required(self, scene: &Scene) -> Self {
+        Self {
+            media: self.media || scene.is_required(Feature::Media),
+            open_surfaces: self.open_surfaces || scene.is_required(Feature::OpenSurfaces),
+            nested: self.nested || scene.is_required(Feature::Nested),
+            motion: self.motion || scene.is_required(Feature::Motion),
+            light_choice: self.light_choice || scene.is_required(Feature::LightChoice),
+        }
+    }
+}
+
+impl Stage {
+    /// Whether a feature is modelled: the scene requires it and it is not dropped.
+    pub fn needs(&self, feature: Feature) -> bool {
+        self.of(self.needed, feature)
+    }
+
+    /// Whether the code for a feature runs: it is modelled, or was required from outside.
+    pub fn has(&self, feature: Feature) -> bool {
+        self.of(self.features, feature)
+    }
+
+    fn of(&self, features: Features, feature: Feature) -> bool {
+        match feature {
+            Feature::Spectral => self.mode == ColorMode::Spectral,
+            Feature::Media => features.media,
+            Feature::OpenSurfaces => features.open_surfaces,
+            Feature::Nested => features.nested,
+            Feature::Motion => features.motion,
+            Feature::LightChoice => features.light_choice,
+            Feature::Layers => !self.film.layers.is_empty(),
+        }
+    }
+}
+
+/// Which nodes require a feature, each with the place that says so.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reasons(BTreeMap<Feature, BTreeMap<NodeId, Span>>);
+
+impl Reasons {
+    /// Those of a feature that is modelled, in the order in which the scene made them. None where the
+    /// shapes are too many to tell which of them lie within each other.
+    pub fn of(&self, feature: Feature) -> impl Iterator<Item = (NodeId, Span)> + '_ {
+        self.0.get(&feature).into_iter().flatten().map(|(id, span)| (*id, *span))
+    }
+
+    /// A node requires a feature; its first place counts.
+    pub(super) fn add(&mut self, feature: Feature, id: NodeId, span: Span) {
+        self.0.entry(feature).or_default().entry(id).or_insert(span);
+    }
+
+    /// The feature is not modelled after all.
+    pub(super) fn clear(&mut self, feature: Feature) {
+        self.0.remove(&feature);
+    }
+
+    /// The arguments, or the film, that ask for wavelengths, and the layers of the film.
+    pub(super) fn add_settings(&mut self, scene: &Scene, (mode, film): (ColorMode, &Film)) {
+        if let (Some(id), ColorChoice::Spectral) = (scene.film, film.color) {
+            self.add(Feature::Spectral, id, scene.node(id).span);
+        }
+        for (id, node) in (0..).map(NodeId).zip(&scene.nodes) {
+            if let Some(span) = spectrum(node) {
+                self.add(Feature::Spectral, id, span);
+            }
+        }
+        if let Some(id) = scene.film {
+            let params = &scene.node(id).params;
+            let is_layer = |name| Layer::of_name(name).is_some();
+            for it in params.iter().filter(|it| is_layer(it.name) && it.value == Value::Bool(true))
+            {
+                self.add(Feature::Layers, id, it.span);
+            }
+        }
+        if mode == ColorMode::Rgb {
+            self.clear(Feature::Spectral);
+        }
+        if film.layers.is_empty() {
+            self.clear(Feature::Layers);
+        }
+    }
 }
 
 /// How colour is carried: as asked, or RGB only where every colour of the scene is given as RGB and
 /// nothing depends on wavelength.
 pub(super) fn color_mode(scene: &Scene, choice: ColorChoice) -> ColorMode {
     match choice {
+        _ if scene.leaves_out(Feature::Spectral) => ColorMode::Rgb,
         ColorChoice::Spectral => ColorMode::Spectral,
-        ColorChoice::Auto if scene.nodes.iter().any(has_spectrum) => ColorMode::Spectral,
+        ColorChoice::Auto if scene.nodes.iter().any(|node| spectrum(node).is_some()) => {
+            ColorMode::Spectral
+        }
         ColorChoice::Rgb | ColorChoice::Auto => ColorMode::Rgb,
     }
 }
 
-fn has_spectrum(node: &Node) -> bool {
-    node.params.iter().any(|argument| match &argument.value {
+/// Where a node says something by wavelength.
+fn spectrum(node: &Node) -> Option<Span> {
+    let by_wavelength = |value: &Value| match value {
         Value::Color(color, _) => is_spectral(color),
         _ => false,
-    })
+    };
+    Some(node.params.iter().find(|argument| by_wavelength(&argument.value))?.span)
 }
 
 fn is_spectral(color: &Color) -> bool {

@@ -109,13 +109,22 @@ impl Lights {
         self.sources.is_empty()
     }
 
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.sources.len()
+    }
+
     /// Whether there are several to choose from: sources, or triangles of a source.
     pub fn is_choice(&self) -> bool {
         let single = |source: &LightSource| match source {
             LightSource::Surface { triangles, .. } => triangles.is_none(),
             LightSource::Free { .. } => true,
         };
-        !matches!(self.sources.as_slice(), [source] if single(source))
+        match self.sources.as_slice() {
+            [] => false,
+            [source] => !single(source),
+            _ => true,
+        }
     }
 
     fn chance(&self, light: u32) -> f64 {

@@ -9,10 +9,12 @@ use luxel_sdk::num::Bounds3;
 use super::kept::{Assets, Cache, Shaped};
 use super::lights::LightSource;
 use super::nesting;
-use super::{Eye, Features, Film, Geometry, Lights, MediumStack, Place, Placement, Skin, Stage};
+use super::{
+    Eye, Features, Film, Geometry, Lights, MediumStack, Place, Placement, Reasons, Skin, Stage,
+};
 use crate::accel::{Box64, TopBvh, Watch};
 use crate::object::{ColorMode, Object, Objects, Shelf};
-use crate::scene::{Hash, NodeId, Scene};
+use crate::scene::{Feature, Hash, NodeId, Scene};
 
 /// The objects that a scene has one of.
 pub(super) struct Settings {
@@ -44,6 +46,7 @@ pub(super) struct Made {
     pub(super) group_names: Vec<Arc<str>>,
     pub(super) group_of: Vec<Option<u32>>,
     pub(super) default_material: Option<u32>,
+    pub(super) reasons: Reasons,
 }
 
 impl Made {
@@ -64,19 +67,16 @@ impl Made {
         };
         let boxes: Vec<_> = self.placements.iter().map(boxed).collect();
         let sphere = around(&boxes);
-        let media = !self.media.is_empty();
-        let (places, shapes) = (&mut self.placements, &self.geometries);
-        let nested = nesting::settle(places, shapes, &boxes, &self.materials, media);
-        let open_surfaces = self.placements.iter().any(|placement| placement.skin == Skin::Open);
-        let motion = settings.camera_place.is_moving() || self.is_moving();
-        let features = Features { media, open_surfaces, nested, motion };
+        let groups = (std::mem::take(&mut self.group_names), std::mem::take(&mut self.group_of));
+        let lights = Lights::new(std::mem::take(&mut self.lights), sphere.1, mode);
+        let lights = lights.in_groups(groups.0, groups.1);
+        let needed = self.needed(&scene, &boxes, &lights);
         watch.name("the scene");
         let top = TopBvh::build_watched(&boxes, watch)?;
         let mut cache = Cache { assets: self.assets, objects, shapes: self.shapes };
         cache.inherit(before);
         let mut stage = Stage {
-            lights: Lights::new(self.lights, sphere.1, mode)
-                .in_groups(self.group_names, self.group_of),
+            lights,
             top,
             geometries: self.geometries,
             placements: self.placements,
@@ -93,10 +93,12 @@ impl Made {
             camera_media: MediumStack::default(),
             eye: None,
             cache,
+            features: needed.and_required(&scene),
+            needed,
+            reasons: self.reasons,
             scene,
             film,
             mode,
-            features,
             sphere,
         };
         stage.eye = Eye::of(stage.camera.fixed().camera(), stage.film.resolution);
@@ -111,15 +113,25 @@ impl Made {
         Some(stage)
     }
 
-    /// Whether something in a place moves while the shutter is open.
-    fn is_moving(&self) -> bool {
-        let moves = |light: &LightSource| match light {
-            LightSource::Free { place, .. } => place.is_moving(),
-            LightSource::Surface { .. } => false,
-        };
-        self.placements.iter().any(|placement| placement.place.is_moving())
-            || self.geometries.iter().any(|shape| shape.is_moving())
-            || self.lights.iter().any(moves)
+    /// What is to be modelled; who requires it is noted, and what moves and what is filled is already.
+    fn needed(&mut self, scene: &Scene, boxes: &[Box64], lights: &Lights) -> Features {
+        let media = !self.media.is_empty();
+        let (places, shapes) = (&mut self.placements, &self.geometries);
+        let nested = nesting::settle(places, shapes, boxes, &self.materials, media)
+            .filter(|_| !scene.leaves_out(Feature::Nested));
+        let open = self.placements.iter().filter(|placement| placement.skin == Skin::Open);
+        let within = nested.iter().flatten().map(|at| &self.placements[*at]);
+        let found = open.map(|it| (Feature::OpenSurfaces, it.node));
+        for (feature, id) in found.chain(within.map(|it| (Feature::Nested, it.node))) {
+            self.reasons.add(feature, id, scene.node(id).span);
+        }
+        let light_choice = lights.is_choice();
+        if !light_choice {
+            self.reasons.clear(Feature::LightChoice);
+        }
+        let is_told = |feature| self.reasons.of(feature).next().is_some();
+        let [open_surfaces, motion] = [Feature::OpenSurfaces, Feature::Motion].map(is_told);
+        Features { media, open_surfaces, nested: nested.is_some(), motion, light_choice }
     }
 }
 

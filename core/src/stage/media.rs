@@ -104,7 +104,7 @@ impl Stage {
     #[inline(always)]
     fn is_filled(&self, placement: u32) -> bool {
         let place = &self.placements[placement as usize];
-        self.features.nested && place.closed && place.bends
+        self.needed.nested && place.closed && place.bends
     }
 
     /// Index of refraction of what lies against a surface of `placement` from outside, where a ray

@@ -42,7 +42,7 @@ pub use analytic::Analytic;
 pub use batch::{Asked, Rooms};
 pub use build::{Built, Unbuilt, build, build_watched};
 pub use eye::{Eye, Seen};
-pub use features::Features;
+pub use features::{Features, Reasons};
 pub use geometry::{Geometry, Mesh};
 pub use kept::Anew;
 pub use lights::{
@@ -90,8 +90,13 @@ pub struct Stage {
     pub sampler: Arc<Object>,
     /// The pixel filter.
     pub filter: Arc<Object>,
-    /// What the scene needs and what is left out.
+    /// What code is chosen by: what is modelled, and what was required from outside, which changes no
+    /// bit.
     pub features: Features,
+    /// What is modelled: what the scene requires and was not dropped.
+    pub needed: Features,
+    /// Who requires what is modelled.
+    pub reasons: Reasons,
     /// Centre and radius of a sphere around everything, metres.
     pub sphere: (DVec3, f64),
     /// Radius about the centre of `sphere` to which what fills the outside reaches, metres.

@@ -13,21 +13,22 @@ use crate::object::Object;
 const MOST_PAIRS: usize = 1 << 20;
 
 /// Finds which placements are closed and which counts where they overlap, as far as that matters:
-/// where there are media, and where refracting shapes lie within each other, which is told.
+/// where there are media, and where refracting shapes lie within each other. Gives two such shapes if
+/// there are any; none of them where they are too many to look at.
 pub(super) fn settle(
     placements: &mut [Placement],
     geometries: &[Arc<Geometry>],
     boxes: &[Box64],
     materials: &[Arc<Object>],
     has_media: bool,
-) -> bool {
+) -> Option<Vec<usize>> {
     for placement in placements.iter_mut() {
         placement.bends = material(placement, materials).is_some_and(Object::bends);
     }
     let is_closed = |placement: &Placement| geometries[placement.geometry as usize].is_closed();
     let nested = may_be_nested(placements, boxes, materials, is_closed);
-    if !has_media && !nested {
-        return false;
+    if !has_media && nested.is_none() {
+        return None;
     }
     for placement in placements.iter_mut() {
         placement.closed = (has_media || placement.bends) && is_closed(placement);
@@ -41,14 +42,14 @@ fn material<'a>(placement: &Placement, materials: &'a [Arc<Object>]) -> Option<&
     Some(&materials[material as usize])
 }
 
-/// Whether a closed refracting shape overlaps another one, or something else to which it matters
-/// what lies around it, as far as boxes tell.
+/// A closed refracting shape that overlaps another one, or something else to which it matters what
+/// lies around it, as far as boxes tell, and that other.
 fn may_be_nested(
     placements: &[Placement],
     boxes: &[Box64],
     materials: &[Arc<Object>],
     is_closed: impl Fn(&Placement) -> bool,
-) -> bool {
+) -> Option<Vec<usize>> {
     let minds = |i: &usize| material(&placements[*i], materials).is_some_and(Object::has_index);
     let mut order: Vec<usize> = (0..placements.len()).filter(minds).collect();
     order.sort_by(|a, b| boxes[*a].0.x.total_cmp(&boxes[*b].0.x));
@@ -57,15 +58,15 @@ fn may_be_nested(
         for &b in order[at + 1..].iter().take_while(|b| boxes[**b].0.x <= boxes[a].1.x) {
             pairs += 1;
             if pairs > MOST_PAIRS {
-                return true;
+                return Some(vec![]);
             }
             let fills = |i: usize| placements[i].bends && is_closed(&placements[i]);
             if overlap(boxes[a], boxes[b]) && (fills(a) || fills(b)) {
-                return true;
+                return Some(vec![a, b]);
             }
         }
     }
-    false
+    None
 }
 
 fn overlap(a: Box64, b: Box64) -> bool {

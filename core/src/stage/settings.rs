@@ -7,7 +7,7 @@ use crate::accel::Precision;
 use crate::cast::whole;
 use crate::film::Layer;
 use crate::registry::Display;
-use crate::scene::{Argument, Node, Value};
+use crate::scene::{Argument, Feature, Node, Scene, Value};
 
 /// How the scene wants colour to be carried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +66,18 @@ impl Film {
     /// When the shutter opens and closes, seconds.
     pub fn during(&self) -> [f64; 2] {
         [self.time, self.time + self.shutter]
+    }
+
+    /// Reads the film of a scene, without what the scene leaves out.
+    pub(super) fn of_scene(scene: &Scene) -> Self {
+        let mut film = Self::of_node(scene.film.map(|id| scene.node(id)));
+        if scene.leaves_out(Feature::Motion) {
+            film.shutter = 0.0;
+        }
+        if scene.leaves_out(Feature::Layers) {
+            film.layers.clear();
+        }
+        film
     }
 
     /// Reads a film node; what it does not give keeps its default. The node fits its schema.

@@ -1,0 +1,109 @@
+//! What features cost: each that a scene does not require, with its code and without; each that it
+//! requires, dropped and not. Pairs are rendered one after the other, first one then the other first.
+
+use std::num::NonZeroUsize;
+use std::time::Instant;
+
+use luxel_core::files::MemoryFiles;
+use luxel_core::film::Film;
+use luxel_core::render::{Control, Options, render};
+use luxel_core::scene::{Feature, Scene};
+use luxel_core::stage::{self, Stage};
+
+use crate::scene::{linked, scene_in};
+use crate::series::Series;
+
+/// Pairs of renders; the first is not counted.
+const PAIRS: usize = 15;
+const SPP: u32 = 16;
+/// Of the pictures, in pixels.
+const SIZE: [u32; 2] = [160, 120];
+
+/// Scenes of the project.
+const SCENES: [(&str, &str); 4] = [
+    ("Cornell box", include_str!("../scenes/cornell_rgb.scene")),
+    ("glass and metal", include_str!("../scenes/glass_metal.scene")),
+    ("fog", include_str!("../../scenes/fog.scene")),
+    ("motion", include_str!("../../scenes/motion.scene")),
+];
+
+/// Prints for each scene and feature the time of the one over that of the other.
+///
+/// # Errors
+/// A scene does not build.
+pub(crate) fn run() -> Result<(), String> {
+    println!(
+        "one thread, {SPP} spp, medians of {} ratios of interleaved pairs, with the middle half",
+        PAIRS - 1
+    );
+    println!("| scene | feature | | ratio | middle half | bits |\n|---|---|---|---|---|---|");
+    for (name, text) in SCENES {
+        let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+        let mut scene = scene_in(&linked(), &files)?;
+        scene.set_resolution(SIZE.into());
+        features(name, &scene)?;
+    }
+    Ok(())
+}
+
+fn features(name: &str, scene: &Scene) -> Result<(), String> {
+    let derived = built(scene)?;
+    println!("| {name} | as derived, twice | | {} |", told(&derived, &built(scene)?));
+    for feature in Feature::ALL {
+        let mut other = scene.clone();
+        let way = if derived.needs(feature) {
+            other.leave_out(feature).map(|()| "used / dropped")
+        } else {
+            other.require(feature).map(|()| "required / left out")
+        };
+        let Ok(way) = way else { continue };
+        let other = built(&other)?;
+        let ratios =
+            if derived.needs(feature) { told(&derived, &other) } else { told(&other, &derived) };
+        println!("| {name} | `{}` | {way} | {ratios} |", feature.name());
+    }
+    Ok(())
+}
+
+fn built(scene: &Scene) -> Result<Stage, String> {
+    let built = stage::build(scene, &linked(), &MemoryFiles::default(), None);
+    built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
+}
+
+/// How much longer one takes than the other: the median, where the middle half lies, and whether the
+/// pictures are the same.
+fn told(one: &Stage, other: &Stage) -> String {
+    let mut ratios = vec![];
+    let mut same = true;
+    for pair in 0..PAIRS {
+        let ((a, seen), (b, shown)) = if pair % 2 == 0 {
+            (timed(one), timed(other))
+        } else {
+            let second = timed(other);
+            (timed(one), second)
+        };
+        same &= bits(&seen).eq(bits(&shown));
+        if pair > 0 {
+            ratios.push(a / b);
+        }
+    }
+    let ratios = Series::from(ratios);
+    let bits = if same { "the same" } else { "others" };
+    let [low, high] = [25, 75].map(|percent| ratios.percentile(percent));
+    format!("{:.3} | {low:.3} to {high:.3} | {bits}", ratios.median())
+}
+
+fn timed(stage: &Stage) -> (f64, Film) {
+    let options = Options { spp: Some(SPP), threads: NonZeroUsize::new(1), ..Options::default() };
+    let start = Instant::now();
+    let (film, _) = render(stage, &options, &Control::default());
+    (start.elapsed().as_secs_f64(), film)
+}
+
+/// Of every number of a picture.
+fn bits(film: &Film) -> impl Iterator<Item = u64> + '_ {
+    film.pixels().flat_map(|(_, pixel)| {
+        let (mean, variance) = (pixel.mean, pixel.variance());
+        [mean, variance].into_iter().flat_map(|it| it.to_array().map(f64::to_bits))
+    })
+}

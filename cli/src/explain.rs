@@ -1,0 +1,187 @@
+//! `luxel explain`: what a scene requires of a render, who requires it, and what is left out.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use luxel_core::diag::{Sources, Span};
+use luxel_core::scene::{Feature, NodeId, called};
+use luxel_core::stage::{ColorChoice, Stage};
+use luxel_lang::CATALOGUE;
+use serde_json::{Value, json};
+
+use crate::args::{LoadArgs, PluginArgs};
+use crate::exit::{Exit, Failure};
+use crate::load::{self, Course, Loaded};
+use crate::report::{self, Form, Stream};
+
+/// Tell what a scene requires of a render, which lines require it, and what is left out
+///
+/// Only what a scene requires is modelled. Each feature that chooses code is listed: required, with
+/// the places that require it, or left out, with the reason; and what --require and --drop change.
+/// A code of a message, as E0402, is explained as well.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "\
+Examples:
+  luxel explain scenes/fog.scene
+  luxel explain scenes/motion.scene --drop motion
+  luxel explain scenes/cornell.scene --json
+  luxel explain E0402")]
+pub(crate) struct Args {
+    /// The scene, or the code of a message
+    #[arg(value_name = "SCENE|CODE")]
+    file: PathBuf,
+    /// One JSON object on standard output
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    load: LoadArgs,
+    #[command(flatten)]
+    plugins: PluginArgs,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    if let Some((code, title)) = code(&args.file)? {
+        let told = json!({ "code": code, "title": title });
+        report::out(&if args.json { format!("{told}\n") } else { format!("{code}: {title}\n") })?;
+        return Ok(Exit::Fine);
+    }
+    let plugins = load::registry(&args.plugins)?;
+    let form = if args.json { Form::Json } else { Form::Text };
+    plugins.notes.tell(form, Stream::Error)?;
+    let loaded = load::load(&args.file, &args.load, None, &plugins, &Course::default())?;
+    report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
+    let Loaded { stage: Some(stage), sources, .. } = &loaded else { return Ok(Exit::Input) };
+    report::out(&if args.json {
+        format!("{}\n", object(&args.file, stage, sources))
+    } else {
+        text(&args.file, stage, sources)
+    })?;
+    Ok(Exit::Fine)
+}
+
+/// The message that is meant, if what was given is no file but looks like a code.
+fn code(given: &Path) -> Result<Option<(&'static str, &'static str)>, Failure> {
+    let word = given.to_str().unwrap_or_default().to_uppercase();
+    let digits = word.strip_prefix('E').unwrap_or_default();
+    if digits.len() != 4 || !digits.bytes().all(|byte| byte.is_ascii_digit()) || given.exists() {
+        return Ok(None);
+    }
+    match CATALOGUE.iter().find(|(code, _)| *code == word) {
+        Some(found) => Ok(Some(*found)),
+        None => Err(Failure::new(Exit::Input, format!("no message has the code {word}"))),
+    }
+}
+
+/// Places that are shown of one feature.
+const MOST: usize = 8;
+
+fn text(file: &Path, stage: &Stage, sources: &Sources) -> String {
+    let mut page = format!("{} requires\n", file.display());
+    let (needed, rest): (Vec<_>, Vec<_>) =
+        Feature::ALL.into_iter().partition(|feature| stage.needs(*feature));
+    if needed.is_empty() {
+        page.push_str("  none of the features below\n");
+    }
+    for feature in needed {
+        let reasons: Vec<_> = stage.reasons.of(feature).collect();
+        page.extend(["  ", feature.name(), "\n"]);
+        for (id, span) in reasons.iter().take(MOST) {
+            let name = called(stage.scene.node(*id));
+            page.extend(["      ", &place(*span, sources), "  ", &name, "\n"]);
+        }
+        if reasons.len() > MOST {
+            page.extend(["      and ", &(reasons.len() - MOST).to_string(), " more\n"]);
+        }
+        if reasons.is_empty() {
+            page.extend(["      ", UNTOLD, "\n"]);
+        }
+    }
+    page.push_str("left out\n");
+    for feature in rest {
+        page.extend(["  ", &format!("{:14}", feature.name()), &absence(stage, feature), "\n"]);
+    }
+    let [shapes, materials, lights, media] = counts(stage);
+    let _ = writeln!(
+        page,
+        "{shapes} shapes in their places, {materials} materials, {lights} lights, {media} media"
+    );
+    page
+}
+
+/// What is said where shapes are too many to tell which of them lie within each other.
+const UNTOLD: &str = "refracting shapes are too many to tell whether they overlap";
+
+/// Why a feature is left out, and whether its code runs all the same.
+fn absence(stage: &Stage, feature: Feature) -> String {
+    if stage.scene.leaves_out(feature) {
+        return format!("dropped: {}", feature.dropped().unwrap_or_default());
+    }
+    let why = match (feature, stage.film.color) {
+        (Feature::Spectral, ColorChoice::Rgb) => "the film asks for RGB",
+        _ => feature.absent(),
+    };
+    if stage.has(feature) { format!("{why}; its code runs all the same") } else { why.to_owned() }
+}
+
+/// `a.scene:3:5`, or where else it was asked for.
+fn place(span: Span, sources: &Sources) -> String {
+    if span.range().is_empty() {
+        return "the command line".to_owned();
+    }
+    let at = sources.line_column(span.source, span.start as usize);
+    format!("{}:{}:{}", sources.name(span.source), at.line, at.column)
+}
+
+/// Shapes in their places, materials, lights and media.
+fn counts(stage: &Stage) -> [usize; 4] {
+    let lights = stage.lights.len();
+    [stage.placements.len(), stage.materials.len(), lights, stage.media.len()]
+}
+
+fn object(file: &Path, stage: &Stage, sources: &Sources) -> Value {
+    let by = |(id, span): (NodeId, Span)| {
+        let is_written = !span.range().is_empty();
+        let at = is_written.then(|| sources.line_column(span.source, span.start as usize));
+        json!({
+            "node": called(stage.scene.node(id)),
+            "file": is_written.then(|| sources.name(span.source)),
+            "line": at.map(|at| at.line),
+            "column": at.map(|at| at.column),
+        })
+    };
+    let feature = |feature: Feature| {
+        let is_needed = stage.needs(feature);
+        json!({
+            "name": feature.name(),
+            "required": is_needed,
+            "compiled_in": stage.has(feature),
+            "dropped": stage.scene.leaves_out(feature),
+            "by": stage.reasons.of(feature).filter(|_| is_needed).map(by).collect::<Vec<_>>(),
+            "why_not": (!is_needed).then(|| absence(stage, feature)),
+        })
+    };
+    let [shapes, materials, lights, media] = counts(stage);
+    json!({
+        "scene": file,
+        "features": Feature::ALL.map(feature),
+        "shapes": shapes,
+        "materials": materials,
+        "lights": lights,
+        "media": media,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_told_from_files_and_unknown_ones_are_refused() {
+        let found = |word: &str| code(Path::new(word)).map_err(|failure| failure.message);
+        assert_eq!(found("e0402"), Ok(Some(("E0402", "an unknown parameter"))));
+        assert_eq!(found("E9999"), Err("no message has the code E9999".to_owned()));
+        for file in ["a.scene", "E0402.scene", "E04", "fog", "E040é"] {
+            assert_eq!(found(file), Ok(None), "{file}");
+        }
+    }
+}

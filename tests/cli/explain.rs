@@ -1,0 +1,92 @@
+//! `luxel explain`, `--require` and `--drop` as a person meets them.
+
+use super::program::{Folder, SCENE};
+
+const GHOST: &str = "shape sphere \"ghost\" { radius = 2 m, interior = medium homogeneous { sigma_t = 0.1 / (1 m), albedo = 0.5 } }\n";
+
+fn foggy() -> String {
+    format!("{SCENE}{GHOST}")
+}
+
+#[test]
+fn a_page_tells_who_requires_what_and_why_the_rest_is_left_out() {
+    let folder = Folder::new("explain").with("a.scene", &foggy());
+    let done = folder.luxel(&["explain", "a.scene"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    let line = SCENE.lines().count() + 1;
+    for part in [
+        "  media\n      a.scene:",
+        &format!("  open_surfaces\n      a.scene:{line}:1  sphere \"ghost\"\n"),
+        "  spectral      the film asks for RGB\n",
+        "  motion        nothing moves while the shutter is open\n",
+        "2 shapes in their places, 1 materials, 1 lights, 1 media\n",
+    ] {
+        assert!(done.out.contains(part), "{part} in {}", done.out);
+    }
+    let plain = Folder::new("explain-plain").with("a.scene", SCENE);
+    let done = plain.luxel(&["explain", "a.scene", "--require", "motion"]);
+    assert!(done.out.contains("none of the features below"), "{done:?}");
+    assert!(done.out.contains("shutter is open; its code runs all the same"), "{done:?}");
+}
+
+#[test]
+fn json_tells_the_same_with_lines_and_what_was_dropped() {
+    let folder = Folder::new("explain-json").with("a.scene", &foggy());
+    let done = folder.luxel(&["explain", "a.scene", "--json", "--aov", "depth", "--drop", "media"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    let of = |name: &str| {
+        let features = told["features"].as_array().unwrap();
+        features.iter().find(|it| it["name"] == name).unwrap().clone()
+    };
+    assert_eq!(of("media")["required"], false);
+    assert_eq!(of("media")["why_not"], "dropped: there is vacuum between surfaces");
+    assert_eq!((&of("open_surfaces")["compiled_in"], &told["shapes"]), (&false.into(), &1.into()));
+    assert_eq!(
+        (&of("layers")["required"], &of("layers")["by"][0]["line"]),
+        (&true.into(), &serde_json::Value::Null)
+    );
+    let whole = folder.luxel(&["explain", "a.scene", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&whole.out).unwrap();
+    let by = &told["features"][2]["by"][0];
+    assert_eq!((&by["file"], &by["node"]), (&"a.scene".into(), &"sphere \"ghost\"".into()));
+    assert_eq!(by["line"], SCENE.lines().count() + 1);
+}
+
+#[test]
+fn a_code_is_explained_and_what_is_neither_is_refused() {
+    let folder = Folder::new("explain-code");
+    let done = folder.luxel(&["explain", "E0402"]);
+    assert_eq!((done.code, &*done.out), (0, "E0402: an unknown parameter\n"), "{done:?}");
+    let unknown = folder.luxel(&["explain", "E9999"]);
+    assert_eq!(unknown.code, 1, "{unknown:?}");
+    assert!(unknown.err.contains("no message has the code E9999"), "{unknown:?}");
+    assert_eq!(folder.luxel(&["explain", "none.scene"]).code, 1);
+}
+
+#[test]
+fn required_features_change_no_byte_and_dropped_ones_are_told() {
+    let folder = Folder::new("require-drop").with("a.scene", &foggy());
+    let all = "media,open_surfaces,nested,motion,light_choice";
+    for (name, more) in [("plain", vec![]), ("all", vec!["--require", all])] {
+        let done = folder.luxel(&[&["render", "a.scene", "-q", "-o", name][..], &more].concat());
+        assert_eq!((done.code, &*done.out), (0, ""), "{done:?}");
+    }
+    assert_eq!(folder.read("plain.exr"), folder.read("all.exr"));
+    let done = folder.luxel(&["render", "a.scene", "--drop", "media", "-o", "less"]);
+    let told = "`media` was dropped: there is vacuum between surfaces\n";
+    assert!(done.code == 0 && done.out.ends_with(told), "{done:?}");
+    let note = br#""dropped":["media"]"#;
+    let says = |name: &str| folder.read(name).windows(note.len()).any(|part| part == note);
+    assert!(says("less.exr") && !says("plain.exr"));
+    for (words, why) in [
+        (vec!["--drop", "light_choice"], "the light of the others would be missing"),
+        (vec!["--require", "spectral"], "film spectral"),
+        (vec!["--require", "fog"], "expected some of spectral, media"),
+        (vec!["--require", "motion", "--drop", "motion"], "both required and dropped"),
+    ] {
+        let done = folder.luxel(&[&["render", "a.scene"][..], &words].concat());
+        assert_eq!(done.code, 2, "{done:?}");
+        assert!(done.err.contains(why), "{why}: {done:?}");
+    }
+}

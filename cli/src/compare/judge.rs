@@ -8,7 +8,7 @@
 use glam::UVec2;
 use luxel_core::film::Rect;
 
-use super::pair::Pair;
+use super::pair::{Pair, doubt};
 use super::student::Quantiles;
 use super::welch::{Sums, Tested};
 
@@ -82,7 +82,7 @@ pub(super) fn judge(pair: &Pair, alpha: f64) -> Judged {
     for rect in cut(pair.window) {
         let mut sums = Sums::default();
         for pixel in rect.points().map(|at| pair.pixel(at)) {
-            if pixel.iter().all(|value| value.is_measured() && value.rgb.is_finite()) {
+            if doubt(&pixel).is_none() {
                 sums.add(pixel);
                 whole.add(pixel);
             }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::judge::{Judged, POWER, family};
 use super::numbers::Numbers;
-use super::pair::Pair;
+use super::pair::{self, Doubt, LEAST_SAMPLES, Pair};
 
 /// What a comparison comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -99,10 +99,7 @@ fn unknown(pair: &Pair, judged: &Judged, bias: f64) -> Vec<String> {
     if !why.is_empty() {
         return why;
     }
-    let missing = pair.window.area() - judged.measured;
-    if missing > 0 {
-        why.push(format!("{missing} pixels do not say how wrong they are: it takes two samples"));
-    }
+    why.extend(left_out(pair));
     let seen = judged.detectable.whole;
     // Without a mean nothing is relative to it.
     if !(seen <= bias) {
@@ -113,6 +110,21 @@ fn unknown(pair: &Pair, judged: &Judged, bias: f64) -> Vec<String> {
         ));
     }
     why
+}
+
+/// The pixels that no test takes in, by the reason.
+fn left_out(pair: &Pair) -> Vec<String> {
+    let few = format!("have too few samples: it takes {LEAST_SAMPLES} to know how wrong they are");
+    let doubts = [
+        (Doubt::NotFinite, "are finite in neither picture"),
+        (Doubt::FewSamples, &few),
+        (Doubt::NoError, "do not say how wrong they are"),
+    ];
+    let told = |(doubt, what): (Doubt, &str)| {
+        let n = pair.pixels().filter(|pixel| pair::doubt(pixel) == Some(doubt)).count();
+        (n > 0).then(|| format!("{n} pixels {what}"))
+    };
+    doubts.into_iter().filter_map(told).collect()
 }
 
 /// A probability.
@@ -194,16 +206,28 @@ mod tests {
     }
 
     #[test]
-    fn a_denoised_picture_and_pixels_of_one_sample_leave_it_open() {
+    fn a_denoised_picture_and_pixels_of_few_samples_leave_it_open() {
         let Pair { a, mut b, .. } = pair(1.0001, 0.02);
         b.notes = serde_json::json!({ "denoised": true });
         let denoised = Pair::new(a, b).unwrap();
         let (word, why) = verdict(&denoised);
         assert!(word == Word::Inconclusive && why.contains("B is denoised"), "{why}");
         let mut early = pair(1.0001, 0.02);
-        early.b.n[7] = 1;
+        (early.b.n[7], early.a.n[8]) = (15, 1);
         let (word, why) = verdict(&early);
-        assert!(word == Word::Inconclusive && why.contains("1 pixels do not say"), "{why}");
+        assert!(word == Word::Inconclusive && why.contains("2 pixels have too few"), "{why}");
+        assert!(!why.contains("finite") && !why.contains("do not say"), "{why}");
+    }
+
+    #[test]
+    fn pixels_that_no_test_takes_in_are_told_by_the_reason() {
+        let mut pair = pair(1.0001, 0.02);
+        (pair.a.rgb[0], pair.b.rgb[1]) = (f32::NAN, f32::INFINITY);
+        pair.a.se[30] = f32::INFINITY;
+        let (word, why) = verdict(&pair);
+        assert!(word == Word::Inconclusive && !why.contains("samples:"), "{why}");
+        assert!(why.contains("1 pixels are finite in neither"), "{why}");
+        assert!(why.contains("1 pixels do not say how wrong"), "{why}");
     }
 
     #[test]

@@ -101,8 +101,12 @@ fn unknown(pair: &Pair, judged: &Judged, bias: f64) -> Vec<String> {
     }
     why.extend(left_out(pair));
     let seen = judged.detectable.whole;
-    // Without a mean nothing is relative to it.
-    if !(seen <= bias) {
+    if !seen.is_finite() {
+        why.push(
+            "no difference was found, and no bias is relative to a mean that is not known or 0"
+                .into(),
+        );
+    } else if seen > bias {
         let (seen, power, bias) = (percent(seen), percent(POWER), percent(bias));
         why.push(format!(
             "no difference was found, but a bias below {seen} of the mean would not have been with \
@@ -132,11 +136,11 @@ pub(super) fn chance(p: f64) -> String {
     if p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.1e}") }
 }
 
-/// Three digits.
+/// Three digits, or a dash for what is not known.
 pub(super) fn percent(x: f64) -> String {
     let x = x * 100.0;
     match x.abs() {
-        a if !a.is_finite() => "an unknown share".into(),
+        a if !a.is_finite() => "–".into(),
         a if a >= 100.0 => format!("{x:.0} %"),
         a if a >= 10.0 => format!("{x:.1} %"),
         a if a >= 1.0 || a <= 0.0 => format!("{x:.2} %"),
@@ -178,6 +182,18 @@ mod tests {
         let (word, why) = verdict(&pair(1.01, 0.02));
         assert_eq!(word, Word::Different);
         assert!(why.contains("the means differ"), "{why}");
+    }
+
+    #[test]
+    fn two_black_pictures_have_no_mean_to_be_relative_to() {
+        let mut black = pair(0.0, 0.0);
+        black.b.rgb.fill(0.0);
+        black.a.rgb[0] = -0.0;
+        let (word, why) = verdict(&black);
+        assert_eq!(word, Word::Inconclusive);
+        assert!(why.contains("not known or 0"), "{why}");
+        let judged = judge(&black, LIMITS.alpha);
+        assert!(judged.whole_p >= 1.0 && judged.least.is_none());
     }
 
     #[test]
@@ -235,6 +251,6 @@ mod tests {
         let told = [2.5, 0.12345, 0.0123, 0.000123, 1e-9, 0.0, f64::INFINITY].map(percent);
         let expected = ["250 %", "12.3 %", "1.23 %", "0.0123 %", "1.0e-7 %", "0.00 %"];
         assert_eq!(told[..6], expected);
-        assert_eq!(told[6], "an unknown share");
+        assert_eq!(told[6], "–");
     }
 }

@@ -10,6 +10,7 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use crate::exit::{Exit, Failure};
+use crate::interrupt::Guard;
 use crate::output::Output;
 use crate::picture::{self, Picture, Plane};
 use crate::report;
@@ -43,6 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let stem = args.output.clone().unwrap_or_else(|| beside(&args.file));
     let output = Output::choose(Some(&stem), None, &stem)?;
     output.keep(&args.file)?;
+    let guard = Guard::of_files()?;
     let picture = Picture::open(&args.file)?;
     refuse(&picture, &args.file)?;
     let noisy = noisy(&picture);
@@ -62,6 +64,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = picture.settings();
     let scale = picture::scale(settings.exposure);
     let shown = smooth.iter().map(|rgb| picture::show(rgb.as_dvec3() * scale, settings.display));
+    let _whole = guard.saving();
     picture::write_both(
         &output,
         |to| picture::write_planes(to, place, planes, &notes),

@@ -91,6 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     tell(args, &rows, done.as_ref().map_or(0, |untested| *untested))?;
     if let (Some(path), Ok(_)) = (&args.write, &done) {
+        let _whole = run.guard.saving();
         published::write(path, &rows)?;
     }
     let holds = rows.iter().all(|row| row.verdict == Verdict::Holds);

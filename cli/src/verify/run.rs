@@ -34,6 +34,8 @@ pub(super) struct Run {
     pub(super) plugins: Plugins,
     /// Samples, seed and threads, where the command line says them.
     pub(super) options: Options,
+    /// Keeps an interrupt from what is being written.
+    pub(super) guard: Guard,
     stop: Arc<Stop>,
 }
 
@@ -48,12 +50,13 @@ impl Run {
     pub(super) fn new(plugins: Plugins, options: Options) -> Result<Self, Failure> {
         let stop = Arc::<Stop>::default();
         let heard = stop.clone();
-        Guard::default().on_ctrl_c(move || {
+        let guard = Guard::default();
+        guard.on_ctrl_c(move || {
             heard.pressed.store(true, Ordering::Relaxed);
             heard.watch.cancel();
             heard.control().cancel();
         })?;
-        Ok(Self { plugins, options, stop })
+        Ok(Self { plugins, options, guard, stop })
     }
 
     /// How scenes are read and made ready.

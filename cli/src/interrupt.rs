@@ -21,6 +21,9 @@ const LEAVE: Duration = Duration::from_millis(200);
 pub(crate) const CANCELLED: &str =
     "interrupted before anything was measured: no picture was written";
 
+/// What is told while files are being written.
+const ONE_MOMENT: &str = "the picture is being written: one moment";
+
 /// What an interrupt runs.
 pub(crate) type Interrupt = Arc<dyn Fn() + Send + Sync>;
 
@@ -108,6 +111,18 @@ impl Guard {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Of a command that has nothing to save before it writes its files: until then an interrupt leaves
+    /// at once, and from then on it waits until they are whole.
+    ///
+    /// # Errors
+    /// If the system refuses the handler.
+    pub(crate) fn of_files() -> Result<Self, Failure> {
+        let guard = Self::default();
+        guard.loading(&Arc::default());
+        guard.on_ctrl_c(|| report::note(ONE_MOMENT))?;
+        Ok(guard)
+    }
+
     /// The picture is about to be written.
     pub(crate) fn saving(&self) -> Saving<'_> {
         let mut state = self.state();
@@ -155,7 +170,7 @@ impl Guard {
                     std::thread::sleep(LEAVE);
                     leave(CANCELLED);
                 }
-                Answer::Wait => report::note("the picture is being written: one moment"),
+                Answer::Wait => report::note(ONE_MOMENT),
                 Answer::GiveUp(word) => leave(word),
             }
         });
@@ -202,6 +217,16 @@ mod tests {
         assert!(lost(after(9), "lost"));
         guard.loading(&Arc::default());
         assert_eq!(after(0), Answer::Leave);
+    }
+
+    #[test]
+    fn a_command_that_writes_at_its_end_is_left_before_and_not_while_it_writes() {
+        let (guard, now) = (Guard::default(), Instant::now());
+        guard.loading(&Arc::default());
+        assert_eq!(guard.state().answer(now), Answer::Leave);
+        let _whole = guard.saving();
+        assert_eq!(guard.state().answer(now), Answer::First);
+        assert_eq!(guard.state().answer(now + SAME), Answer::Wait);
     }
 
     #[test]

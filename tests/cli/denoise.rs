@@ -23,8 +23,14 @@ fn a_denoised_picture_stands_beside_the_measured_one_and_gets_no_verdict() {
 
 #[test]
 fn a_picture_that_says_nothing_of_its_error_is_not_denoised() {
-    let folder = Folder::new("denoise-foreign").with("text.exr", "no picture");
-    let done = folder.luxel(&["denoise", "text.exr"]);
-    assert!(done.code == 1 && done.err.contains("cannot read the picture"), "{done:?}");
-    assert_eq!(folder.names(), ["text.exr"]);
+    let folder = Folder::new("denoise-foreign").with("a.scene", SCENE);
+    assert_eq!(folder.luxel(&["render", "a.scene", "-q"]).code, 0);
+    assert_eq!(folder.luxel(&["denoise", "a.exr"]).code, 0);
+    // A difference from a denoised picture has no standard errors.
+    let compared = ["compare", "a-denoised.exr", "a.exr", "--picture", "plain"];
+    assert_eq!(folder.luxel(&compared).code, 3);
+    let before = folder.names();
+    let done = folder.luxel(&["denoise", "plain.exr"]);
+    assert!(done.code == 1 && done.err.contains("does not say how wrong it is"), "{done:?}");
+    assert_eq!(folder.names(), before);
 }

@@ -47,6 +47,16 @@ fn what_is_said_of_the_whole_of_pixels_and_of_parts_holds() {
 }
 
 #[test]
+fn a_scene_that_cannot_be_tested_is_told_at_the_end() {
+    let folder = Folder::new("verify-untested").with("a.scene", &white("expect mean = 1"));
+    folder.write("b.scene", "scene 1\ncamera none {}\n");
+    let done = folder.luxel(&["verify", "a.scene", "b.scene"]);
+    assert_eq!(done.code, 1, "{done:?}");
+    let end = "hold; 1 of 2 scenes could not be tested\n";
+    assert!(done.out.ends_with(end), "{}", done.out);
+}
+
+#[test]
 fn what_does_not_hold_is_told_with_its_line_and_exit_code_1() {
     let done = verify("expect mean = 1\nexpect pixel (0, 0) = (1, 1.1, 1) ± 0.05", &[]);
     assert_eq!(done.code, 1, "{done:?}");

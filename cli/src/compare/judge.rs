@@ -8,7 +8,7 @@
 use glam::UVec2;
 use luxel_core::film::Rect;
 
-use super::pair::Pair;
+use super::pair::{Pair, doubt};
 use super::student::Quantiles;
 use super::welch::{Sums, Tested};
 
@@ -66,9 +66,9 @@ pub(super) fn share(alpha: f64, n: f64) -> f64 {
     -((-alpha).ln_1p() / n.max(1.0)).exp_m1()
 }
 
-/// Probability that the least of `n` is as small as `p`.
+/// Probability that the least of `n` is as small as `p`; 1 of none.
 fn corrected(p: f64, n: usize) -> f64 {
-    -(n as f64 * (-p).ln_1p()).exp_m1()
+    if n == 0 { 1.0 } else { -(n as f64 * (-p).ln_1p()).exp_m1() }
 }
 
 /// What a family of tests may err.
@@ -82,7 +82,7 @@ pub(super) fn judge(pair: &Pair, alpha: f64) -> Judged {
     for rect in cut(pair.window) {
         let mut sums = Sums::default();
         for pixel in rect.points().map(|at| pair.pixel(at)) {
-            if pixel.iter().all(|value| value.is_measured() && value.rgb.is_finite()) {
+            if doubt(&pixel).is_none() {
                 sums.add(pixel);
                 whole.add(pixel);
             }
@@ -177,6 +177,8 @@ mod tests {
     fn shares_of_alpha_make_it_up_again() {
         let one = share(0.01, 4096.0);
         assert!((corrected(one, 4096) / 0.01 - 1.0).abs() < 1e-9);
+        // Where nothing is random, nothing is tested.
+        assert!(corrected(1.0, 0) >= 1.0 && corrected(1.0, 4) >= 1.0);
         assert!((1.0 - (1.0 - family(0.01)).powi(3) - 0.01).abs() < 1e-12);
     }
 

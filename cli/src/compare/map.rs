@@ -22,7 +22,7 @@ pub(super) fn legend(judged: &Judged) -> String {
     } else {
         format!("in each pixel by {} % of B's luminance or more", MOST_RELATIVE * 100.0)
     };
-    format!("blue: A is darker, red: A is brighter, deepest {of}; black: not finite")
+    format!("blue: A is darker, red: A is brighter, deepest {of}; black: not known")
 }
 
 /// Draws the map as a PNG.
@@ -66,7 +66,7 @@ fn colour(x: f64) -> DVec3 {
 }
 
 /// Writes A − B as an EXR: R, G, B, the standard errors of the difference, and `Z`, the tile's
-/// difference of luminance in standard errors.
+/// difference of luminance in standard errors, no number where that is not known.
 ///
 /// # Errors
 /// The writer's.
@@ -83,7 +83,7 @@ pub(super) fn write_exr(to: impl Write + Seek, pair: &Pair, judged: &Judged) -> 
         }
     }
     if judged.measured > 0 {
-        let mut z = vec![0.0; pair.window.area()];
+        let mut z = vec![f32::NAN; pair.window.area()];
         for tile in &judged.tiles {
             for at in tile.rect.points() {
                 let from = at - pair.window.min;
@@ -97,4 +97,35 @@ pub(super) fn write_exr(to: impl Write + Seek, pair: &Pair, judged: &Judged) -> 
     }
     let notes = serde_json::json!({ "luxel": env!("CARGO_PKG_VERSION"), "difference": true });
     picture::write_planes(to, (pair.a.size, pair.window), planes, &notes.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use luxel_core::film::Rect;
+
+    use super::*;
+    use crate::compare::judge::judge;
+    use crate::compare::pair::tests::flat;
+    use crate::picture::Picture;
+
+    #[test]
+    fn a_tile_without_a_measured_pixel_is_not_known() {
+        let (size, window) = (UVec2::new(16, 8), Rect::new(UVec2::ZERO, UVec2::new(16, 8)));
+        let mut a = flat(size, window, 1.0, 0.1);
+        for y in 0..8 {
+            a.n[y * 16 + 8..y * 16 + 16].fill(1);
+        }
+        let pair = Pair::new(a, flat(size, window, 1.0, 0.1)).unwrap();
+        let judged = judge(&pair, 0.01);
+        assert!(legend(&judged).ends_with("black: not known"));
+        let mut file = Cursor::new(vec![]);
+        write_exr(&mut file, &pair, &judged).unwrap();
+        file.set_position(0);
+        let found = Picture::read(file).unwrap();
+        let z = found.others.iter().find(|(name, _)| name == "Z").unwrap();
+        let Plane::Floats(z) = &z.1 else { panic!("Z is no plane of floats") };
+        assert!(z.iter().enumerate().all(|(i, z)| z.is_nan() == (i % 16 >= 8)), "{z:?}");
+    }
 }

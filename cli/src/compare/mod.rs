@@ -16,6 +16,7 @@ mod welch;
 use std::path::{Path, PathBuf};
 
 use crate::exit::{Exit, Failure};
+use crate::interrupt::Guard;
 use crate::output::Output;
 use crate::picture::{self, Picture};
 use crate::report;
@@ -71,6 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             output.keep(read)?;
         }
     }
+    let guard = Guard::of_files()?;
     let pair = Pair::new(Picture::open(&args.a)?, Picture::open(&args.b)?)?;
     let limits = Limits { alpha: args.alpha, bias: args.bias };
     let (numbers, judged) = (Numbers::of(&pair), judge::judge(&pair, limits.alpha));
@@ -80,6 +82,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let told = Told { names, pair: &pair, numbers, flip, judged, limits, verdict };
     let mut text = if args.json { format!("{}\n", told.json()) } else { told.text() };
     if let Some(output) = &output {
+        let _whole = guard.saving();
         picture::write_both(
             output,
             |to| map::write_exr(to, &pair, &told.judged),

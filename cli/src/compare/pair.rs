@@ -14,6 +14,17 @@ pub(super) struct Pair {
     pub(super) window: Rect,
 }
 
+/// Fewer samples may all be equal by chance alone, and their standard error says nothing.
+pub(super) const LEAST_SAMPLES: u32 = 16;
+
+/// Why a pixel is not judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Doubt {
+    NotFinite,
+    FewSamples,
+    NoError,
+}
+
 /// A pixel of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Value {
@@ -37,10 +48,21 @@ impl Value {
         }
     }
 
-    /// Whether it says how wrong it may be.
-    pub(super) fn is_measured(&self) -> bool {
-        self.n >= 2 && self.se.is_finite() && self.se.cmpge(DVec3::ZERO).all()
+    /// Why it does not say how wrong it may be; nothing if it does.
+    fn doubt(&self) -> Option<Doubt> {
+        let has_error = self.se.is_finite() && self.se.cmpge(DVec3::ZERO).all();
+        match self {
+            _ if !self.rgb.is_finite() => Some(Doubt::NotFinite),
+            _ if self.n < LEAST_SAMPLES => Some(Doubt::FewSamples),
+            _ if !has_error => Some(Doubt::NoError),
+            _ => None,
+        }
     }
+}
+
+/// Why a pixel of two pictures is not judged by; nothing if it is.
+pub(super) fn doubt(pixel: &[Value; 2]) -> Option<Doubt> {
+    pixel.iter().find_map(Value::doubt)
 }
 
 impl Pair {

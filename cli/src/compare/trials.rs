@@ -26,12 +26,25 @@ const SCENE: &str = "scene 1
     shape sphere { center = (0, 0.5, 0) m, radius = 50 cm, material = material diffuse { reflectance = rho } }
     shape plane { point = (0, 0, 0) m, normal = (0, 1, 0), material = material diffuse { reflectance = 0.8 } }";
 
-fn stage(rho: &str) -> Stage {
+/// A ball of 0.4 pixels in the middle of each 8 × 8 tile, black before a sky of 1: half of the samples of
+/// one pixel in 64 meet it, and nothing else is random.
+const DOTS: &str = "scene 1
+    param rho: float = 0.5
+    camera orthographic { look = look_at(from = (0, 0, 10) m, to = (0, 0, 0) m, up = (0, 1, 0)), height = 64 m }
+    film rgb { resolution = (64, 64) }
+    sampler independent { samples = 16 }
+    integrator path {}
+    light constant { scale = 1 }
+    for y in 0..8 { for x in 0..8 {
+        shape sphere { center = (8 * x - 28.5, 8 * y - 28.5, 0) m, radius = 40 cm, material = material diffuse { reflectance = 0 } }
+    } }";
+
+fn stage(scene: &str, rho: &str) -> Stage {
     let mut registry = Registry::new();
     for classes in luxel_builtin::CLASSES {
         registry.add("builtin", classes).unwrap();
     }
-    let files = MemoryFiles::default().with("a.scene", SCENE.as_bytes());
+    let files = MemoryFiles::default().with("a.scene", scene.as_bytes());
     let settings =
         luxel_lang::Settings { set: vec![("rho".into(), rho.into())], ..Default::default() };
     let loaded = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
@@ -78,7 +91,7 @@ fn least(n: u32, p: f64) -> u32 {
 
 /// Which of two renders of each trial differ: of the same scene, and of one with another reflectance.
 fn words(rho: &str, spp: u32) -> Vec<(Word, f64)> {
-    let (a, b) = (stage(rho), stage("0.5"));
+    let (a, b) = (stage(SCENE, rho), stage(SCENE, "0.5"));
     let trial = |seed| {
         let (word, seen, _) = verdict(picture(&a, seed, spp), picture(&b, seed + 100_000, spp));
         (word, seen)
@@ -96,9 +109,20 @@ fn two_seeds_of_one_scene_are_the_same() {
 }
 
 #[test]
+fn samples_that_are_equal_by_chance_make_no_difference() {
+    let dots = stage(DOTS, "0.5");
+    for (spp, expected) in [(8, Word::Inconclusive), (16, Word::Same)] {
+        let word = |seed| verdict(picture(&dots, seed, spp), picture(&dots, seed + 100_000, spp)).0;
+        let words: Vec<_> = (0..trials()).map(word).collect();
+        println!("{spp} {words:?}");
+        assert!(words.iter().all(|word| *word == expected), "{spp}: {words:?}");
+    }
+}
+
+#[test]
 fn a_bias_of_a_hundredth_in_one_material_is_found_with_the_stated_power() {
     // Equal seeds: nearly all of the noise is common, and what is left is the bias.
-    let (brighter, plain) = (stage("0.505"), stage("0.5"));
+    let (brighter, plain) = (stage(SCENE, "0.505"), stage(SCENE, "0.5"));
     let (_, _, bias) = verdict(picture(&brighter, 1, 256), picture(&plain, 1, 256));
     let words = words("0.505", 48);
     let seen = words.iter().map(|(_, seen)| *seen).fold(0.0, f64::max);

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::judge::{Judged, POWER, family};
 use super::numbers::Numbers;
-use super::pair::Pair;
+use super::pair::{self, Doubt, LEAST_SAMPLES, Pair};
 
 /// What a comparison comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -99,13 +99,14 @@ fn unknown(pair: &Pair, judged: &Judged, bias: f64) -> Vec<String> {
     if !why.is_empty() {
         return why;
     }
-    let missing = pair.window.area() - judged.measured;
-    if missing > 0 {
-        why.push(format!("{missing} pixels do not say how wrong they are: it takes two samples"));
-    }
+    why.extend(left_out(pair));
     let seen = judged.detectable.whole;
-    // Without a mean nothing is relative to it.
-    if !(seen <= bias) {
+    if !seen.is_finite() {
+        why.push(
+            "no difference was found, and no bias is relative to a mean that is not known or 0"
+                .into(),
+        );
+    } else if seen > bias {
         let (seen, power, bias) = (percent(seen), percent(POWER), percent(bias));
         why.push(format!(
             "no difference was found, but a bias below {seen} of the mean would not have been with \
@@ -115,16 +116,31 @@ fn unknown(pair: &Pair, judged: &Judged, bias: f64) -> Vec<String> {
     why
 }
 
+/// The pixels that no test takes in, by the reason.
+fn left_out(pair: &Pair) -> Vec<String> {
+    let few = format!("have too few samples: it takes {LEAST_SAMPLES} to know how wrong they are");
+    let doubts = [
+        (Doubt::NotFinite, "are finite in neither picture"),
+        (Doubt::FewSamples, &few),
+        (Doubt::NoError, "do not say how wrong they are"),
+    ];
+    let told = |(doubt, what): (Doubt, &str)| {
+        let n = pair.pixels().filter(|pixel| pair::doubt(pixel) == Some(doubt)).count();
+        (n > 0).then(|| format!("{n} pixels {what}"))
+    };
+    doubts.into_iter().filter_map(told).collect()
+}
+
 /// A probability.
 pub(super) fn chance(p: f64) -> String {
     if p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.1e}") }
 }
 
-/// Three digits.
+/// Three digits, or a dash for what is not known.
 pub(super) fn percent(x: f64) -> String {
     let x = x * 100.0;
     match x.abs() {
-        a if !a.is_finite() => "an unknown share".into(),
+        a if !a.is_finite() => "–".into(),
         a if a >= 100.0 => format!("{x:.0} %"),
         a if a >= 10.0 => format!("{x:.1} %"),
         a if a >= 1.0 || a <= 0.0 => format!("{x:.2} %"),
@@ -169,6 +185,18 @@ mod tests {
     }
 
     #[test]
+    fn two_black_pictures_have_no_mean_to_be_relative_to() {
+        let mut black = pair(0.0, 0.0);
+        black.b.rgb.fill(0.0);
+        black.a.rgb[0] = -0.0;
+        let (word, why) = verdict(&black);
+        assert_eq!(word, Word::Inconclusive);
+        assert!(why.contains("not known or 0"), "{why}");
+        let judged = judge(&black, LIMITS.alpha);
+        assert!(judged.whole_p >= 1.0 && judged.least.is_none());
+    }
+
+    #[test]
     fn one_tile_is_enough_to_differ() {
         let mut pair = pair(1.0, 0.02);
         for at in Rect::new(UVec2::new(8, 16), UVec2::splat(8)).points() {
@@ -194,16 +222,28 @@ mod tests {
     }
 
     #[test]
-    fn a_denoised_picture_and_pixels_of_one_sample_leave_it_open() {
+    fn a_denoised_picture_and_pixels_of_few_samples_leave_it_open() {
         let Pair { a, mut b, .. } = pair(1.0001, 0.02);
         b.notes = serde_json::json!({ "denoised": true });
         let denoised = Pair::new(a, b).unwrap();
         let (word, why) = verdict(&denoised);
         assert!(word == Word::Inconclusive && why.contains("B is denoised"), "{why}");
         let mut early = pair(1.0001, 0.02);
-        early.b.n[7] = 1;
+        (early.b.n[7], early.a.n[8]) = (15, 1);
         let (word, why) = verdict(&early);
-        assert!(word == Word::Inconclusive && why.contains("1 pixels do not say"), "{why}");
+        assert!(word == Word::Inconclusive && why.contains("2 pixels have too few"), "{why}");
+        assert!(!why.contains("finite") && !why.contains("do not say"), "{why}");
+    }
+
+    #[test]
+    fn pixels_that_no_test_takes_in_are_told_by_the_reason() {
+        let mut pair = pair(1.0001, 0.02);
+        (pair.a.rgb[0], pair.b.rgb[1]) = (f32::NAN, f32::INFINITY);
+        pair.a.se[30] = f32::INFINITY;
+        let (word, why) = verdict(&pair);
+        assert!(word == Word::Inconclusive && !why.contains("samples:"), "{why}");
+        assert!(why.contains("1 pixels are finite in neither"), "{why}");
+        assert!(why.contains("1 pixels do not say how wrong"), "{why}");
     }
 
     #[test]
@@ -211,6 +251,6 @@ mod tests {
         let told = [2.5, 0.12345, 0.0123, 0.000123, 1e-9, 0.0, f64::INFINITY].map(percent);
         let expected = ["250 %", "12.3 %", "1.23 %", "0.0123 %", "1.0e-7 %", "0.00 %"];
         assert_eq!(told[..6], expected);
-        assert_eq!(told[6], "an unknown share");
+        assert_eq!(told[6], "–");
     }
 }

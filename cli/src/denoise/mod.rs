@@ -10,6 +10,7 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use crate::exit::{Exit, Failure};
+use crate::interrupt::Guard;
 use crate::output::Output;
 use crate::picture::{self, Picture, Plane};
 use crate::report;
@@ -43,6 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let stem = args.output.clone().unwrap_or_else(|| beside(&args.file));
     let output = Output::choose(Some(&stem), None, &stem)?;
     output.keep(&args.file)?;
+    let guard = Guard::of_files()?;
     let picture = Picture::open(&args.file)?;
     refuse(&picture, &args.file)?;
     let noisy = noisy(&picture);
@@ -62,6 +64,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = picture.settings();
     let scale = picture::scale(settings.exposure);
     let shown = smooth.iter().map(|rgb| picture::show(rgb.as_dvec3() * scale, settings.display));
+    let _whole = guard.saving();
     picture::write_both(
         &output,
         |to| picture::write_planes(to, place, planes, &notes),
@@ -109,8 +112,10 @@ fn refuse(picture: &Picture, file: &Path) -> Result<(), Failure> {
 fn noisy(picture: &Picture) -> Noisy {
     let three = |plane: &[f32]| plane.chunks_exact(3).map(Vec3::from_slice).collect::<Vec<_>>();
     let (rgb, se) = (three(&picture.rgb), three(&picture.se));
-    let valid = rgb.iter().zip(&se).map(|(rgb, se)| rgb.is_finite() && se.is_finite()).collect();
-    let variance = se.iter().map(|se| *se * *se).collect();
+    let variance: Vec<_> = se.iter().map(|se| *se * *se).collect();
+    // The square of a finite error may be beyond all floats.
+    let valid = rgb.iter().zip(&variance).map(|(rgb, v)| rgb.is_finite() && v.is_finite());
+    let valid = valid.collect();
     let width = picture.window.size.x as usize;
     Noisy { width, rgb, variance, valid, guide: Guide::of(picture) }
 }
@@ -160,6 +165,16 @@ mod tests {
         assert!(why(&picture).contains("a.exr: it is denoised already"));
         (picture.notes, picture.se) = (Value::Null, vec![]);
         assert!(why(&picture).contains("does not say how wrong it is"));
+    }
+
+    #[test]
+    fn an_error_whose_square_has_no_float_spoils_no_pixel_beside() {
+        let mut picture = grey();
+        picture.se[3] = 1e20;
+        let noisy = noisy(&picture);
+        assert!(!noisy.valid[1] && noisy.valid[0]);
+        let smooth = nlm::smooth(&noisy);
+        assert!(smooth.iter().all(|rgb| rgb.abs_diff_eq(Vec3::ONE, 1e-5)), "{:?}", smooth[1]);
     }
 
     #[test]

@@ -82,15 +82,34 @@ impl Picture {
             return Err("its channels are of different sizes".into());
         }
         let LayerAttributes { layer_position: at, other, .. } = layer.attributes;
-        let min = (glam::IVec2::new(at.0, at.1) - display.1).max(glam::IVec2::ZERO).as_uvec2();
+        let from = glam::IVec2::new(at.0, at.1).as_i64vec2() - display.1.as_i64vec2();
+        let outside = (-from).max(glam::I64Vec2::ZERO).min(extent.as_i64vec2()).as_uvec2();
+        // What lies left of the display window or above it is no part of the picture.
+        let part = Rect::new(outside, extent - outside);
+        if part.area() == 0 {
+            return Err("all of it lies outside of its display window".into());
+        }
+        let min = from.max(glam::I64Vec2::ZERO).as_uvec2();
         let notes = match other.get(&Text::from("luxel")) {
             Some(AttributeValue::Text(text)) => serde_json::from_str(&text.to_string()).ok(),
             _ => None,
         };
-        let window = Rect::new(min, extent);
-        let size = display.0.max(min + extent);
+        let window = Rect::new(min, part.size);
+        let size = display.0.max(min.saturating_add(part.size));
         let n = if n.len() == area { n } else { vec![] };
-        Ok(Self { size, window, rgb, se, n, others, notes: notes.unwrap_or_default() })
+        let others = others.into_iter().map(|(name, plane)| match plane {
+            Plane::Floats(values) => (name, Plane::Floats(cropped(values, extent, part))),
+            Plane::Counts(values) => (name, Plane::Counts(cropped(values, extent, part))),
+        });
+        Ok(Self {
+            size,
+            window,
+            rgb: cropped(rgb, extent, part),
+            se: cropped(se, extent, part),
+            n: cropped(n, extent, part),
+            others: others.collect(),
+            notes: notes.unwrap_or_default(),
+        })
     }
 
     /// Whether its values were smoothed after they were measured; its errors are of before.
@@ -161,6 +180,20 @@ fn interleaved(planes: &[&FlatSamples]) -> Vec<f32> {
     all
 }
 
+/// The values of a part of a picture, as many for each pixel as there are.
+fn cropped<T: Copy>(values: Vec<T>, extent: UVec2, part: Rect) -> Vec<T> {
+    if part.size == extent {
+        return values;
+    }
+    let width = extent.x as usize;
+    let each = values.len() / (width * extent.y as usize);
+    let pixel = |at: UVec2| {
+        let first = (at.y as usize * width + at.x as usize) * each;
+        values[first..first + each].iter().copied()
+    };
+    part.points().flat_map(pixel).collect()
+}
+
 /// The channels that are neither colour nor what is known of its error.
 fn others(list: &[AnyChannel<FlatSamples>]) -> Vec<(String, Plane)> {
     const KNOWN: [&str; 7] = ["R", "G", "B", "SE.R", "SE.G", "SE.B", "N"];
@@ -202,6 +235,33 @@ mod tests {
         let mut file = Cursor::new(vec![]);
         Image::from_layer(layer).write().to_buffered(&mut file).unwrap();
         file.into_inner()
+    }
+
+    #[test]
+    fn what_lies_before_the_display_window_is_cut_off() {
+        let named = |name: &str| {
+            let values = (0..6_u8).map(f32::from).collect();
+            AnyChannel::new(name, FlatSamples::F32(values))
+        };
+        let read = |x, y| {
+            let about =
+                LayerAttributes { layer_position: Vec2(x, y), ..LayerAttributes::default() };
+            let channels = AnyChannels::sort(["R", "G", "B", "Z"].map(named).into_iter().collect());
+            let layer = Layer::new((3, 2), about, Encoding::SMALL_FAST_LOSSLESS, channels);
+            let mut image = Image::from_layer(layer);
+            image.attributes.display_window.position = Vec2(0, 0);
+            let mut file = Cursor::new(vec![]);
+            image.write().to_buffered(&mut file).unwrap();
+            of_bytes(file.get_ref())
+        };
+        let picture = read(-1, -1).unwrap();
+        assert_eq!(picture.window, Rect::new(UVec2::ZERO, UVec2::new(2, 1)));
+        assert_eq!(picture.rgb, [4.0, 4.0, 4.0, 5.0, 5.0, 5.0]);
+        let Plane::Floats(z) = &picture.others[0].1 else { panic!("Z is no plane of floats") };
+        assert_eq!(z[..], [4.0, 5.0]);
+        assert_eq!(read(1, 0).unwrap().window.min, UVec2::new(1, 0));
+        let wrong = read(-3, 0).err().unwrap();
+        assert!(wrong.contains("outside of its display window"), "{wrong}");
     }
 
     fn of_bytes(bytes: &[u8]) -> Result<Picture, String> {

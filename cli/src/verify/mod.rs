@@ -87,15 +87,16 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let run = Run::new(plugins, options)?;
     let mut rows = vec![];
     let done = match args.files.as_slice() {
-        [] => own_truths(args, &run, &mut rows),
+        [] => own_truths(args, &run, &mut rows).map(|()| 0),
         files => scenes(files, args, &run, &mut rows),
     };
-    tell(args, &rows)?;
+    tell(args, &rows, done.as_ref().map_or(0, |untested| *untested))?;
     if let (Some(path), Ok(_)) = (&args.write, &done) {
+        let _whole = run.guard.saving();
         published::write(path, &rows)?;
     }
     let holds = rows.iter().all(|row| row.verdict == Verdict::Holds);
-    Ok(if done? && holds { Exit::Fine } else { Exit::Input })
+    Ok(if done? == 0 && holds { Exit::Fine } else { Exit::Input })
 }
 
 /// One of the program's own scenes with some parameters set, ready.
@@ -106,34 +107,39 @@ pub(crate) fn own_scene(name: &str, set: &[(String, String)], run: &Run) -> Resu
     truths::stage(name, set, run)
 }
 
-fn own_truths(args: &Args, run: &Run, rows: &mut Vec<Row>) -> Result<bool, Failure> {
+fn own_truths(args: &Args, run: &Run, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let only = args.only.as_deref().unwrap_or_default();
     truths::test(only, args.load.precision, run, rows)?;
     if rows.is_empty() {
         let message = format!("no truth has a name that begins with `{only}`");
         return Err(Failure::new(Exit::Usage, message).help("`luxel verify` shows them all"));
     }
-    Ok(true)
+    Ok(())
 }
 
-/// Whether every scene could be tested.
-fn scenes(files: &[PathBuf], args: &Args, run: &Run, rows: &mut Vec<Row>) -> Result<bool, Failure> {
-    let mut fine = true;
+/// How many scenes could not be tested.
+fn scenes(
+    files: &[PathBuf],
+    args: &Args,
+    run: &Run,
+    rows: &mut Vec<Row>,
+) -> Result<usize, Failure> {
+    let mut untested = 0;
     for file in files {
         match said::test(file, &args.load, run, args.form(), rows) {
             Ok(()) => {}
             // One scene's mistake keeps no other from being tested.
             Err(failure) if failure.exit == Exit::Input => {
                 report::failure(&failure);
-                fine = false;
+                untested += 1;
             }
             Err(failure) => return Err(failure),
         }
     }
-    Ok(fine)
+    Ok(untested)
 }
 
-fn tell(args: &Args, rows: &[Row]) -> Result<(), Failure> {
+fn tell(args: &Args, rows: &[Row], untested: usize) -> Result<(), Failure> {
     if args.json {
         return rows.iter().try_for_each(|row| report::out(&format!("{}\n", row.json())));
     }
@@ -145,5 +151,9 @@ fn tell(args: &Args, rows: &[Row]) -> Result<(), Failure> {
         0 => format!("all {} hold", rows.len()),
         _ => format!("{off} of {} do not hold", rows.len()),
     };
-    report::out(&format!("{}\n{verdict}\n", row::columns(rows)))
+    let rest = match untested {
+        0 => String::new(),
+        _ => format!("; {untested} of {} scenes could not be tested", args.files.len()),
+    };
+    report::out(&format!("{}\n{verdict}{rest}\n", row::columns(rows)))
 }

@@ -34,6 +34,8 @@ pub(crate) struct Run {
     pub(crate) plugins: Plugins,
     /// Samples, seed and threads, where the command line says them.
     pub(crate) options: Options,
+    /// Keeps an interrupt from what is being written.
+    pub(super) guard: Guard,
     stop: Arc<Stop>,
     /// Whether a line tells how far a picture is.
     line: bool,
@@ -50,12 +52,13 @@ impl Run {
     pub(crate) fn new(plugins: Plugins, options: Options) -> Result<Self, Failure> {
         let stop = Arc::<Stop>::default();
         let heard = stop.clone();
-        Guard::default().on_ctrl_c(move || {
+        let guard = Guard::default();
+        guard.on_ctrl_c(move || {
             heard.pressed.store(true, Ordering::Relaxed);
             heard.watch.cancel();
             heard.control().cancel();
         })?;
-        Ok(Self { plugins, options, stop, line: true })
+        Ok(Self { plugins, options, guard, stop, line: true })
     }
 
     /// The same, for whoever tells of its course in another way.

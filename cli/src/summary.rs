@@ -90,6 +90,7 @@ impl Summary {
 
     fn settings(&self) -> Value {
         let mut settings = self.common_settings();
+        self.say_reached(&mut settings);
         if self.names.as_object().is_some_and(|names| !names.is_empty()) {
             settings["names"] = self.names.clone();
         }
@@ -97,6 +98,21 @@ impl Summary {
             settings["dropped"] = self.dropped.iter().map(|it| it.name()).collect();
         }
         settings
+    }
+
+    /// How good the picture is.
+    fn say_reached(&self, all: &mut Value) {
+        all["least_samples"] = json!(self.counts[0]);
+        all["most_samples"] = json!(self.counts[1]);
+        all["rms_relative_error"] = json!(self.error.map(|error| error.rms));
+        all["median_relative_error"] = json!(self.error.map(|error| error.median));
+        all["p95_relative_error"] = json!(self.error.map(|error| error.p95));
+        all["worst_relative_error"] = json!(self.error.map(|error| error.worst));
+        all["worst_pixel"] = json!(self.error.map(|error| error.worst_at.to_array()));
+        if self.goal.error.is_some() {
+            all["pixels_above"] = json!(self.error.map(|error| error.above));
+            all["tiles_above"] = json!(self.error.map(|error| error.tiles_above));
+        }
     }
 
     fn common_settings(&self) -> Value {
@@ -129,17 +145,6 @@ impl Summary {
         all["samples"] = json!(self.samples);
         all["samples_per_second"] = json!(self.rate());
         all["mean_radiance"] = json!(self.mean.to_array());
-        all["least_samples"] = json!(self.counts[0]);
-        all["most_samples"] = json!(self.counts[1]);
-        all["rms_relative_error"] = json!(self.error.map(|error| error.rms));
-        all["median_relative_error"] = json!(self.error.map(|error| error.median));
-        all["p95_relative_error"] = json!(self.error.map(|error| error.p95));
-        all["worst_relative_error"] = json!(self.error.map(|error| error.worst));
-        all["worst_pixel"] = json!(self.error.map(|error| error.worst_at.to_array()));
-        if self.goal.error.is_some() {
-            all["pixels_above"] = json!(self.error.map(|error| error.above));
-            all["tiles_above"] = json!(self.error.map(|error| error.tiles_above));
-        }
         all["bad_samples"] = json!(self.bad);
         all["exr"] = json!(output.exr);
         all["png"] = json!(output.png);

@@ -72,6 +72,9 @@ fn an_error_and_a_time_are_read_or_refused() {
     let done = folder.luxel(&["render", "a.scene", "--error", "2%", "-o", "a"]);
     assert_eq!(done.code, 0, "{done:?}");
     assert!(done.out.contains("every tile is within the 2.00 % asked for"), "{}", done.out);
+    // The picture says itself how good it is.
+    let exr = folder.read("a.exr");
+    assert!(exr.windows(20).any(|bytes| bytes == b"\"rms_relative_error\""));
     let timed = folder.luxel(&["render", "a.scene", "--time", "0.05s", "-o", "a", "--json"]);
     assert!(timed.code == 0 && timed.out.contains("rms_relative_error"), "{timed:?}");
     for wrong in [["--error", "one"], ["--time", "3 weeks"], ["--checkpoint", "-1"]] {

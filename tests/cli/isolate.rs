@@ -130,7 +130,7 @@ fn an_interrupt_reaches_the_process_apart() {
     running.interrupt();
     let done = running.end();
     assert!(done.code == 3 && done.out.contains("interrupted after"), "{done:?}");
-    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene"]);
+    assert_eq!(folder.names(), ["a.checkpoint", "a.exr", "a.png", "a.scene"]);
 }
 
 #[test]

@@ -179,7 +179,7 @@ fn an_interrupt_leaves_a_valid_picture_and_says_so() {
     let done = running.end();
     assert_eq!(done.code, 3, "{done:?}");
     assert!(done.out.contains(r#""complete":false"#), "{done:?}");
-    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene"]);
+    assert_eq!(folder.names(), ["a.checkpoint", "a.exr", "a.png", "a.scene"]);
     // Reading it as a scene's texture proves that it is whole.
     let read = "scene 1\nlet t = texture image { file = \"a.exr\" }\n";
     let scene = SCENE.replace("scene 1\n", read).replace("reflectance = 0.5", "reflectance = t");
@@ -199,7 +199,7 @@ fn a_second_interrupt_still_leaves_a_whole_picture() {
     let done = running.end();
     assert_eq!(done.code, 3, "{done:?}");
     assert!(done.out.contains("wrote a.exr and a.png, interrupted"), "{done:?}");
-    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene"]);
+    assert_eq!(folder.names(), ["a.checkpoint", "a.exr", "a.png", "a.scene"]);
     assert!(since.elapsed() < Duration::from_secs(10));
 }
 

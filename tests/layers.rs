@@ -6,6 +6,7 @@ use glam::{DVec3, UVec2};
 use luxel_core::files::MemoryFiles;
 use luxel_core::film::{Film, Layer};
 use luxel_core::render::{Control, Options, render, render_on};
+use luxel_core::scene::{Feature, Scene};
 use luxel_core::stage::Stage;
 
 use crate::load::stage_of;
@@ -151,6 +152,23 @@ fn a_group_is_what_its_lights_alone_would_give() {
     let allowed = 4.0 * error.y.hypot(whole.y);
     assert!((of_group - alone.y).abs() < allowed, "{of_group} {alone} ± {allowed}");
     assert_eq!(all.holds.groups.len(), 2);
+}
+
+#[test]
+fn groups_are_layers_that_can_be_dropped() {
+    let files = MemoryFiles::default().with("a.scene", LAMPS.replace("GROUP", "").as_bytes());
+    let registry = crate::load::registry();
+    let settings = luxel_lang::Settings::default();
+    let read = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
+    let mut scene = read.scene.unwrap();
+    let built =
+        |scene: &Scene| luxel_core::stage::build(scene, &registry, &files, None).unwrap().stage;
+    let stage = built(&scene);
+    assert!(stage.needs(Feature::Layers) && stage.reasons.of(Feature::Layers).count() == 3);
+    scene.leave_out(Feature::Layers).unwrap();
+    let stage = built(&scene);
+    assert!(!stage.needs(Feature::Layers) && film(&stage).holds.is_empty());
+    assert_eq!(stage.reasons.of(Feature::Layers).count(), 0);
 }
 
 #[test]

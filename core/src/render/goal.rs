@@ -75,9 +75,7 @@ impl Plan {
         }
         beyond
     }
-}
 
-impl Plan {
     /// Samples of a pixel in the end, or at most.
     pub(super) fn most(&self) -> u32 {
         self.most
@@ -180,7 +178,7 @@ mod tests {
             (tile.next, tile.aim) = (n, n);
             for pixel in &mut tile.pixels {
                 for sample in 0..n {
-                    // Neither blocks of two nor longer ones are even.
+                    // Blocks of two and longer ones have no spread: the first 16 samples alone tell.
                     let sign = f64::from(sample.count_ones() % 2) * 2.0 - 1.0;
                     pixel.push(DVec3::splat(1.0 + sign * spread));
                 }

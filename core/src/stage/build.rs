@@ -176,6 +176,9 @@ impl Maker<'_> {
 
     /// The group that a light is of.
     fn group(&mut self, light: NodeId) -> Option<u32> {
+        if self.scene.leaves_out(Feature::Layers) {
+            return None;
+        }
         let mut given = self.scene.node(light).params.iter();
         let (name, span) = given.find_map(|argument| match &argument.value {
             Value::Text(name) if argument.name == "group" => Some((name, argument.span)),
@@ -188,6 +191,7 @@ impl Maker<'_> {
             let help = format!("at most {GROUP_NAME} of them: it names channels of the EXR");
             self.builder.diagnostics.push(wrong.help(help));
         }
+        self.requires(Feature::Layers, light);
         let names = &mut self.made.group_names;
         if let Some(known) = names.iter().position(|group| **group == **name) {
             return Some(index(known));

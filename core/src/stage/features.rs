@@ -69,7 +69,7 @@ impl Stage {
             Feature::Nested => features.nested,
             Feature::Motion => features.motion,
             Feature::LightChoice => features.light_choice,
-            Feature::Layers => !self.film.layers.is_empty(),
+            Feature::Layers => !(self.film.layers.is_empty() && self.lights.groups.is_empty()),
         }
     }
 }
@@ -116,7 +116,7 @@ impl Reasons {
         if mode == ColorMode::Rgb {
             self.clear(Feature::Spectral);
         }
-        if film.layers.is_empty() {
+        if scene.leaves_out(Feature::Layers) {
             self.clear(Feature::Layers);
         }
     }

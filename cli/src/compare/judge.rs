@@ -62,7 +62,7 @@ pub(super) struct Detectable {
 const FAMILIES: f64 = 3.0;
 
 /// What one of `n` tests may err if all together may `alpha`.
-pub(super) fn share(alpha: f64, n: f64) -> f64 {
+pub(crate) fn share(alpha: f64, n: f64) -> f64 {
     -((-alpha).ln_1p() / n.max(1.0)).exp_m1()
 }
 

@@ -20,8 +20,10 @@ use crate::interrupt::Guard;
 use crate::output::Output;
 use crate::picture::{self, Picture};
 use crate::report;
+pub(crate) use judge::share as share_of_error;
 use numbers::Numbers;
 use pair::Pair;
+pub(crate) use student::two_sided;
 use told::Told;
 use verdict::{Limits, Verdict, Word};
 

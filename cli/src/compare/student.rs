@@ -7,7 +7,7 @@ const MOST_DOF: f64 = 1e6;
 ///
 /// # Source
 /// Abramowitz & Stegun 26.7.1, by the incomplete beta function (26.5.8).
-pub(super) fn two_sided(t: f64, dof: f64) -> f64 {
+pub(crate) fn two_sided(t: f64, dof: f64) -> f64 {
     if t.is_nan() {
         return 1.0;
     }

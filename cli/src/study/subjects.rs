@@ -8,7 +8,7 @@ use luxel_core::stage::{self, Stage};
 
 use super::args::Args;
 use super::lab::Subject;
-use super::sweep::unfit;
+use super::sweep::{Dimension, unfit};
 use crate::exit::{Exit, Failure, blaming};
 use crate::load::{self, Loaded};
 use crate::report::{self, Stream};
@@ -36,7 +36,7 @@ pub(super) struct Subjects {
 /// # Errors
 /// A scene that cannot be read; a size or a change that cannot be.
 pub(super) fn subjects(file: &Path, args: &Args, run: &Run) -> Result<Subjects, Failure> {
-    let loaded = load::load(file, &args.load, None, &run.plugins, &run.course());
+    let loaded = load::load(file, &args.load(), None, &run.plugins, &run.course());
     let mut loaded = loaded.map_err(|failure| run.interrupted().unwrap_or(failure))?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, args.form(), Stream::Error)?;
     let (Some(whole), Some(scene)) = (loaded.stage.take(), loaded.scene.take()) else {
@@ -64,8 +64,12 @@ pub(super) fn subjects(file: &Path, args: &Args, run: &Run) -> Result<Subjects, 
     let stage = build(&base, &whole)?.map_err(|message| Failure::new(Exit::Input, message))?;
     let mut all = vec![Subject { change: None, stage }];
     let mut notes = vec![];
-    for change in &args.sweep.changes {
+    for change in &args.sweep().changes {
         if change.is_of(&all[0].stage) {
+            if change.dimension == Dimension::Drop {
+                notes
+                    .push(format!("{} was left out: the scene does not require it", change.name()));
+            }
             continue;
         }
         let mut changed = base.clone();

@@ -10,6 +10,7 @@ mod found;
 mod lab;
 mod outcome;
 mod plan;
+mod price;
 mod settings;
 mod subjects;
 mod svg;
@@ -35,6 +36,7 @@ use crate::report::{self, Stream};
 use crate::verify::Run;
 
 pub(crate) use self::args::Args;
+pub(crate) use self::price::{Price, prices};
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     args.output.as_deref().map_or(Ok(()), found::check)?;

@@ -107,7 +107,7 @@ fn rates(shots: &[Vec<Shot>], spp: &[u32]) -> Vec<f64> {
 }
 
 /// Of at least one number.
-fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
+pub(super) fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
     let last = values.len() - 1;
     [1, 2, 3].map(|quarter| {

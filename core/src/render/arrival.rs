@@ -152,7 +152,7 @@ impl Shader<'_, '_> {
             return;
         }
         let takes_colors = self.stage.materials[at.material as usize].takes_colors();
-        if takes_colors || self.stage.features.nested {
+        if takes_colors || self.stage.features.nested() {
             self.scatter_apart(at, surface, hit, numbers);
         } else {
             self.scatter_with(at, surface, numbers, (None, None));
@@ -171,7 +171,7 @@ impl Shader<'_, '_> {
     ) {
         let color = self.stage.color(hit);
         let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette, color };
-        let around = self.stage.features.nested.then(|| {
+        let around = self.stage.features.nested().then(|| {
             let sides = (&self.path.media, &self.path.beyond);
             self.stage.index_around(sides, hit.placement, &site, self.scratch)
         });
@@ -297,13 +297,13 @@ impl Numbers {
     #[inline(always)]
     fn draw(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
         if wants.has(Wants::DIRECT) && wants.has(Wants::SCATTER) {
-            let choice = samples.next_1d_if(stage.features.light_choice);
+            let choice = samples.next_1d_if(stage.features.light_choice());
             let [[u, v], scatter] = samples.next_2d_pair();
             return Self { light: [choice, u, v], scatter };
         }
         let mut numbers = Self { light: [0.0; 3], scatter: [0.0; 2] };
         if wants.has(Wants::DIRECT) {
-            let choice = samples.next_1d_if(stage.features.light_choice);
+            let choice = samples.next_1d_if(stage.features.light_choice());
             let [u, v] = samples.next_2d();
             numbers.light = [choice, u, v];
         } else if wants.has(Wants::SCATTER) {

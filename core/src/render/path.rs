@@ -70,8 +70,11 @@ impl Path {
         (self.job, self.weight, self.from) = (job, found.weight, found.ray.o);
         (self.ended, self.on) = (false, None);
         if stage.features.is_tracked() {
-            self.media =
-                if stage.needed.motion { stage.media_at(found.ray.o) } else { stage.camera_media };
+            self.media = if stage.needed.motion() {
+                stage.media_at(found.ray.o)
+            } else {
+                stage.camera_media
+            };
         }
     }
 

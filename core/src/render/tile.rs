@@ -236,7 +236,7 @@ impl<'s> Worker<'s> {
         let of = |lane: u32| (paths[lane as usize].leaving(), paths[lane as usize].time);
         let rays = self.now.shadows.iter().map(|asked| (&asked.ray, of(asked.lane)));
         let rays = rays.map(|(ray, (from, time))| (ray, from, time));
-        if self.stage.features.nested {
+        if self.stage.features.nested() {
             // What stops a ray depends on what it is in: `shadow::passes` sees.
         } else if self.in_turns {
             let tell = |i: usize, is_hit| shadowed[i] = is_hit;
@@ -273,7 +273,7 @@ impl<'s> Worker<'s> {
     /// for all: neighbours in time do not wait for each other.
     fn arrivals(&mut self) {
         let stage = self.stage;
-        if stage.features.media || stage.features.is_open() {
+        if stage.features.media() || stage.features.is_open() {
             self.processor.run(Fly(self));
         } else {
             self.processor.run(Trace(self));
@@ -473,7 +473,7 @@ const TIME: u32 = 0x71_3e;
 /// The moment that a path sees. Its number is of a stream of its own: the others are the same whether
 /// something moves or not.
 pub(super) fn moment<'s>(stage: &'s Stage, samples: &Samples<'_>) -> Moment<'s> {
-    if !stage.features.motion {
+    if !stage.features.motion() {
         return stage.opening();
     }
     let path = samples.at();

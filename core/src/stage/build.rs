@@ -116,6 +116,7 @@ pub fn build_watched(
             let stage = stage.ok_or(Unbuilt::Cancelled)?;
             let mut found = stage.failures();
             found.extend(unseen(&stage));
+            found.extend(features::lacking(&stage));
             if found.is_empty() {
                 return Ok(Built { stage, warnings: diagnostics, anew });
             }

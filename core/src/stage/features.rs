@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::diag::Span;
+use crate::diag::{Diagnostic, Span};
 use crate::film::Layer;
 use crate::object::ColorMode;
 use crate::scene::{Color, Feature, Node, NodeId, Scene, Value};
@@ -13,29 +13,52 @@ use super::{ColorChoice, Film, Stage};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is asked for on its own")]
 pub struct Features {
-    /// Something absorbs or scatters between surfaces.
-    pub media: bool,
-    /// Some surfaces are only the boundary of a medium.
-    pub open_surfaces: bool,
-    /// Refracting shapes may lie within each other.
-    pub nested: bool,
-    /// Something moves while the shutter is open.
-    pub motion: bool,
-    /// There are several lights, or triangles of one, to choose from.
-    pub light_choice: bool,
+    pub(super) media: bool,
+    pub(super) open_surfaces: bool,
+    pub(super) nested: bool,
+    pub(super) motion: bool,
+    pub(super) light_choice: bool,
 }
 
+/// Whether the code of what most scenes do without is not in this program: to measure what its being
+/// there costs those scenes (the cargo feature `lean`).
+const LEAN: bool = cfg!(feature = "lean");
+
 impl Features {
+    /// Something absorbs or scatters between surfaces.
+    #[inline(always)]
+    pub fn media(&self) -> bool {
+        !LEAN && self.media
+    }
+
+    /// Refracting shapes may lie within each other.
+    #[inline(always)]
+    pub fn nested(&self) -> bool {
+        !LEAN && self.nested
+    }
+
+    /// Something moves while the shutter is open.
+    #[inline(always)]
+    pub fn motion(&self) -> bool {
+        !LEAN && self.motion
+    }
+
+    /// There are several lights, or triangles of one, to choose from.
+    #[inline(always)]
+    pub fn light_choice(&self) -> bool {
+        self.light_choice
+    }
+
     /// Whether paths have to know what they are inside of.
     #[inline(always)]
     pub fn is_tracked(&self) -> bool {
-        self.media || self.nested
+        self.media() || self.nested()
     }
 
-    /// Whether rays may pass surfaces on their way.
+    /// Whether rays may pass surfaces on their way, some of which are only the boundary of a medium.
     #[inline(always)]
     pub fn is_open(&self) -> bool {
-        self.open_surfaces || self.nested
+        !LEAN && self.open_surfaces || self.nested()
     }
 
     /// These, and those that a scene is to be rendered with in any case.
@@ -72,6 +95,14 @@ impl Stage {
             Feature::Layers => !(self.film.layers.is_empty() && self.lights.groups.is_empty()),
         }
     }
+}
+
+/// What a stage requires and this program has no code for: nothing, unless it is lean.
+pub(super) fn lacking(stage: &Stage) -> Option<Diagnostic> {
+    let lean = [Feature::Media, Feature::OpenSurfaces, Feature::Nested, Feature::Motion];
+    let missing = lean.into_iter().find(|feature| LEAN && stage.needs(*feature))?;
+    let message = format!("this program was built without `{}`", missing.name());
+    Some(Diagnostic::unplaced("E0414", message).help("it was built with the cargo feature `lean`"))
 }
 
 /// Which nodes require a feature, each with the place that says so.

@@ -1,7 +1,7 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
 //! `cargo run --release -p luxel-bench -- [WHAT] [--luxel PATH] [--python PATH] [--embree LIBRARY]
-//! [--write DOCUMENT]`; a word that it does not know makes it tell what it measures. The program under
+//! [--lean PATH] [--write DOCUMENT]`; a word that it does not know makes it tell what it measures. The program under
 //! test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
@@ -13,6 +13,7 @@ mod errors;
 mod features;
 #[path = "../../cli/src/verify/generated.rs"]
 mod generated;
+mod lean;
 mod parse;
 mod peer;
 mod pictures;
@@ -23,6 +24,7 @@ mod reload;
 mod scene;
 mod series;
 mod strands;
+mod tables;
 mod watch;
 
 use std::path::PathBuf;
@@ -35,6 +37,8 @@ struct Plan {
     luxel: Luxel,
     python: Option<PathBuf>,
     embree: Option<PathBuf>,
+    /// The program without the code that most scenes do without.
+    lean: Option<PathBuf>,
     /// The document that `errors` writes its tables into.
     document: Option<PathBuf>,
 }
@@ -55,8 +59,8 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
     Bench { name, runs_program: false, run }
 }
 
-/// The last two are not among `all`: they take long.
-const BENCHES: [Bench; 17] = [
+/// The last four are not among `all`: they take long, or another program.
+const BENCHES: [Bench; 19] = [
     of_crates("parse", |_| {
         parse::run();
         Ok(())
@@ -84,6 +88,8 @@ const BENCHES: [Bench; 17] = [
     of_program("reload", |plan| reload::run(&plan.luxel)),
     of_program("cornell", |plan| peer::cornell(&plan.luxel, plan.python.as_deref())),
     of_program("watch", |plan| watch::run(&plan.luxel, plan.python.as_deref())),
+    of_program("lean", |plan| lean::run(&plan.luxel, plan.lean.as_deref())),
+    of_program("tables", |plan| tables::run(&plan.luxel)),
     of_program("soak", |plan| watch::soak(&plan.luxel)),
     of_crates("leaks-long", |plan| {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 1_000_000);
@@ -96,21 +102,22 @@ fn usage() -> String {
     let names = names.join("|");
     format!(
         "usage: luxel-bench [all|{names}] [--luxel PATH] [--python PATH] [--embree LIBRARY] \
-         [--write DOCUMENT]"
+         [--lean PATH] [--write DOCUMENT]"
     )
 }
 
 /// What is to be measured, and with which programs.
 fn plan() -> Result<(&'static [Bench], Plan), String> {
-    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 2).0;
+    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 4).0;
     let mut benches = ALL;
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
-    let (mut python, mut embree, mut document) = (None, None, None);
+    let (mut python, mut embree, mut lean, mut document) = (None, None, None, None);
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         match word.as_str() {
             "all" => benches = ALL,
             "--luxel" => luxel = words.next().map(PathBuf::from),
+            "--lean" => lean = words.next().map(PathBuf::from),
             "--embree" => embree = words.next().map(PathBuf::from),
             "--write" => document = Some(words.next().ok_or_else(usage)?.into()),
             "--python" => python = words.next().map(PathBuf::from),
@@ -128,7 +135,7 @@ fn plan() -> Result<(&'static [Bench], Plan), String> {
         return Err("--write: only `errors` writes into a document".to_owned());
     }
     let luxel = Luxel { program: program.unwrap_or_default() };
-    Ok((benches, Plan { luxel, python, embree, document }))
+    Ok((benches, Plan { luxel, python, embree, lean, document }))
 }
 
 fn main() -> ExitCode {

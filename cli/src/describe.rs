@@ -80,7 +80,7 @@ fn text(entry: &Entry) -> String {
 }
 
 /// Heads what every object of a kind may be given.
-const COMMON: &str = "Of every object of this kind";
+pub(crate) const COMMON: &str = "Of every object of this kind";
 
 fn section(page: &mut String, title: &str, params: &[Param]) {
     if params.is_empty() {
@@ -96,7 +96,7 @@ fn section(page: &mut String, title: &str, params: &[Param]) {
 }
 
 /// Type, unit, range, default and the like, each in a few words.
-fn facts(param: &Param) -> Vec<String> {
+pub(crate) fn facts(param: &Param) -> Vec<String> {
     let mut facts = vec![what(param)];
     if !param.unit.is_empty() {
         facts.push(format!("in {}", param.unit.replace('|', " or ")));

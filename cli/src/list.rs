@@ -100,7 +100,7 @@ pub(crate) fn unknown(what: &str, found: &str, known: &[&str]) -> Failure {
 }
 
 /// The first sentence of a manual page, on one line.
-fn summary(doc: &str) -> String {
+pub(crate) fn summary(doc: &str) -> String {
     let paragraph = doc.trim().split("\n\n").next().unwrap_or_default();
     let line = paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
     match line.find(". ") {

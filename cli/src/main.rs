@@ -7,6 +7,7 @@ mod checkpoint;
 mod compare;
 mod denoise;
 mod describe;
+mod docs;
 mod exit;
 mod explain;
 mod files;
@@ -71,6 +72,7 @@ enum Command {
     Study(study::Args),
     List(list::Args),
     Describe(describe::Args),
+    Docs(docs::Args),
     Plugin(plugin::Args),
 }
 
@@ -98,6 +100,7 @@ fn main() -> ExitCode {
         Command::Study(args) => study::run(args),
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),
+        Command::Docs(args) => docs::run(args),
         Command::Plugin(args) => plugin::run(args),
     });
     done.unwrap_or_else(|failure| failed(&failure)).into()

@@ -5,7 +5,7 @@ use luxel_sdk::kind::Kind;
 use serde_json::{Value, json};
 
 /// A field that the language reads: name, facts in a few words, manual.
-type Field = (&'static str, &'static str, &'static str);
+pub(crate) type Field = (&'static str, &'static str, &'static str);
 
 /// A word of the language.
 pub(crate) struct Word {

@@ -5,6 +5,7 @@ mod compare;
 #[cfg(test)]
 mod denoise;
 #[cfg(test)]
+mod docs;
 mod explain;
 #[cfg(test)]
 mod faulty;

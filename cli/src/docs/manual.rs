@@ -1,0 +1,107 @@
+//! The page of a class, of a word of the language, and of all messages.
+
+use luxel_core::registry::{Entry, common_params};
+use luxel_lang::CATALOGUE;
+use luxel_sdk::params::Param;
+
+use super::markdown::{self, escaped};
+use super::page::{GUIDE, Page};
+use crate::describe::{COMMON, facts};
+use crate::list::summary;
+use crate::words::{self, Field, Word};
+
+/// The manual of a class, with its parameters and perhaps a picture.
+pub(super) fn class(entry: &Entry, has_picture: bool) -> Page {
+    let class = &entry.class;
+    let (kind, name) = (class.kind.word(), class.name);
+    let title = format!("{kind} {name}");
+    let file = format!("{kind}-{name}");
+    let picture = has_picture.then(|| format!("{file}.png"));
+    let shown = picture.as_ref().map_or(String::new(), |picture| {
+        format!("<figure><img src=\"{picture}\" alt=\"What the scene below shows\"></figure>\n")
+    });
+    let body = format!(
+        "<h1>{title}</h1>\n<p class=\"origin\">{}</p>\n{shown}{}{}{}{}",
+        escaped(&entry.origin),
+        markdown::html(class.doc.trim()),
+        table("Parameters", &rows(class.params)),
+        table(COMMON, &rows(common_params(class.kind))),
+        table("Read by the language", &fields(words::fields_of(class.kind))),
+    );
+    let params: Vec<&str> = class.params.iter().map(|param| param.name).collect();
+    Page {
+        summary: summary(class.doc),
+        section: kind.to_owned(),
+        words: format!("{} {}", params.join(" "), class.doc.trim()),
+        name: file,
+        title,
+        body,
+        picture,
+    }
+}
+
+/// The manual of a word of the language that names no class.
+pub(super) fn word(word: &Word) -> Page {
+    let (text, example) = word.doc.trim().split_once("\n\n").unwrap_or((word.doc, ""));
+    let body = format!(
+        "<h1>{}</h1>\n<p class=\"origin\">language</p>\n{}<pre><code>{}</code></pre>\n{}",
+        word.name,
+        markdown::html(text),
+        escaped(example),
+        table("Fields", &fields(word.fields)),
+    );
+    Page {
+        name: word.name.to_owned(),
+        title: word.name.to_owned(),
+        section: GUIDE.to_owned(),
+        summary: summary(word.doc),
+        words: text.to_owned(),
+        body,
+        picture: None,
+    }
+}
+
+/// Every message, by its code.
+pub(super) fn messages() -> Page {
+    let rows = CATALOGUE.iter().map(|(code, title)| {
+        format!("<tr id=\"{code}\"><td><code>{code}</code></td><td>{}</td></tr>\n", escaped(title))
+    });
+    let rows: String = rows.collect();
+    let codes = CATALOGUE.iter().map(|(code, title)| format!("{code} {title}"));
+    Page {
+        name: "messages".to_owned(),
+        title: "Messages".to_owned(),
+        section: GUIDE.to_owned(),
+        summary: "What each code of a message means.".to_owned(),
+        words: codes.collect::<Vec<_>>().join(" "),
+        body: format!("<h1>Messages</h1>\n<table>\n{rows}</table>\n"),
+        picture: None,
+    }
+}
+
+/// Name, facts and manual of parameters.
+fn rows(params: &[Param]) -> Vec<[String; 3]> {
+    let row = |param: &Param| {
+        [param.name.to_owned(), facts(param).join(", "), param.doc.trim().to_owned()]
+    };
+    params.iter().map(row).collect()
+}
+
+fn fields(fields: &[Field]) -> Vec<[String; 3]> {
+    fields.iter().map(|(name, facts, doc)| [*name, *facts, *doc].map(str::to_owned)).collect()
+}
+
+fn table(title: &str, rows: &[[String; 3]]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let row = |[name, facts, doc]: &[String; 3]| {
+        format!(
+            "<tr id=\"{name}\"><td><code>{name}</code></td><td>{}<br><span class=\"facts\">{}</span></td></tr>\n",
+            markdown::inline(doc),
+            escaped(facts),
+        )
+    };
+    let rows: String = rows.iter().map(row).collect();
+    format!("<h2>{title}</h2>\n<table>\n{rows}</table>\n")
+}

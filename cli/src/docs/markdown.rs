@@ -1,0 +1,105 @@
+//! Manuals and documents are written in Markdown; pages are HTML.
+
+use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html as render};
+
+use super::DOCUMENTS;
+
+/// The HTML of a text: headings can be linked to, links lead to pages of this reference or are left out,
+/// and HTML within it is text.
+pub(super) fn html(text: &str) -> String {
+    let mut events: Vec<Event<'_>> = Parser::new_ext(text, Options::ENABLE_TABLES).collect();
+    name_headings(&mut events);
+    let mut kept_links = vec![];
+    let events = events.into_iter().filter_map(|event| match event {
+        Event::Html(raw) if raw.trim_start().starts_with("<!--") => None,
+        Event::Html(raw) | Event::InlineHtml(raw) => Some(Event::Text(raw)),
+        Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
+            let to = target(&dest_url);
+            kept_links.push(to.is_some());
+            to.map(|to| Event::Start(Tag::Link { link_type, dest_url: to.into(), title, id }))
+        }
+        Event::End(TagEnd::Link) => kept_links.pop()?.then_some(Event::End(TagEnd::Link)),
+        // Pictures of the project's documents are not part of the reference.
+        Event::Start(Tag::Image { .. }) | Event::End(TagEnd::Image) => None,
+        other => Some(other),
+    });
+    let mut out = String::new();
+    render::push_html(&mut out, events);
+    out
+}
+
+/// The HTML of one paragraph, without the paragraph.
+pub(super) fn inline(text: &str) -> String {
+    let out = html(text);
+    let out = out.trim();
+    out.strip_prefix("<p>").and_then(|it| it.strip_suffix("</p>")).unwrap_or(out).to_owned()
+}
+
+/// The headings of a text.
+pub(super) fn headings(text: &str) -> Vec<String> {
+    let events: Vec<Event<'_>> = Parser::new(text).collect();
+    let starts =
+        (0..events.len()).filter(|i| matches!(events[*i], Event::Start(Tag::Heading { .. })));
+    starts.map(|i| heading(&events[i + 1..])).collect()
+}
+
+/// Text as it stands in HTML.
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Where a link leads from a page; `None` where it leaves the reference for a file of the project.
+fn target(to: &str) -> Option<String> {
+    if to.starts_with('#') || to.starts_with("https://") {
+        return Some(to.to_owned());
+    }
+    let (file, anchor) = to.split_once('#').map_or((to, None), |(file, at)| (file, Some(at)));
+    let name = file.strip_suffix(".md").or_else(|| file.strip_suffix(".html"))?;
+    let is_page = DOCUMENTS.iter().any(|(known, _)| *known == name) || file.ends_with(".html");
+    let anchor = anchor.map_or(String::new(), |at| format!("#{at}"));
+    is_page.then(|| format!("{name}.html{anchor}"))
+}
+
+/// Gives each heading the name that links call it by: its words, joined by hyphens.
+fn name_headings(events: &mut [Event<'_>]) {
+    for i in 0..events.len() {
+        if !matches!(events[i], Event::Start(Tag::Heading { .. })) {
+            continue;
+        }
+        let text = heading(&events[i + 1..]).to_lowercase();
+        let kept = text.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+        let name: String = kept.map(|c| if c == ' ' { '-' } else { c }).collect();
+        if let Event::Start(Tag::Heading { id, .. }) = &mut events[i] {
+            *id = Some(CowStr::from(name));
+        }
+    }
+}
+
+/// The words of the heading that has just begun.
+fn heading(events: &[Event<'_>]) -> String {
+    let inside = events.iter().take_while(|it| !matches!(it, Event::End(TagEnd::Heading(_))));
+    let words = inside.filter_map(|event| match event {
+        Event::Text(text) | Event::Code(text) => Some(&**text),
+        _ => None,
+    });
+    words.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_to_pages_or_nowhere_and_html_is_text() {
+        let told = html(
+            "## What `is` it?\n[a](language.md#units) [b](decisions/0001.md) <b>x</b>\n\n<!-- c -->\n",
+        );
+        assert_eq!(
+            told,
+            "<h2 id=\"what-is-it\">What <code>is</code> it?</h2>\n\
+             <p><a href=\"language.html#units\">a</a> b &lt;b&gt;x&lt;/b&gt;</p>\n"
+        );
+        assert_eq!(headings("# One\ntext\n## Two `b`\n"), ["One", "Two b"]);
+        assert_eq!(inline("a *b* < c"), "a <em>b</em> &lt; c");
+    }
+}

@@ -1,0 +1,46 @@
+// Finds pages by what is typed; `/` goes to the field, Enter to the first that was found.
+const field = document.getElementById("search");
+const found = document.getElementById("found");
+
+function rank(page, words) {
+  const title = page.title.toLowerCase();
+  const rest = (page.summary + " " + page.words).toLowerCase();
+  let sum = 0;
+  for (const word of words) {
+    if (title.split(/[ _]/).includes(word)) sum += 4;
+    else if (title.includes(word)) sum += 2;
+    else if (rest.includes(word)) sum += 1;
+    else return 0;
+  }
+  return sum;
+}
+
+function search() {
+  const words = field.value.toLowerCase().split(/\s+/).filter(Boolean);
+  found.replaceChildren();
+  found.hidden = words.length === 0;
+  if (found.hidden) return;
+  const ranked = PAGES.map((page) => [rank(page, words), page]).filter(([sum]) => sum > 0);
+  ranked.sort((a, b) => b[0] - a[0]);
+  for (const [, page] of ranked.slice(0, 12)) {
+    const link = document.createElement("a");
+    link.href = page.page;
+    link.textContent = page.title;
+    const item = document.createElement("li");
+    item.append(link, " ", page.summary);
+    found.append(item);
+  }
+  if (ranked.length === 0) found.append("nothing is called that");
+}
+
+field.addEventListener("input", search);
+field.addEventListener("keydown", (event) => {
+  const first = found.querySelector("a");
+  if (event.key === "Enter" && first) location.href = first.href;
+});
+document.addEventListener("keydown", (event) => {
+  if (event.key === "/" && document.activeElement !== field) {
+    event.preventDefault();
+    field.focus();
+  }
+});

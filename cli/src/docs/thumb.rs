@@ -1,0 +1,124 @@
+//! Pictures of what manuals show.
+
+use std::path::Path;
+
+use glam::{DVec3, UVec2};
+use luxel_core::diag::Diagnostic;
+use luxel_core::files::MemoryFiles;
+use luxel_core::film::Film;
+use luxel_core::registry::{Display, Entry, Registry};
+use luxel_core::render::Options;
+use luxel_core::stage::{self, Stage};
+use luxel_sdk::color::RgbSpace;
+use luxel_sdk::kind::Kind;
+
+use super::scene::around;
+use crate::exit::{Exit, Failure, blaming};
+use crate::picture::{show, write_signal};
+use crate::verify::Run;
+
+const SIZE: UVec2 = UVec2::new(240, 160);
+const SPP: u32 = 32;
+/// Field of view of the camera that sees all of a snippet's shapes, degrees.
+const FOV: f64 = 34.0;
+/// Where it stands, seen from the middle of them.
+const FROM: DVec3 = DVec3::new(0.45, 0.35, 0.82);
+/// Share of the pixels that may be brighter than white, where the light is the manual's own.
+const BRIGHTEST: f64 = 0.03;
+
+/// A PNG of the first snippet of a manual; `None` where it needs files or shows nothing.
+///
+/// # Errors
+/// Ctrl-C; a panic below, with the class's name.
+pub(super) fn png(entry: &Entry, run: &Run) -> Result<Option<Vec<u8>>, Failure> {
+    let name = format!("the manual of {} {}", entry.class.kind, entry.class.name);
+    let stage = blaming(&name, || of_manual(entry, &run.plugins.registry))?;
+    let Some(stage) = stage else { return Ok(None) };
+    let options = Options { spp: Some(SPP), ..run.options.clone() };
+    match run.film((Path::new(&name), &stage), &options) {
+        Ok(film) => Ok(drawn(&film, entry.class.kind)),
+        Err(failure) if failure.exit == Exit::Incomplete => Err(failure),
+        Err(_) => Ok(None),
+    }
+}
+
+/// The stage of what a manual shows first.
+fn of_manual(entry: &Entry, registry: &Registry) -> Option<Stage> {
+    let snippet = entry.class.doc.split("```scene").nth(1)?.split("```").next()?.trim();
+    let staged = |camera: &str| stage_of(&around(entry.class.kind, snippet, camera), registry);
+    // Once to see where its shapes are, and once more to look at them.
+    let (centre, radius) = staged(&camera((DVec3::ZERO, 1.0)))?.sphere;
+    let is_somewhere = centre.is_finite() && radius.is_finite() && radius > 0.0;
+    staged(&camera(if is_somewhere { (centre, radius) } else { (DVec3::ZERO, 2.0) }))
+}
+
+/// The stage of a text that needs no files; names that it does not make are brown materials.
+fn stage_of(text: &str, registry: &Registry) -> Option<Stage> {
+    let load = |text: &str| {
+        let files = MemoryFiles::default().with("manual.scene", text.as_bytes());
+        let settings = luxel_lang::Settings::default();
+        luxel_lang::load(Path::new("manual.scene"), &files, registry, &settings)
+    };
+    let first = load(text);
+    let missing = |found: &Diagnostic| {
+        let name = &text[found.span().filter(|_| found.code == "E0101")?.range()];
+        Some(format!(
+            "let {name} = material diffuse {{ reflectance = rgb.linear_srgb(0.55, 0.35, 0.2) }}\n"
+        ))
+    };
+    let mut lets: Vec<String> = first.diagnostics.iter().filter_map(missing).collect();
+    lets.sort();
+    lets.dedup();
+    let whole = text.replacen("scene 1\n", &format!("scene 1\n{}", lets.concat()), 1);
+    let mut scene = load(&whole).scene?;
+    scene.set_resolution(SIZE);
+    let built = stage::build(&scene, registry, &MemoryFiles::default(), None);
+    built.ok().map(|built| built.stage)
+}
+
+/// A camera that sees a ball whole.
+fn camera((centre, radius): (DVec3, f64)) -> String {
+    let away = 1.15 * radius / (0.5 * FOV.to_radians()).sin();
+    let from = centre + FROM.normalize() * away;
+    let point = |p: DVec3| format!("({:?}, {:?}, {:?}) m", p.x, p.y, p.z);
+    format!(
+        "camera perspective {{ look = look_at(from = {}, to = {}, up = (0, 1, 0)), fov = {FOV:?} deg }}\n",
+        point(from),
+        point(centre),
+    )
+}
+
+/// The picture, under a light of its own exposed so that few pixels are clipped; `None` if it is black.
+fn drawn(film: &Film, kind: Kind) -> Option<Vec<u8>> {
+    let weights = RgbSpace::LinearSrgb.luminance_weights();
+    let mut bright: Vec<f64> = film.pixels().map(|(_, pixel)| weights.dot(pixel.mean)).collect();
+    bright.sort_by(f64::total_cmp);
+    #[expect(clippy::cast_possible_truncation, reason = "a share of a small number of pixels")]
+    #[expect(clippy::cast_sign_loss, reason = "a share of a small number of pixels")]
+    let clipped = (bright.len() as f64 * BRIGHTEST) as usize;
+    let white = if kind == Kind::Light { bright[bright.len() - 1 - clipped] } else { 1.0 };
+    if white.is_nan() || white <= 0.0 || bright[bright.len() - 1] <= 0.0 {
+        return None;
+    }
+    let signal = film.pixels().map(|(_, pixel)| show(pixel.mean / white, Display::Srgb));
+    let mut bytes = vec![];
+    write_signal(&mut bytes, film.window.size, signal).ok().map(|()| bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_whose_manual_needs_no_file_can_be_drawn() {
+        let mut registry = Registry::new();
+        for classes in luxel_builtin::CLASSES {
+            registry.add("builtin", classes).unwrap();
+        }
+        for entry in registry.all() {
+            let needs_file = entry.class.doc.contains("file =");
+            let is_drawn = of_manual(entry, &registry).is_some();
+            assert!(is_drawn != needs_file, "{:?}", entry.class);
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! `luxel docs` as a person meets it.
+
+use super::program::Folder;
+
+#[test]
+fn the_reference_has_a_page_for_each_class_and_every_link_leads_somewhere() {
+    let folder = Folder::new("docs");
+    let done = folder.luxel(&["docs", "-o", "out", "--no-pictures", "--json"]);
+    assert_eq!((done.code, &*done.err), (0, ""), "{done:?}");
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    assert_eq!(told["broken"].as_array().map(Vec::len), Some(0));
+    let page = |name: &str| String::from_utf8(folder.read(&format!("out/{name}"))).unwrap();
+    let sphere = page("shape-sphere.html");
+    assert!(sphere.contains("<h1>shape sphere</h1>") && sphere.contains("<tr id=\"radius\">"));
+    assert!(page("language.html").contains("<h2 id=\"objects\">"));
+    assert!(page("search.js").contains("\"title\":\"material conductor\""));
+    let listed = folder.luxel(&["list", "--json"]).out;
+    let listed: serde_json::Value = serde_json::from_str(&listed).unwrap();
+    let index = page("index.html");
+    for class in listed.as_array().unwrap() {
+        let [kind, name] = ["kind", "name"].map(|field| class[field].as_str().unwrap_or_default());
+        let file = if name.is_empty() { kind.to_owned() } else { format!("{kind}-{name}") };
+        assert!(index.contains(&format!("href=\"{file}.html\"")), "{file}");
+    }
+}

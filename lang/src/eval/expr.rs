@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::{Dimension, Unit};
 
 use super::Evaluator;
@@ -154,10 +154,8 @@ impl Evaluator<'_> {
             other => other.describe(),
         };
         let message = format!("there is no `{}` in {what}", name.text);
-        let mut diagnostic = Diagnostic::error("E0101", name.span, message);
-        if let Some(near) = nearest(&name.text, known) {
-            diagnostic = diagnostic.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let diagnostic = Diagnostic::error("E0101", name.span, message)
+            .meant(name.span, near(&name.text, known));
         self.tell(diagnostic);
         Value::Poison
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_core::files::FileError;
 use luxel_sdk::params::{Dimension, Unit};
 
@@ -228,11 +228,9 @@ impl Evaluator<'_> {
 
     fn no_param(&mut self, name: &Name, params: &[&Name]) {
         let message = format!("the file declares no parameter `{}`", name.text);
-        let mut found = Diagnostic::error("E0111", name.span, message);
         let known = || params.iter().map(|p| &*p.text);
-        if let Some(near) = nearest(&name.text, known()) {
-            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let found = Diagnostic::error("E0111", name.span, message)
+            .meant(name.span, near(&name.text, known()));
         self.tell(found);
     }
 

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_core::registry::Registry;
 use luxel_core::scene::{Argument, GroupId, Node, NodeId, Pose, Value as Fitted};
 use luxel_sdk::abi::Class;
@@ -29,6 +29,8 @@ impl Evaluator<'_> {
         }
         let head = self.head(object, span);
         let mut body = Body::new(Place::Object);
+        let class = |head: &Head| self.registry.class(head.kind?, &head.class.text);
+        body.class = head.as_ref().and_then(class).copied();
         self.block(&object.body, env, &mut body);
         match head {
             Some(head) if !body.broken => self.build(&head, body.fields),
@@ -44,10 +46,8 @@ impl Evaluator<'_> {
         let Some(kind) = Kind::of_word(&category.text) else {
             let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
             let message = format!("there is no kind of object `{}`", category.text);
-            let mut found = Diagnostic::error("E0401", category.span, message);
-            if let Some(near) = nearest(&category.text, words()) {
-                found = found.help(format!("did you mean `{near}`?")).fix(category.span, near);
-            }
+            let found = Diagnostic::error("E0401", category.span, message)
+                .meant(category.span, near(&category.text, words()));
             let known: Vec<_> = words().collect();
             self.tell(found.help(format!("known are {}", known.join(", "))));
             return None;
@@ -73,10 +73,7 @@ impl Evaluator<'_> {
         let missing = namesake || (near.is_none() && !self.unloaded.is_empty());
         let code = if missing { "E0414" } else { "E0401" };
         let message = format!("there is no {kind} `{}`", class.text);
-        let mut found = Diagnostic::error(code, class.span, message);
-        if let Some(near) = near {
-            found = found.help(format!("did you mean `{near}`?")).fix(class.span, near);
-        }
+        let mut found = Diagnostic::error(code, class.span, message).meant(class.span, near);
         if missing {
             let advice = self.unloaded.iter().take(SHOWN).map(|library| library.advice.clone());
             found = advice.fold(found, Diagnostic::help);
@@ -116,7 +113,10 @@ impl Evaluator<'_> {
                     pose = self.transform(&field.value, field.span).unwrap_or_default();
                 }
                 "material" => material = self.node_of(field, Kind::Material),
-                _ => self.unknown(field, "a group or placement", &["transform", "material"]),
+                _ => {
+                    let known = ["transform", "material"];
+                    self.unknown(field, "a group or placement", &known, fields);
+                }
             }
         }
         (pose, material)
@@ -170,11 +170,11 @@ impl Evaluator<'_> {
                     "materials" if class.kind == Kind::Importer => {
                         overrides = self.materials(field, &mut poisoned);
                     }
-                    _ => self.unknown_param(&class, field),
+                    _ => self.unknown_param(&class, field, &fields),
                 }
                 continue;
             };
-            self.deprecated(param, field);
+            self.deprecated(param, field, &fields);
             if let Value::Object(inner) = &field.value {
                 depth = depth.max(inner.depth);
                 if param.ty != Type::Part {
@@ -269,18 +269,19 @@ impl Evaluator<'_> {
         }
     }
 
-    fn deprecated(&mut self, param: &Param, field: &FieldValue) {
+    fn deprecated(&mut self, param: &Param, field: &FieldValue, all: &[FieldValue]) {
         if param.deprecated.is_empty() {
             return;
         }
         let message = format!("`{}` is now called `{}`", param.name, param.deprecated);
-        self.tell(
-            Diagnostic::warning("E0410", field.name.span, message)
-                .fix(field.name.span, param.deprecated),
-        );
+        let found = Diagnostic::warning("E0410", field.name.span, message);
+        self.tell(match all.iter().find(|other| &*other.name.text == param.deprecated) {
+            Some(new) => found.label(new.name.span, "it is given here as well"),
+            None => found.fix(field.name.span, param.deprecated),
+        });
     }
 
-    fn unknown_param(&mut self, class: &Class, field: &FieldValue) {
+    fn unknown_param(&mut self, class: &Class, field: &FieldValue, all: &[FieldValue]) {
         let mut known: Vec<&str> =
             Registry::params(class).filter(|p| p.deprecated.is_empty()).map(|p| p.name).collect();
         if stands_somewhere(class.kind) {
@@ -289,16 +290,20 @@ impl Evaluator<'_> {
         if class.kind == Kind::Importer {
             known.push("materials");
         }
-        self.unknown(field, &format!("{} {}", class.kind, class.name), &known);
+        self.unknown(field, &format!("{} {}", class.kind, class.name), &known, all);
     }
 
-    fn unknown(&mut self, field: &FieldValue, what: &str, known: &[&str]) {
+    /// Tells of a name that is no parameter. What is given among `all` is not offered again.
+    fn unknown(&mut self, field: &FieldValue, what: &str, known: &[&str], all: &[FieldValue]) {
         let name = &field.name;
         let message = format!("`{what}` has no parameter `{}`", name.text);
-        let mut found = Diagnostic::error("E0402", name.span, message);
-        if let Some(near) = meant(&name.text, known) {
-            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let near = meant(&name.text, known);
+        let given = near.and_then(|near| all.iter().find(|other| *other.name.text == *near.name));
+        let found = Diagnostic::error("E0402", name.span, message);
+        let found = match given {
+            Some(given) => found.label(given.name.span, "this one is given already"),
+            None => found.meant(name.span, near),
+        };
         self.tell(found.help(format!("known are {}", known.join(", "))));
     }
 

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use luxel_sdk::params::Unit;
 
 use super::{builtins, types};
@@ -238,10 +238,8 @@ impl Resolver<'_> {
             return;
         }
         let message = format!("there is no type `{}`", ty.name.text);
-        let mut found = Diagnostic::error("E0215", ty.name.span, message);
-        if let Some(near) = types::nearest_type(&ty.name.text) {
-            found = found.help(format!("did you mean `{near}`?")).fix(ty.name.span, near);
-        }
+        let found = Diagnostic::error("E0215", ty.name.span, message)
+            .meant(ty.name.span, near(&ty.name.text, types::names()));
         let known: Vec<_> = types::names().collect();
         self.sink.push(found.help(format!("known are {}", known.join(", "))));
     }
@@ -325,8 +323,9 @@ impl Resolver<'_> {
         // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
         let ending = builtins::names()
             .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
-        if let Some(near) = ending.or_else(|| nearest(shown, known.iter().copied())) {
-            found = found.help(format!("did you mean `{near}`?")).fix(place, near);
+        let ending = ending.map(|name| Near { name, grade: Grade::Sure });
+        if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
+            found = found.meant(place, Some(near));
         } else if shown == "range" {
             found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
         } else {

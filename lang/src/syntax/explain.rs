@@ -150,7 +150,10 @@ impl<'a> Around<'a> {
         if is_pbrt(first.text) && second.is_none_or(|t| t.text != "=") {
             let message = format!("`{}` looks like pbrt's language", first.text);
             let found = self.error("E0021", first, message);
-            return Some(found.help("`luxel convert` turns a pbrt file into a scene"));
+            return Some(
+                found
+                    .help("a scene begins with `scene 1` and says `shape sphere { radius = 1 m }`"),
+            );
         }
         let current = self.current()?;
         if current.text == "else" {

@@ -144,7 +144,7 @@ impl Builder<'_> {
         if adjacent && matches!(unit.as_str(), "e" | "E") {
             let message = "a number ends in an exponent without digits";
             self.sink.push(
-                Diagnostic::error("E0016", whole, message).fix(whole, token.as_str().to_owned()),
+                Diagnostic::error("E0016", whole, message).guess(whole, token.as_str().to_owned()),
             );
             return ExprNode::Broken;
         }

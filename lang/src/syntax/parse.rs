@@ -129,7 +129,7 @@ impl Reader<'_> {
         if version.text != "1" {
             let span = self.span(version.start..version.end());
             let message = format!("version {} is not known; the newest is 1", version.text);
-            self.sink.push(Diagnostic::error("E0002", span, message).fix(span, "1"));
+            self.sink.push(Diagnostic::error("E0002", span, message).guess(span, "1"));
             return None;
         }
         Some(version.end())
@@ -230,12 +230,12 @@ impl Reader<'_> {
             Fault::Stray { at } => {
                 let message = format!("this `{}` closes nothing", byte(*at));
                 let span = self.span(*at..at + 1);
-                Diagnostic::error("E0010", span, message).fix(span, "")
+                Diagnostic::error("E0010", span, message).guess(span, "")
             }
             Fault::String { at } => {
                 let message = "a string ends on its line with `\"`";
                 let end = self.span(at.end..at.end);
-                Diagnostic::error("E0005", self.span(at.clone()), message).fix(end, "\"")
+                Diagnostic::error("E0005", self.span(at.clone()), message).guess(end, "\"")
             }
             Fault::Comment { at } => {
                 let message = "this comment is never closed by `*/`";

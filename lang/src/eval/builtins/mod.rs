@@ -10,7 +10,7 @@ mod transform;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::Dimension;
 
 use super::Evaluator;
@@ -174,10 +174,8 @@ impl Evaluator<'_> {
                     let message = format!("`{}` takes {count} arguments", builtin.name);
                     Diagnostic::error("E0402", at, message)
                 };
-                let near = given.name.and_then(|n| nearest(&n.text, args.iter().copied()));
-                if let Some(near) = near {
-                    found = found.help(format!("did you mean `{near}`?")).fix(at, near);
-                }
+                found =
+                    found.meant(at, given.name.and_then(|n| near(&n.text, args.iter().copied())));
                 let usage = format!("it is called as `{}({})`", builtin.name, args.join(", "));
                 self.tell(found.help(usage));
                 return None;
@@ -239,7 +237,7 @@ impl Evaluator<'_> {
             let end = Span { start: span.end, ..span };
             let mut diagnostic = Diagnostic::error("E0201", span, message);
             for unit in super::types::likely_units(wanted) {
-                diagnostic = diagnostic.fix(end, format!(" {unit}"));
+                diagnostic = diagnostic.guess(end, format!(" {unit}"));
             }
             self.tell(diagnostic);
         } else {

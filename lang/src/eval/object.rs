@@ -115,7 +115,7 @@ impl Evaluator<'_> {
                 "material" => material = self.node_of(field, Kind::Material),
                 _ => {
                     let known = ["transform", "material"];
-                    self.unknown(field, "a group or placement", &known, fields);
+                    let _ = self.unknown(field, "a group or placement", &known, fields);
                 }
             }
         }
@@ -158,6 +158,7 @@ impl Evaluator<'_> {
         let (mut params, mut overrides) = (vec![], vec![]);
         let mut pose = Pose::IDENTITY;
         let (mut poisoned, mut depth) = (false, 0);
+        let mut meant = vec![];
         for (i, field) in fields.iter().enumerate() {
             self.given_twice(&fields[..i], field);
             let Some(param) = Registry::params(&class).find(|p| p.name == &*field.name.text) else {
@@ -170,7 +171,7 @@ impl Evaluator<'_> {
                     "materials" if class.kind == Kind::Importer => {
                         overrides = self.materials(field, &mut poisoned);
                     }
-                    _ => self.unknown_param(&class, field, &fields),
+                    _ => meant.extend(self.unknown_param(&class, field, &fields)),
                 }
                 continue;
             };
@@ -186,7 +187,7 @@ impl Evaluator<'_> {
                 None => poisoned = true,
             }
         }
-        self.complete(&class, head, &fields);
+        self.complete(&class, head, &fields, &meant);
         if depth >= self.budgets.nesting {
             let message = format!("objects stand in one another more than {depth} deep");
             return self.poison("E0507", head.span, message);
@@ -281,8 +282,14 @@ impl Evaluator<'_> {
         });
     }
 
-    fn unknown_param(&mut self, class: &Class, field: &FieldValue, all: &[FieldValue]) {
-        let mut known: Vec<&str> =
+    /// Tells of a field that the class does not have; gives the parameter that was probably meant.
+    fn unknown_param(
+        &mut self,
+        class: &Class,
+        field: &FieldValue,
+        all: &[FieldValue],
+    ) -> Option<&'static str> {
+        let mut known: Vec<&'static str> =
             Registry::params(class).filter(|p| p.deprecated.is_empty()).map(|p| p.name).collect();
         if stands_somewhere(class.kind) {
             known.push("transform");
@@ -290,11 +297,18 @@ impl Evaluator<'_> {
         if class.kind == Kind::Importer {
             known.push("materials");
         }
-        self.unknown(field, &format!("{} {}", class.kind, class.name), &known, all);
+        self.unknown(field, &format!("{} {}", class.kind, class.name), &known, all)
     }
 
-    /// Tells of a name that is no parameter. What is given among `all` is not offered again.
-    fn unknown(&mut self, field: &FieldValue, what: &str, known: &[&str], all: &[FieldValue]) {
+    /// Tells of a name that is no parameter; gives the one that was probably meant. What is given
+    /// among `all` is not offered again.
+    fn unknown(
+        &mut self,
+        field: &FieldValue,
+        what: &str,
+        known: &[&'static str],
+        all: &[FieldValue],
+    ) -> Option<&'static str> {
         let name = &field.name;
         let message = format!("`{what}` has no parameter `{}`", name.text);
         let near = meant(&name.text, known);
@@ -305,16 +319,19 @@ impl Evaluator<'_> {
             None => found.meant(name.span, near),
         };
         self.tell(found.help(format!("known are {}", known.join(", "))));
+        near.map(|near| near.name)
     }
 
-    /// Checks that what must be given is given, and groups exactly once.
-    fn complete(&mut self, class: &Class, head: &Head, fields: &[FieldValue]) {
+    /// Checks that what must be given is given, and groups exactly once. What is `meant` by a
+    /// misspelt name counts as given.
+    fn complete(&mut self, class: &Class, head: &Head, fields: &[FieldValue], meant: &[&str]) {
         let given = |name: &str| fields.iter().find(|f| &*f.name.text == name);
         let missing = |params: &[&str]| params.join("`, `");
         let mut absent = vec![];
         let mut groups: Vec<&'static str> = vec![];
         for param in Registry::params(class) {
-            if param.required && param.group.is_empty() && given(param.name).is_none() {
+            let is_given = given(param.name).is_some() || meant.contains(&param.name);
+            if param.required && param.group.is_empty() && !is_given {
                 absent.push(param.name);
             }
             if !param.group.is_empty() && !groups.contains(&param.group) {
@@ -351,7 +368,10 @@ impl Evaluator<'_> {
                 let message = format!("`{a}` and `{b}` are both given; only one can be");
                 let found = Diagnostic::error("E0406", second.span, message);
                 self.tell(found.label(first.span, "first given here"));
-            } else if chosen.is_empty() && !members.contains(&"scale") {
+            } else if chosen.is_empty()
+                && !members.contains(&"scale")
+                && !members.iter().any(|member| meant.contains(member))
+            {
                 let message = format!("one of `{}` is wanted", missing(&members));
                 self.tell(Diagnostic::error("E0403", head.class.span, message));
             }

@@ -19,6 +19,9 @@ pub(super) struct Explained {
     pub(super) resume: Option<usize>,
 }
 
+/// What is said of an `else` that nothing stands before.
+pub(super) const LONE_ELSE: &str = "`else` without an `if` before it";
+
 /// Whether a word is a directive of pbrt's language.
 pub(super) fn is_pbrt(word: &str) -> bool {
     const WORDS: [&str; 32] = [
@@ -157,8 +160,7 @@ impl<'a> Around<'a> {
         }
         let current = self.current()?;
         if current.text == "else" {
-            let message = "`else` without an `if` before it".to_owned();
-            return Some(self.error("E0020", current, message));
+            return Some(self.error("E0020", current, LONE_ELSE.to_owned()));
         }
         let before = self.before(1)?;
         if current.text == ":" && before.kind == TokenKind::Word {

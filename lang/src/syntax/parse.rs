@@ -181,6 +181,8 @@ impl Reader<'_> {
         if token.kind == TokenKind::Doc {
             let message = "this doc comment is attached to nothing";
             self.sink.push(Diagnostic::warning("E0022", span, message));
+        } else if token.text == "else" {
+            self.sink.push(Diagnostic::error("E0020", span, super::explain::LONE_ELSE));
         } else if !matches!(token.text, "," | ";") {
             let found: String = token.text.chars().take(40).collect();
             let message = format!("`{found}` cannot begin a statement");

@@ -157,6 +157,12 @@ impl Evaluator<'_> {
                 self.poison("E0214", arg.span, shape);
                 return None;
             };
+            if found.is_none() && !call.env.file.units.contains_key(&Dimension::LENGTH) {
+                let message = "`spectrum` wants wavelengths, a length each; these have no unit";
+                let found = Diagnostic::error("E0201", arg.span, message);
+                self.tell(found.help("give each its unit, as in `(400 nm, 0.1)`"));
+                return None;
+            }
             let scale = self.unit_scale(call, found, Dimension::LENGTH, arg.span)?;
             points.push((nanometres(metres * scale), y));
         }

@@ -44,6 +44,8 @@ mod manual;
 #[cfg(test)]
 mod motion;
 #[cfg(test)]
+mod pages;
+#[cfg(test)]
 mod probe;
 #[cfg(test)]
 mod scenes;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
+use luxel_core::diag::{Diagnostic, Grade, Near, SourceId, Span, near};
 
 use super::build::RESERVED;
 use super::lex::{Token, TokenKind, tokens};
@@ -263,7 +263,10 @@ impl<'a> Around<'a> {
             if !begins || !value.begins_operand() || value.first_on_line || value.text == "{" {
                 continue;
             }
-            if RESERVED.contains(&word.text) {
+            // `lte x = 5`: the word is a misspelt one of the language.
+            let names = value.kind == TokenKind::Word
+                && self.tokens.get(self.at + 1 - value_at).is_some_and(|t| t.text == "=");
+            if names || RESERVED.contains(&word.text) {
                 continue;
             }
             let gap = Span::new(self.source, word.end(), word.end());
@@ -297,13 +300,14 @@ impl<'a> Around<'a> {
             };
             return Diagnostic::error("E0023", span, "the statement ends too soon");
         };
-        let message = format!("`{}` is not expected here", short(current.text));
-        let mut found = self.error("E0023", current, message);
-        let first = self.tokens[0].text;
-        if let Some(known) = nearest(first, RESERVED).filter(|known| *known != first) {
-            found = found.help(format!("did you mean `{known}` instead of `{first}`?"));
+        let first = self.tokens.iter().find(|t| t.kind != TokenKind::Doc).unwrap_or(current);
+        if let Some(near) = near(first.text, RESERVED).filter(|near| near.name != first.text) {
+            let message = format!("`{}` begins no statement", short(first.text));
+            let near = Near { grade: Grade::Guess, ..near };
+            return self.error("E0023", first, message).meant(self.span(first), Some(near));
         }
-        found
+        let message = format!("`{}` is not expected here", short(current.text));
+        self.error("E0023", current, message)
     }
 }
 

@@ -1,5 +1,9 @@
 //! Every code that the language and the stage tell, with what it stands for.
 
+mod page;
+
+pub use page::{Example, Page, files as example_files, page};
+
 /// Code and title of every mistake, in order.
 pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0001", "the file is empty or does not begin with `scene 1`"),

@@ -153,7 +153,7 @@ fn requirable(text: &str) -> Result<Feature, String> {
     feature.unrequirable().map_or(Ok(feature), |why| Err(why.to_owned()))
 }
 
-fn droppable(text: &str) -> Result<Feature, String> {
+pub(crate) fn droppable(text: &str) -> Result<Feature, String> {
     let feature = feature(text)?;
     feature.dropped()?;
     Ok(feature)

@@ -1,23 +1,29 @@
 //! `luxel explain`: what a scene requires of a render, who requires it, and what is left out.
 
 use std::fmt::Write as _;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use luxel_core::diag::{Sources, Span};
+use luxel_core::render::Options;
 use luxel_core::scene::{Feature, NodeId, called};
 use luxel_core::stage::{ColorChoice, Stage};
 use luxel_lang::CATALOGUE;
 use serde_json::{Value, json};
 
-use crate::args::{LoadArgs, PluginArgs};
+use crate::args::{self, LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure};
 use crate::load::{self, Course, Loaded};
 use crate::report::{self, Form, Stream};
+use crate::study::{self, Price};
+use crate::verify::Run;
 
 /// Tell what a scene requires of a render, which lines require it, and what is left out
 ///
 /// Only what a scene requires is modelled. Each feature that chooses code is listed: required, with
 /// the places that require it, or left out, with the reason; and what --require and --drop change.
+/// --cost measures the time of each, with the quartiles of nine rounds: of one that is required, over the
+/// time without it; of another, if its code ran for nothing.
 /// A code of a message, as E0402, is explained as well.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
@@ -25,11 +31,18 @@ Examples:
   luxel explain scenes/fog.scene
   luxel explain scenes/motion.scene --drop motion
   luxel explain scenes/cornell.scene --json
+  luxel explain scenes/fog.scene --cost
   luxel explain E0402")]
 pub(crate) struct Args {
     /// The scene, or the code of a message
     #[arg(value_name = "SCENE|CODE")]
     file: PathBuf,
+    /// Measure what each feature costs here: small pictures with it and without, in turns
+    #[arg(long)]
+    cost: bool,
+    /// Threads that --cost renders with [default: as many as there are cores]
+    #[arg(long, value_name = "N", requires = "cost", value_parser = args::threads)]
+    threads: Option<NonZeroUsize>,
     /// One JSON object on standard output
     #[arg(long)]
     json: bool,
@@ -50,12 +63,17 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     plugins.notes.tell(form, Stream::Error)?;
     let loaded = load::load(&args.file, &args.load, None, &plugins, &Course::default())?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, form, Stream::Error)?;
-    let Loaded { stage: Some(stage), sources, .. } = &loaded else { return Ok(Exit::Input) };
-    report::out(&if args.json {
-        format!("{}\n", object(&args.file, stage, sources))
-    } else {
-        text(&args.file, stage, sources)
-    })?;
+    let Loaded { stage: Some(stage), scene: Some(scene), sources, .. } = &loaded else {
+        return Ok(Exit::Input);
+    };
+    let mut prices = vec![];
+    if args.cost {
+        let options = Options { threads: args.threads, ..Options::default() };
+        let run = Run::new(plugins, options)?.silent();
+        prices = study::prices((&args.file, scene), stage, &loaded, &run)?;
+    }
+    let told = Told { file: &args.file, stage, sources, prices };
+    report::out(&if args.json { format!("{}\n", told.object()) } else { told.text() })?;
     Ok(Exit::Fine)
 }
 
@@ -75,19 +93,49 @@ fn code(given: &Path) -> Result<Option<(&'static str, &'static str)>, Failure> {
 /// Places that are shown of one feature.
 const MOST: usize = 8;
 
-fn text(file: &Path, stage: &Stage, sources: &Sources) -> String {
-    let mut page = format!("{} requires\n", file.display());
-    let (needed, rest): (Vec<_>, Vec<_>) =
-        Feature::ALL.into_iter().partition(|feature| stage.needs(*feature));
-    if needed.is_empty() {
-        page.push_str("  none of the features below\n");
+/// What is told of a scene.
+struct Told<'a> {
+    file: &'a Path,
+    stage: &'a Stage,
+    sources: &'a Sources,
+    /// What was measured, if that was asked for.
+    prices: Vec<Price>,
+}
+
+impl Told<'_> {
+    fn text(&self) -> String {
+        let Self { stage, .. } = self;
+        let mut page = format!("{} requires\n", self.file.display());
+        let (needed, rest): (Vec<_>, Vec<_>) =
+            Feature::ALL.into_iter().partition(|feature| stage.needs(*feature));
+        if needed.is_empty() {
+            page.push_str("  none of the features below\n");
+        }
+        for feature in needed {
+            let cost = self.cost(feature).map(|cost| format!(": {cost} the time without it"));
+            page.extend(["  ", feature.name(), &cost.unwrap_or_default(), "\n"]);
+            self.reasons(feature, &mut page);
+        }
+        page.push_str("left out\n");
+        for feature in rest {
+            let cost = self.cost(feature).map(|cost| format!("; {cost} the time if it ran"));
+            let why = absence(stage, feature) + &cost.unwrap_or_default();
+            let _ = writeln!(page, "  {:14}{why}", feature.name());
+        }
+        let [shapes, materials, lights, media] = counts(stage);
+        let _ = writeln!(
+            page,
+            "{shapes} shapes in their places, {materials} materials, {lights} lights, {media} media"
+        );
+        page
     }
-    for feature in needed {
-        let reasons: Vec<_> = stage.reasons.of(feature).collect();
-        page.extend(["  ", feature.name(), "\n"]);
+
+    /// The places that require a feature.
+    fn reasons(&self, feature: Feature, page: &mut String) {
+        let reasons: Vec<_> = self.stage.reasons.of(feature).collect();
         for (id, span) in reasons.iter().take(MOST) {
-            let name = called(stage.scene.node(*id));
-            page.extend(["      ", &place(*span, sources), "  ", &name, "\n"]);
+            let name = called(self.stage.scene.node(*id));
+            page.extend(["      ", &place(*span, self.sources), "  ", &name, "\n"]);
         }
         if reasons.len() > MOST {
             page.extend(["      and ", &(reasons.len() - MOST).to_string(), " more\n"]);
@@ -96,16 +144,50 @@ fn text(file: &Path, stage: &Stage, sources: &Sources) -> String {
             page.extend(["      ", UNTOLD, "\n"]);
         }
     }
-    page.push_str("left out\n");
-    for feature in rest {
-        page.extend(["  ", &format!("{:14}", feature.name()), &absence(stage, feature), "\n"]);
+
+    fn price(&self, feature: Feature) -> Option<[f64; 3]> {
+        self.prices.iter().find(|price| price.feature == feature).map(|price| price.ratio)
     }
-    let [shapes, materials, lights, media] = counts(stage);
-    let _ = writeln!(
-        page,
-        "{shapes} shapes in their places, {materials} materials, {lights} lights, {media} media"
-    );
-    page
+
+    /// `1.93 × (1.90–1.97)`
+    fn cost(&self, feature: Feature) -> Option<String> {
+        self.price(feature).map(|[low, median, high]| format!("{median:.2} × ({low:.2}–{high:.2})"))
+    }
+
+    fn object(&self) -> Value {
+        let Self { file, stage, sources, .. } = self;
+        let by = |(id, span): (NodeId, Span)| {
+            let is_written = !span.range().is_empty();
+            let at = is_written.then(|| sources.line_column(span.source, span.start as usize));
+            json!({
+                "node": called(stage.scene.node(id)),
+                "file": is_written.then(|| sources.name(span.source)),
+                "line": at.map(|at| at.line),
+                "column": at.map(|at| at.column),
+            })
+        };
+        let feature = |feature: Feature| {
+            let is_needed = stage.needs(feature);
+            json!({
+                "name": feature.name(),
+                "required": is_needed,
+                "compiled_in": stage.has(feature),
+                "dropped": stage.scene.leaves_out(feature),
+                "by": stage.reasons.of(feature).filter(|_| is_needed).map(by).collect::<Vec<_>>(),
+                "time_ratio_quartiles": self.price(feature),
+                "why_not": (!is_needed).then(|| absence(stage, feature)),
+            })
+        };
+        let [shapes, materials, lights, media] = counts(stage);
+        json!({
+            "scene": file,
+            "features": Feature::ALL.map(feature),
+            "shapes": shapes,
+            "materials": materials,
+            "lights": lights,
+            "media": media,
+        })
+    }
 }
 
 /// What is said where shapes are too many to tell which of them lie within each other.
@@ -136,39 +218,6 @@ fn place(span: Span, sources: &Sources) -> String {
 fn counts(stage: &Stage) -> [usize; 4] {
     let lights = stage.lights.len();
     [stage.placements.len(), stage.materials.len(), lights, stage.media.len()]
-}
-
-fn object(file: &Path, stage: &Stage, sources: &Sources) -> Value {
-    let by = |(id, span): (NodeId, Span)| {
-        let is_written = !span.range().is_empty();
-        let at = is_written.then(|| sources.line_column(span.source, span.start as usize));
-        json!({
-            "node": called(stage.scene.node(id)),
-            "file": is_written.then(|| sources.name(span.source)),
-            "line": at.map(|at| at.line),
-            "column": at.map(|at| at.column),
-        })
-    };
-    let feature = |feature: Feature| {
-        let is_needed = stage.needs(feature);
-        json!({
-            "name": feature.name(),
-            "required": is_needed,
-            "compiled_in": stage.has(feature),
-            "dropped": stage.scene.leaves_out(feature),
-            "by": stage.reasons.of(feature).filter(|_| is_needed).map(by).collect::<Vec<_>>(),
-            "why_not": (!is_needed).then(|| absence(stage, feature)),
-        })
-    };
-    let [shapes, materials, lights, media] = counts(stage);
-    json!({
-        "scene": file,
-        "features": Feature::ALL.map(feature),
-        "shapes": shapes,
-        "materials": materials,
-        "lights": lights,
-        "media": media,
-    })
 }
 
 #[cfg(test)]

@@ -54,6 +54,23 @@ fn json_tells_the_same_with_lines_and_what_was_dropped() {
 }
 
 #[test]
+fn costs_are_measured_of_what_can_be_left_out_and_of_what_could_run_for_nothing() {
+    let folder = Folder::new("explain-cost").with("a.scene", &foggy());
+    let done = folder.luxel(&["explain", "a.scene", "--cost", "--json"]);
+    assert_eq!((done.code, &*done.err), (0, ""), "{done:?}");
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    let mut measured = vec![];
+    for feature in told["features"].as_array().unwrap() {
+        let Some(ratio) = feature["time_ratio_quartiles"].as_array() else { continue };
+        let ratio: Vec<f64> = ratio.iter().map(|it| it.as_f64().unwrap()).collect();
+        assert!(ratio[0] > 0.0 && ratio.is_sorted() && ratio.len() == 3, "{ratio:?}");
+        measured.push(feature["name"].as_str().unwrap());
+    }
+    // RGB and layers cannot be required, open surfaces not be dropped.
+    assert_eq!(measured, ["media", "nested", "motion", "light_choice"]);
+}
+
+#[test]
 fn a_code_is_explained_and_what_is_neither_is_refused() {
     let folder = Folder::new("explain-code");
     let done = folder.luxel(&["explain", "E0402"]);

@@ -83,6 +83,32 @@ fn what_is_recommended_is_verified_and_can_be_pasted() {
     assert!(svg.contains("sampler=independent</text>") && svg.contains("target 1.00 %"));
 }
 
+/// In the middle of a ball of a medium that takes e^-.5 of an even sky's light on a radius.
+#[test]
+fn what_is_dropped_is_told_with_the_error_that_it_adds() {
+    let (head, _) = FURNACE.split_once("light area").unwrap();
+    let fog = head.to_owned()
+        + "light constant { spectrum = rgb.linear_srgb(1, 1, 1), scale = 1 }
+shape sphere {
+  radius = 1 m, interior = medium homogeneous { sigma_t = 0.5 / (1 m), albedo = 0 }
+}
+";
+    let truth = (-0.5_f64).exp().to_string();
+    let args = ["--drop", "media,motion", "--truth", &truth, "--seeds", "4"];
+    let (_, done) = study(&fog, &[&args[..], &["--json"]].concat());
+    let found = json(&done);
+    let names = found["configurations"].as_array().unwrap().iter().map(|it| &it["name"]);
+    assert_eq!(names.collect::<Vec<_>>(), ["as it is", "drop=media"]);
+    // Without the medium 1 instead of e^-.5, which nothing scatters; pictures are in single precision.
+    let [bias2, _] = number(&found["configurations"][1]["points"][0]["bias_squared"]);
+    assert!((bias2.sqrt() - (0.5_f64.exp() - 1.0)).abs() < 1e-5, "{bias2}");
+    assert_eq!(found["recommended"]["configuration"], "as it is");
+    let notes: Vec<&str> =
+        found["notes"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert_eq!(notes[0], "drop=motion was left out: the scene does not require it");
+    assert!(notes[1].starts_with("drop=media adds an error of 64.9 % ± 0.00 and "), "{notes:?}");
+}
+
 #[test]
 fn a_time_is_kept_by_measuring_less_and_that_is_told() {
     let args = ["--sweep", "spp=16,64,256", "--size", "32x32", "--target", "50%", "--time", "1s"];

@@ -16,6 +16,9 @@ pub(super) struct Number {
 /// probability 0.997.
 pub(super) const SIGMAS: f64 = 4.0;
 
+/// Pictures are in single precision: a bias below this is rounding.
+const ROUNDING: f64 = 1e-6;
+
 impl Number {
     /// Mean of independent values, of which there are two at least.
     fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
@@ -118,12 +121,12 @@ impl Estimate {
     }
 
     pub(super) fn is_biased(&self) -> bool {
-        self.bias2.value > SIGMAS * self.bias2.error
+        self.bias2.value > self.unseen().powi(2)
     }
 
     /// A bias below this would not have been seen.
     pub(super) fn unseen(&self) -> f64 {
-        (SIGMAS * self.bias2.error).sqrt()
+        (SIGMAS * self.bias2.error).sqrt().max(ROUNDING)
     }
 
     /// Relative error, root mean square.

@@ -14,6 +14,10 @@ pub(super) struct Fit {
     power: f64,
     /// p, as it was measured.
     pub(super) measured: Number,
+    /// Logarithm of the samples in whose middle the line was laid.
+    middle: f64,
+    /// Standard error of the logarithm of the variance there.
+    height_error: f64,
 }
 
 impl Fit {
@@ -28,22 +32,32 @@ impl Fit {
         let x = |spp: u32| f64::from(spp).ln();
         let middle = points.iter().map(|(spp, _)| x(*spp)).sum::<f64>() / n;
         let spread: f64 = points.iter().map(|(spp, _)| (x(*spp) - middle).powi(2)).sum();
-        let (mut slope, mut square, mut height) = (0.0, 0.0, 0.0);
+        let (mut slope, mut square, mut height, mut height_square) = (0.0, 0.0, 0.0, 0.0);
         for (spp, variance) in points {
             let weight = (x(*spp) - middle) / spread;
             slope += weight * variance.value.ln();
-            square += (weight * variance.error / variance.value).powi(2);
+            let error = variance.error / variance.value;
+            square += (weight * error).powi(2);
             height += variance.value.ln() / n;
+            height_square += (error / n).powi(2);
         }
         let measured = Number { value: -slope, error: square.sqrt() };
         let is_one = (measured.value - 1.0).abs() <= SAME * measured.error;
         let power = if is_one { 1.0 } else { measured.value };
-        Some(Self { v: (height + power * middle).exp(), power, measured })
+        let height_error = height_square.sqrt();
+        Some(Self { v: (height + power * middle).exp(), power, measured, middle, height_error })
     }
 
     /// Samples at which the variance is that; not whole.
     pub(super) fn samples(&self, variance: f64) -> f64 {
         (self.v / variance).powf(1.0 / self.power)
+    }
+
+    /// Relative standard error of so many samples, if they were found by `samples`: of the line's height,
+    /// and of its slope the more, the further from its middle.
+    pub(super) fn relative_error(&self, samples: f64) -> f64 {
+        let leaning = (samples.ln() - self.middle) * self.measured.error;
+        self.height_error.hypot(leaning) / self.power
     }
 
     /// Samples at which it is `target`, where it was `found` with `n`.
@@ -71,6 +85,11 @@ mod tests {
         // ln 4 between neighbours: the slope's error is that of a point over √2 ln 4.
         assert!((steep.measured.error - 0.01 / (2.0_f64.sqrt() * 4.0_f64.ln())).abs() < 1e-12);
         assert!((steep.samples(3.0 / 1000.0) - 100.0).abs() < 1e-9);
+        // A point's error over √3 in the middle; a hundredfold of that off, the slope's error counts as well.
+        let middle = 0.01 / 3.0_f64.sqrt() / 1.5;
+        assert!((steep.relative_error(16.0) - middle).abs() < 1e-12);
+        let leaning = 100.0_f64.ln() * steep.measured.error / 1.5;
+        assert!((steep.relative_error(1600.0) - middle.hypot(leaning)).abs() < 1e-12);
         let nearly = fit(1.001, 0.01);
         assert!(
             nearly.power.to_bits() == 1.0_f64.to_bits()

@@ -8,7 +8,7 @@ use luxel_core::stage::Stage;
 use luxel_sdk::color::RgbSpace;
 
 use super::plan::{LEAST_SEEDS, Plan};
-use super::sweep::Change;
+use super::sweep::{Change, Dimension};
 use crate::exit::{Exit, Failure};
 use crate::progress::Steps;
 use crate::verify::Run;
@@ -22,6 +22,11 @@ pub(super) struct Subject {
 impl Subject {
     pub(super) fn name(&self) -> String {
         self.change.as_ref().map_or_else(|| "as it is".to_owned(), Change::name)
+    }
+
+    /// Whether a feature is left out.
+    pub(super) fn drops(&self) -> bool {
+        self.change.as_ref().is_some_and(|change| change.dimension == Dimension::Drop)
     }
 }
 

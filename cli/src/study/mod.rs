@@ -10,6 +10,7 @@ mod found;
 mod lab;
 mod outcome;
 mod plan;
+mod price;
 mod settings;
 mod subjects;
 mod svg;
@@ -35,6 +36,7 @@ use crate::report::{self, Stream};
 use crate::verify::Run;
 
 pub(crate) use self::args::Args;
+pub(crate) use self::price::{Price, prices};
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     args.output.as_deref().map_or(Ok(()), found::check)?;
@@ -71,6 +73,8 @@ fn study(file: &Path, args: &Args, run: &Run, start: Instant) -> Result<Found, F
     let names: Vec<String> = subjects.all.iter().map(Subject::name).collect();
     let outcomes = outcome::outcomes(&names, &series, &reference);
     let mut notes = [&subjects.notes[..], &plan.notes].concat();
+    let dropped = subjects.all.iter().zip(&outcomes).filter(|(subject, _)| subject.drops());
+    notes.extend(dropped.map(|(_, outcome)| table::dropped(outcome)));
     let mut advice = None;
     if let Some(choice) = choose::choose(&outcomes, args.target) {
         let left = args.time.map(|time| time.saturating_sub(start.elapsed()).as_secs_f64());
@@ -113,7 +117,7 @@ fn study(file: &Path, args: &Args, run: &Run, start: Instant) -> Result<Found, F
 
 /// As much as there is time for.
 fn plan(args: &Args, subjects: &Subjects, lab: &mut Lab<'_>) -> Result<Plan, Failure> {
-    let plan = Plan::whole(args.sweep.spp.clone(), args.seeds);
+    let plan = Plan::whole(args.sweep().spp, args.seeds);
     let Some(time) = args.time else { return Ok(plan) };
     let spp = plan.most();
     let cost = lab.shot(&subjects.all[0].stage, spp)?.seconds / f64::from(spp);

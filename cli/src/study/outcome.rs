@@ -24,6 +24,8 @@ pub(super) struct Outcome {
     pub(super) cost: f64,
     /// The same as a share of that of the scene as it is: lower quartile, median, upper quartile.
     pub(super) slower: [f64; 3],
+    /// Rounds that this was measured in.
+    rounds: usize,
     /// Samples that were not finite.
     pub(super) bad: u64,
 }
@@ -38,6 +40,21 @@ impl Outcome {
     pub(super) fn efficiency(&self, base: &Self) -> f64 {
         let work = |outcome: &Self, ratio: f64| outcome.best().estimate.variance.value * ratio;
         work(base, 1.0) / work(self, self.slower[1])
+    }
+
+    /// Time for a relative error, seconds, with its relative standard error; `None` as below.
+    pub(super) fn work_for(&self, target: f64) -> Option<Number> {
+        let samples = self.samples_for(target)?;
+        let error =
+            self.fit.map_or(0.0, |fit| fit.relative_error(samples)).hypot(self.cost_error());
+        Some(Number { value: samples * self.cost, error })
+    }
+
+    /// Relative standard error of the cost, from its quartiles: those of normal noise are 1.349 standard
+    /// deviations apart, and its median scatters 1.253 times as much as its mean.
+    fn cost_error(&self) -> f64 {
+        let [low, median, high] = self.slower;
+        1.253 * (high - low) / 1.349 / median / (self.rounds as f64).sqrt()
     }
 
     /// Samples of each pixel for a relative error, whole; `None` where bias stands in the way.
@@ -73,6 +90,7 @@ pub(super) fn outcomes(names: &[String], series: &Series, reference: &Reference)
             fit: Fit::of(&falling),
             cost: slower[1] * quartiles(base.clone())[1],
             slower,
+            rounds: shots.last().map_or(1, Vec::len),
             bad: shots.iter().flatten().map(|shot| shot.bad).sum(),
             points,
         }
@@ -89,7 +107,7 @@ fn rates(shots: &[Vec<Shot>], spp: &[u32]) -> Vec<f64> {
 }
 
 /// Of at least one number.
-fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
+pub(super) fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
     let last = values.len() - 1;
     [1, 2, 3].map(|quarter| {

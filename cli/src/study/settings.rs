@@ -25,11 +25,15 @@ pub(super) fn lines(
     }
     let samples = Value::Number(f64::from(samples), Unit::NONE);
     scene.set_param(Setting::Sampler, "samples", samples);
-    let other = change.map(|change| change.dimension.setting());
+    let other = change.and_then(|change| change.dimension.setting());
     let other = other.filter(|setting| *setting != Setting::Sampler);
     let settings = std::iter::once(Setting::Sampler).chain(other);
     let nodes = settings.filter_map(|setting| scene.setting(setting));
-    Ok(nodes.map(|node| line(node, registry, sources)).collect::<Vec<_>>().join("\n"))
+    let dropped = scene
+        .left_out()
+        .map(|feature| format!("// and on the command line: --drop {}", feature.name()));
+    let lines = nodes.map(|node| line(node, registry, sources)).chain(dropped);
+    Ok(lines.collect::<Vec<_>>().join("\n"))
 }
 
 fn line(node: &Node, registry: &Registry, sources: &Sources) -> String {

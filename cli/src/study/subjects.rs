@@ -8,7 +8,7 @@ use luxel_core::stage::{self, Stage};
 
 use super::args::Args;
 use super::lab::Subject;
-use super::sweep::unfit;
+use super::sweep::{Dimension, unfit};
 use crate::exit::{Exit, Failure, blaming};
 use crate::load::{self, Loaded};
 use crate::report::{self, Stream};
@@ -36,7 +36,7 @@ pub(super) struct Subjects {
 /// # Errors
 /// A scene that cannot be read; a size or a change that cannot be.
 pub(super) fn subjects(file: &Path, args: &Args, run: &Run) -> Result<Subjects, Failure> {
-    let loaded = load::load(file, &args.load, None, &run.plugins, &run.course());
+    let loaded = load::load(file, &args.load(), None, &run.plugins, &run.course());
     let mut loaded = loaded.map_err(|failure| run.interrupted().unwrap_or(failure))?;
     report::diagnostics(&loaded.diagnostics, &loaded.sources, args.form(), Stream::Error)?;
     let (Some(whole), Some(scene)) = (loaded.stage.take(), loaded.scene.take()) else {
@@ -51,21 +51,16 @@ pub(super) fn subjects(file: &Path, args: &Args, run: &Run) -> Result<Subjects, 
     }
     let mut base = scene.clone();
     base.set_resolution(size);
-    let build = |scene: &Scene, before: &Stage| -> Result<Result<Stage, String>, Failure> {
-        let registry = &run.plugins.registry;
-        blaming(&file.display().to_string(), || {
-            let built = stage::build(scene, registry, &loaded.files, Some(before));
-            let first = |found: &[luxel_core::diag::Diagnostic]| {
-                found.first().map_or_else(String::new, ToString::to_string)
-            };
-            built.map(|built| built.stage).map_err(|found| first(&found))
-        })
-    };
+    let build = |scene: &Scene, before: &Stage| rebuilt((file, scene), &loaded, run, before);
     let stage = build(&base, &whole)?.map_err(|message| Failure::new(Exit::Input, message))?;
     let mut all = vec![Subject { change: None, stage }];
     let mut notes = vec![];
-    for change in &args.sweep.changes {
+    for change in &args.sweep().changes {
         if change.is_of(&all[0].stage) {
+            if change.dimension == Dimension::Drop {
+                notes
+                    .push(format!("{} was left out: the scene does not require it", change.name()));
+            }
             continue;
         }
         let mut changed = base.clone();
@@ -85,8 +80,27 @@ pub(super) fn subjects(file: &Path, args: &Args, run: &Run) -> Result<Subjects, 
     Ok(Subjects { scene, loaded, size, all, notes })
 }
 
+/// A changed scene made ready, or the first thing that is wrong with it.
+///
+/// # Errors
+/// A panic below, as our fault.
+pub(super) fn rebuilt(
+    (file, scene): (&Path, &Scene),
+    loaded: &Loaded,
+    run: &Run,
+    before: &Stage,
+) -> Result<Result<Stage, String>, Failure> {
+    blaming(&file.display().to_string(), || {
+        let built = stage::build(scene, &run.plugins.registry, &loaded.files, Some(before));
+        let first = |found: &[luxel_core::diag::Diagnostic]| {
+            found.first().map_or_else(String::new, ToString::to_string)
+        };
+        built.map(|built| built.stage).map_err(|found| first(&found))
+    })
+}
+
 /// The same shape with `SIDE` pixels along its longer side, or fewer.
-fn small(size: UVec2) -> UVec2 {
+pub(super) fn small(size: UVec2) -> UVec2 {
     let longer = size.max_element().max(1);
     let side = SIDE.min(longer);
     ((size * side + longer / 2) / longer).max(UVec2::ONE)

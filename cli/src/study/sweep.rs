@@ -2,10 +2,11 @@
 
 use luxel_core::accel::Precision;
 use luxel_core::registry::Registry;
-use luxel_core::scene::{Scene, Setting, Value};
+use luxel_core::scene::{Feature, Scene, Setting, Value};
 use luxel_core::stage::Stage;
 use luxel_sdk::params::Dimension as Unit;
 
+use crate::args::droppable;
 use crate::exit::{Exit, Failure};
 
 /// Something that may be varied.
@@ -19,10 +20,11 @@ pub(super) enum Dimension {
     Precision,
     Color,
     Filter,
+    Drop,
 }
 
 impl Dimension {
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Spp,
         Self::Depth,
         Self::Roulette,
@@ -31,6 +33,7 @@ impl Dimension {
         Self::Precision,
         Self::Color,
         Self::Filter,
+        Self::Drop,
     ];
 
     pub(super) fn word(self) -> &'static str {
@@ -43,6 +46,7 @@ impl Dimension {
             Self::Precision => "precision",
             Self::Color => "color",
             Self::Filter => "filter",
+            Self::Drop => "drop",
         }
     }
 
@@ -57,16 +61,18 @@ impl Dimension {
             Self::Precision => &["fast", "standard", "exact"],
             Self::Color => &["rgb", "spectral"],
             Self::Filter => &["box", "gaussian", "blackman_harris"],
+            Self::Drop => &["spectral", "media", "nested", "motion"],
         }
     }
 
-    /// The setting that it belongs to.
-    pub(super) fn setting(self) -> Setting {
+    /// The setting that it belongs to, if it is one that a scene writes.
+    pub(super) fn setting(self) -> Option<Setting> {
         match self {
-            Self::Spp | Self::Sampler => Setting::Sampler,
-            Self::Depth | Self::Roulette | Self::Integrator => Setting::Integrator,
-            Self::Precision | Self::Color => Setting::Film,
-            Self::Filter => Setting::Filter,
+            Self::Spp | Self::Sampler => Some(Setting::Sampler),
+            Self::Depth | Self::Roulette | Self::Integrator => Some(Setting::Integrator),
+            Self::Precision | Self::Color => Some(Setting::Film),
+            Self::Filter => Some(Setting::Filter),
+            Self::Drop => None,
         }
     }
 
@@ -88,6 +94,7 @@ impl Dimension {
             }
             Self::Precision => Precision::of_word(value).is_some(),
             Self::Color => ["rgb", "spectral"].contains(&value),
+            Self::Drop => return droppable(value).map(|_| ()),
             // The registry knows these.
             Self::Sampler | Self::Integrator | Self::Filter => true,
         };
@@ -103,6 +110,11 @@ pub(super) struct Change {
 }
 
 impl Change {
+    /// A feature left out.
+    pub(super) fn dropping(feature: Feature) -> Self {
+        Self { dimension: Dimension::Drop, value: feature.name().to_owned() }
+    }
+
     /// `depth=4`
     pub(super) fn name(&self) -> String {
         format!("{}={}", self.dimension.word(), self.value)
@@ -113,7 +125,10 @@ impl Change {
     /// # Errors
     /// A class that there is not; a parameter that the class at hand has not.
     pub(super) fn apply(&self, scene: &mut Scene, registry: &Registry) -> Result<(), String> {
-        let (setting, value) = (self.dimension.setting(), &self.value);
+        let value = &self.value;
+        let Some(setting) = self.dimension.setting() else {
+            return scene.leave_out(droppable(value)?).map_err(str::to_owned);
+        };
         let given = scene.setting(setting).map(|node| node.class.clone());
         let class = given.as_deref().unwrap_or(setting.default_class());
         if let Some(name) = self.dimension.param() {
@@ -142,8 +157,10 @@ impl Change {
             Dimension::Sampler => stage.sampler.class().name,
             Dimension::Integrator => stage.integrator.class().name,
             Dimension::Filter => stage.filter.class().name,
+            Dimension::Drop => return droppable(value).is_ok_and(|feature| !stage.needs(feature)),
             Dimension::Spp | Dimension::Depth | Dimension::Roulette => {
-                let node = stage.scene.setting(self.dimension.setting());
+                let node =
+                    self.dimension.setting().and_then(|setting| stage.scene.setting(setting));
                 let given = self.dimension.param().and_then(|name| node?.get(name));
                 let number = value.parse().map(|number| Value::Number(number, Unit::NONE));
                 return given.is_some_and(|given| number.as_ref() == Ok(&given.value));
@@ -233,6 +250,7 @@ mod tests {
         refused("depth=deep", "`depth` cannot be `deep`");
         refused("spp=0,4", "`spp` cannot be `0`");
         refused("precision=best", "`precision` cannot be `best`");
+        refused("drop=open_surfaces", "drop `media`");
         refused("spp=4", "two numbers of samples at least");
     }
 

@@ -58,10 +58,22 @@ fn row(outcome: &Outcome, base: &Outcome, target: f64) -> [String; 7] {
 pub(super) fn bias(estimate: &Estimate) -> String {
     if estimate.is_biased() {
         with_error(estimate.bias2.root())
-    } else if estimate.unseen() > 0.0 {
-        format!("none > {}", percent(estimate.unseen()))
     } else {
-        "none".to_owned()
+        format!("none > {}", percent(estimate.unseen()))
+    }
+}
+
+/// What leaving a feature out adds to the error, and what it saves of the time.
+pub(super) fn dropped(outcome: &Outcome) -> String {
+    let Outcome { name, slower: [_, median, _], .. } = outcome;
+    let estimate = &outcome.best().estimate;
+    let time = match 1.0 - median {
+        saved if saved >= 0.0 => format!("saves {} of the time", percent(saved)),
+        lost => format!("takes {} longer", percent(-lost)),
+    };
+    match bias(estimate) {
+        added if estimate.is_biased() => format!("{name} adds an error of {added} and {time}"),
+        unseen => format!("{name} adds no error that is seen ({unseen}) and {time}"),
     }
 }
 

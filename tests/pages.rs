@@ -6,7 +6,7 @@ use std::sync::Arc;
 use luxel_core::diag::Diagnostic;
 use luxel_core::files::{FileError, Files, MemoryFiles, normalise};
 use luxel_core::stage;
-use luxel_lang::{Budgets, CATALOGUE, Settings, example_files, load, page};
+use luxel_lang::{Budgets, CATALOGUE, Settings, Setup, load, page, setup};
 
 use crate::load::registry;
 
@@ -52,7 +52,7 @@ fn bytes(text: &str) -> Vec<u8> {
 
 /// Everything that is told of an example, by the language and by the stage.
 fn told(scene: &'static str, budgets: Budgets) -> Vec<Diagnostic> {
-    let (texts, set) = example_files(scene);
+    let Setup { files: texts, set } = setup(scene);
     let files = texts
         .iter()
         .fold(MemoryFiles::default(), |files, (name, text)| files.with(*name, bytes(text)));

@@ -8,6 +8,7 @@ mod denoise;
 mod explain;
 #[cfg(test)]
 mod faulty;
+mod fix;
 mod grown;
 mod hostile;
 mod isolate;

@@ -2,7 +2,7 @@
 
 mod page;
 
-pub use page::{Example, Page, files as example_files, page};
+pub use page::{Example, Page, Setup, page, setup};
 
 /// Code and title of every mistake, in order.
 pub const CATALOGUE: &[(&str, &str)] = &[

@@ -38,8 +38,8 @@ const GROUPS: [&str; 5] = [
 /// The page of a code, `None` if no message has it.
 pub fn page(code: &str) -> Option<Page> {
     let (code, title) = CATALOGUE.iter().copied().find(|(known, _)| *known == code)?;
-    let sections = GROUPS.into_iter().flat_map(|group| group.split("\n# "));
-    let text = sections.filter_map(|section| section.strip_prefix(code)).next()?;
+    let mut sections = GROUPS.into_iter().flat_map(|group| group.split("\n# "));
+    let text = sections.find_map(|section| section.strip_prefix(code))?;
     Some(Page {
         code,
         title,
@@ -57,8 +57,17 @@ fn example(text: &'static str) -> Option<Example> {
     Some(Example { wrong, mend, right: parts.next().and_then(scene)? })
 }
 
-/// The files of an example's scene with the scene first, and what is set on the command line.
-pub fn files(scene: &'static str) -> (Vec<(&'static str, String)>, Vec<(String, String)>) {
+/// The files of an example, and how they are loaded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setup {
+    /// Names and texts; the scene is the first, `example.scene`.
+    pub files: Vec<(&'static str, String)>,
+    /// What is set on the command line.
+    pub set: Vec<(String, String)>,
+}
+
+/// What one scene of an example stands for.
+pub fn setup(scene: &'static str) -> Setup {
     let (mut files, mut set) = (vec![("example.scene", String::new())], vec![]);
     for line in scene.lines() {
         if let Some(name) = line.strip_prefix("// file: ") {
@@ -71,7 +80,7 @@ pub fn files(scene: &'static str) -> (Vec<(&'static str, String)>, Vec<(String, 
             text.extend([line, "\n"]);
         }
     }
-    (files, set)
+    Setup { files, set }
 }
 
 #[cfg(test)]
@@ -89,7 +98,7 @@ mod tests {
             let page = page(code).unwrap_or_else(|| panic!("{code} has no page"));
             assert!(page.meaning.len() > 40 && page.meaning.ends_with('.'), "{code}");
             assert_eq!(page.example.is_none(), WITHOUT_EXAMPLE.contains(code), "{code}");
-            for Example { wrong, mend, right } in page.example {
+            if let Some(Example { wrong, mend, right }) = page.example {
                 assert!(mend.ends_with('.') && wrong != right, "{code}");
             }
         }
@@ -98,7 +107,7 @@ mod tests {
 
     #[test]
     fn files_and_settings_stand_beside_a_scene() {
-        let (files, set) = files("scene 1\n// set: a=b=c\n// file: x\ny\n");
+        let Setup { files, set } = setup("scene 1\n// set: a=b=c\n// file: x\ny\n");
         assert_eq!(files, [("example.scene", "scene 1\n".into()), ("x", "y\n".into())]);
         assert_eq!(set, [("a".to_owned(), "b=c".to_owned())]);
     }

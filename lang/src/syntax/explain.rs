@@ -263,10 +263,11 @@ impl<'a> Around<'a> {
             if !begins || !value.begins_operand() || value.first_on_line || value.text == "{" {
                 continue;
             }
-            // `lte x = 5`: the word is a misspelt one of the language.
-            let names = value.kind == TokenKind::Word
-                && self.tokens.get(self.at + 1 - value_at).is_some_and(|t| t.text == "=");
-            if names || RESERVED.contains(&word.text) {
+            // `lte x = 5`, `fro i in list`, `palce x`: a misspelt word of the language.
+            let after = self.tokens.get(self.at + 1 - value_at).map_or("", |t| t.text);
+            let names = value.kind == TokenKind::Word && matches!(after, "=" | "in");
+            let is_first = self.open.is_empty() && near(word.text, RESERVED).is_some();
+            if names || is_first || RESERVED.contains(&word.text) {
                 continue;
             }
             let gap = Span::new(self.source, word.end(), word.end());

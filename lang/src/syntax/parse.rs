@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, SourceId, Span};
+use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
 use pest::Parser;
 use pest::error::InputLocation;
 
@@ -19,6 +19,9 @@ use crate::sink::Sink;
 const RESUME_LIMIT: usize = 8;
 /// In how many enclosing blocks statements after a mistake are still looked at.
 const BLOCKS_LOOKED_AT: usize = 8;
+
+/// Words before a name that is being defined.
+const DEFINING: [&str; 3] = ["let", "param", "fn"];
 
 /// A file, read.
 #[derive(Debug, Default, PartialEq)]
@@ -335,13 +338,13 @@ impl Reader<'_> {
     fn broken(&mut self, chunk: Range<usize>) {
         let span = self.span(chunk.clone());
         let mut words = tokens(self.text, chunk).filter(|t| t.kind != TokenKind::Doc);
-        let mut defines = None;
-        if let Some("let" | "param" | "fn") = words.next().map(|t| t.text) {
-            defines = words
-                .next()
-                .filter(|t| t.kind == TokenKind::Word)
-                .map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
-        }
+        let first = words.next().map_or("", |t| t.text);
+        let name = words.next().filter(|t| t.kind == TokenKind::Word);
+        // `lte x = 5` was to define something too.
+        let mark = words.next().map_or("", |t| t.text);
+        let misspelt = matches!(mark, "=" | ":" | "(") && nearest(first, DEFINING).is_some();
+        let name = name.filter(|_| misspelt || DEFINING.contains(&first));
+        let defines = name.map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
         let node = StmtNode::Broken { defines };
         self.out.stmts.push(Stmt { span, docs: vec![], attrs: vec![], node });
     }

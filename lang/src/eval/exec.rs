@@ -265,7 +265,7 @@ impl Evaluator<'_> {
         let value = self.apply(&function, args, call.span, env);
         match value {
             Value::Object(_) if body.place != Place::Object => self.emit(&value, call.span),
-            Value::Poison => self.damaged = true,
+            Value::Poison => (self.damaged, body.broken) = (true, true),
             _ => {
                 let message = "this call gives a value that nothing uses";
                 self.tell(

@@ -209,7 +209,8 @@ impl Evaluator<'_> {
     /// Whether the file declares a parameter before; told if not.
     fn declares(&mut self, name: &Name) -> bool {
         let known: Vec<String> = self.params.iter().map(|param| param.name.clone()).collect();
-        if known.iter().any(|known| **known == *name.text) {
+        // What could not be read may have declared it.
+        if self.damaged || known.iter().any(|known| **known == *name.text) {
             return true;
         }
         let message = format!("no parameter `{}` is declared before", name.text);

@@ -83,7 +83,7 @@ impl Evaluator<'_> {
         let source = self.sources.add(name, text.clone());
         let tree = syntax::parse(&text, source, &self.budgets, &mut self.sink);
         self.stopped |= self.sink.is_full();
-        resolve::resolve(&tree, &mut self.sink);
+        resolve::resolve(&tree, &text, &mut self.sink);
         let units = self.units(&tree.stmts);
         Some(Rc::new(ReadFile { tree, units }))
     }
@@ -212,6 +212,9 @@ impl Evaluator<'_> {
         let mut overrides = BTreeMap::new();
         for field in with {
             if !params.iter().any(|p| p.text == field.name.text) {
+                if is_damaged(&read.tree) {
+                    continue;
+                }
                 self.no_param(&field.name, &params);
                 continue;
             }
@@ -267,6 +270,11 @@ pub(super) fn params(tree: &Tree) -> impl Iterator<Item = &Name> {
         StmtNode::Param(def) => Some(&def.name),
         _ => None,
     })
+}
+
+/// Whether a statement could not be read: it may have declared anything.
+pub(super) fn is_damaged(tree: &Tree) -> bool {
+    tree.stmts.iter().any(|stmt| matches!(stmt.node, StmtNode::Broken { .. }))
 }
 
 fn placed(code: &'static str, span: Option<Span>, message: String) -> Diagnostic {

@@ -147,6 +147,9 @@ impl Evaluator<'_> {
                 _ => None,
             });
             let Some(def) = def else {
+                if include::is_damaged(tree) {
+                    continue;
+                }
                 self.no_setting(tree, name, Span::new(source, 0, name.len()));
                 continue;
             };

@@ -11,19 +11,21 @@ use luxel_sdk::params::Unit;
 use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
-    Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
+    Arg, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, RESERVED, Stmt,
+    StmtNode, Tree, Ty,
 };
 
 /// Tells every name that is unknown, used too early or defined twice.
-pub(super) fn resolve(tree: &Tree, sink: &mut Sink) {
-    let mut resolver = Resolver { sink, scopes: vec![], functions: vec![] };
+pub(super) fn resolve(tree: &Tree, text: &str, sink: &mut Sink) {
+    let mut resolver = Resolver { sink, text, scopes: vec![], functions: vec![], in_object: false };
     resolver.block(&tree.stmts, &[]);
 }
 
 /// Whether an expression names nothing but what every scene has, and makes no object.
 pub(super) fn is_constant(expr: &Expr) -> bool {
     let mut sink = Sink::new(usize::MAX);
-    let mut resolver = Resolver { sink: &mut sink, scopes: vec![], functions: vec![] };
+    let mut resolver =
+        Resolver { sink: &mut sink, text: "", scopes: vec![], functions: vec![], in_object: false };
     resolver.scopes.push(Scope::default());
     resolver.expr(expr);
     sink.errors() == 0
@@ -45,6 +47,10 @@ struct Resolver<'a> {
     scopes: Vec<Scope>,
     /// The functions whose bodies are being read.
     functions: Vec<Name>,
+    /// The file.
+    text: &'a str,
+    /// In the body of an object that holds no others.
+    in_object: bool,
 }
 
 /// The name that a statement defines.
@@ -82,6 +88,10 @@ impl Resolver<'_> {
     }
 
     fn define(&mut self, name: &Name) {
+        // Told where it was read.
+        if RESERVED.contains(&&*name.text) {
+            return;
+        }
         if let Some(unit) = Unit::named(&name.text) {
             let message = format!(
                 "`{}` is a unit ({}) and cannot be a name",
@@ -155,7 +165,7 @@ impl Resolver<'_> {
                 self.label(stmt, object.label.as_ref());
                 self.object(object);
             }
-            StmtNode::Call(call) => self.expr(call),
+            StmtNode::Call(call) => self.call(call),
             StmtNode::Broken { defines } => {
                 if let (Some(name), Some(scope)) = (defines, self.scopes.last_mut()) {
                     scope.names.entry(name.text.clone()).or_insert(name.span);
@@ -224,7 +234,51 @@ impl Resolver<'_> {
     }
 
     fn object(&mut self, object: &Object) {
+        let outer = std::mem::replace(&mut self.in_object, &*object.category.text != "group");
         self.block(&object.body.stmts, &[]);
+        self.in_object = outer;
+    }
+
+    /// A call as a statement. In an object, where none can stand, `center (0, 1, 0)` is a parameter
+    /// whose `=` is missing.
+    fn call(&mut self, call: &Expr) {
+        match called(call).filter(|name| self.in_object && self.is_unknown(name)) {
+            Some(name) => self.no_equals(call, name),
+            None => self.expr(call),
+        }
+    }
+
+    fn is_unknown(&self, name: &Name) -> bool {
+        let name = &name.text;
+        let known = |s: &Scope| s.names.contains_key(name) || s.later.contains_key(name);
+        !self.scopes.iter().any(known) && builtins::value(name).is_none()
+    }
+
+    /// Arguments of a call; of a function that every scene has, `to (0, 1, 0)` is one whose `=` is
+    /// missing.
+    fn args(&mut self, function: &[Name], args: &[Arg]) {
+        let words: Vec<&str> = function.iter().map(|name| &*name.text).collect();
+        let function = words.join(".");
+        for arg in args {
+            let takes = |name: &&Name| builtins::takes(&function, &name.text);
+            let name = called(&arg.value).filter(takes).filter(|name| self.is_unknown(name));
+            match name.filter(|_| arg.name.is_none()) {
+                Some(name) => self.no_equals(&arg.value, name),
+                None => self.expr(&arg.value),
+            }
+        }
+    }
+
+    /// Tells that a call is a name and its value.
+    fn no_equals(&mut self, call: &Expr, name: &Name) {
+        let ExprNode::Call { args, .. } = &call.node else { return };
+        let (end, name) = (name.span.end, &name.text);
+        let blanks = self.text[end as usize..].find('(').unwrap_or(0);
+        let value = Span { start: end + u32::try_from(blanks).unwrap_or(0), ..call.span };
+        let message = format!("`=` is missing between `{name}` and its value");
+        let gap = Span { start: end, end, ..value };
+        self.sink.push(Diagnostic::error("E0012", value, message).fix(gap, " ="));
+        args.iter().for_each(|arg| self.expr(&arg.value));
     }
 
     fn fields(&mut self, fields: &[Field]) {
@@ -249,6 +303,13 @@ impl Resolver<'_> {
             ExprNode::Path(path) => self.path(path, expr.span),
             ExprNode::Object(object) => self.object(object),
             ExprNode::Comp(comp) => self.comp(comp),
+            ExprNode::Call { callee, args } => {
+                self.expr(callee);
+                match &callee.node {
+                    ExprNode::Path(path) => self.args(path, args),
+                    _ => args.iter().for_each(|arg| self.expr(&arg.value)),
+                }
+            }
             _ => {
                 let mut inner = vec![];
                 children(expr, &mut |child| inner.push(child));
@@ -335,6 +396,17 @@ impl Resolver<'_> {
             );
         }
         found
+    }
+}
+
+/// The single name that is called, if an expression is such a call.
+fn called(call: &Expr) -> Option<&Name> {
+    match &call.node {
+        ExprNode::Call { callee, .. } => match &callee.node {
+            ExprNode::Path(path) if path.len() == 1 => path.first(),
+            _ => None,
+        },
+        _ => None,
     }
 }
 

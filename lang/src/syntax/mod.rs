@@ -10,6 +10,8 @@ mod parse;
 mod tests;
 mod tree;
 
+pub(crate) use build::RESERVED;
+
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, parse, parse_expr};

@@ -4,5 +4,7 @@
 mod case;
 mod cases;
 mod limits;
+mod plant;
 mod registry;
 mod scenes;
+mod seeded;

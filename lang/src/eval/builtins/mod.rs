@@ -119,6 +119,12 @@ pub(crate) fn value(name: &str) -> Option<Value> {
     BUILTINS.iter().find(|b| b.name == name).map(Value::Builtin)
 }
 
+/// Whether a function that every scene has takes an argument of this name.
+pub(crate) fn takes(function: &str, name: &str) -> bool {
+    let function = BUILTINS.iter().find(|builtin| builtin.name == function);
+    function.is_some_and(|builtin| builtin.args.iter().any(|arg| arg.trim_end_matches('?') == name))
+}
+
 /// Every name that every scene has.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     BUILTINS.iter().map(|b| b.name).chain(["pi", "tau"])
@@ -135,6 +141,10 @@ impl Evaluator<'_> {
     ) -> Value {
         if builtin.run == Run::Color(color::Make::Bare) {
             return self.bare_rgb(span);
+        }
+        // What a mistake left without a name may belong anywhere.
+        if given.iter().any(|given| given.name.is_none() && given.value.is_poison()) {
+            return Value::Poison;
         }
         let Some(args) = self.arrange(builtin, given, span) else { return Value::Poison };
         if args.iter().flatten().any(|arg| arg.value.is_poison()) {

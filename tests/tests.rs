@@ -46,9 +46,14 @@ mod motion;
 #[cfg(test)]
 mod pages;
 #[cfg(test)]
+#[path = "../lang/tests/language/plant.rs"]
+mod plant;
+#[cfg(test)]
 mod probe;
 #[cfg(test)]
 mod scenes;
+#[cfg(test)]
+mod seeded;
 #[cfg(test)]
 mod solids;
 #[cfg(test)]

@@ -15,6 +15,7 @@ mod expr;
 mod finish;
 mod given;
 mod include;
+mod mention;
 mod object;
 mod ops;
 mod params;

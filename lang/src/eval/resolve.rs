@@ -8,11 +8,12 @@ use std::sync::Arc;
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use luxel_sdk::params::Unit;
 
+use super::mention::{children, mention_body};
 use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
-    Arg, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, RESERVED, Stmt,
-    StmtNode, Tree, Ty,
+    Arg, COMPARES, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Op, RESERVED,
+    Stmt, StmtNode, Tree, Ty,
 };
 
 /// Tells every name that is unknown, used too early or defined twice.
@@ -264,9 +265,26 @@ impl Resolver<'_> {
             let name = called(&arg.value).filter(takes).filter(|name| self.is_unknown(name));
             match name.filter(|_| arg.name.is_none()) {
                 Some(name) => self.no_equals(&arg.value, name),
+                None if self.is_compared(&function, &arg.value) => {}
                 None => self.expr(&arg.value),
             }
         }
+    }
+
+    /// Whether an argument compares a name of the function's own with a value, which is told:
+    /// `to == (0, 1, 0)`.
+    fn is_compared(&mut self, function: &str, value: &Expr) -> bool {
+        let ExprNode::Chain { first, rest } = &value.node else { return false };
+        let (ExprNode::Path(path), [(Op::Eq, op, given)]) = (&first.node, &rest[..]) else {
+            return false;
+        };
+        let takes = path.len() == 1 && builtins::takes(function, &path[0].text);
+        if !takes || !self.is_unknown(&path[0]) {
+            return false;
+        }
+        self.sink.push(Diagnostic::error("E0013", *op, COMPARES).fix(*op, "="));
+        self.expr(given);
+        true
     }
 
     /// Tells that a call is a name and its value.
@@ -278,7 +296,9 @@ impl Resolver<'_> {
         let message = format!("`=` is missing between `{name}` and its value");
         let gap = Span { start: end, end, ..value };
         self.sink.push(Diagnostic::error("E0012", value, message).fix(gap, " ="));
-        args.iter().for_each(|arg| self.expr(&arg.value));
+        for arg in args {
+            self.expr(&arg.value);
+        }
     }
 
     fn fields(&mut self, fields: &[Field]) {
@@ -307,7 +327,11 @@ impl Resolver<'_> {
                 self.expr(callee);
                 match &callee.node {
                     ExprNode::Path(path) => self.args(path, args),
-                    _ => args.iter().for_each(|arg| self.expr(&arg.value)),
+                    _ => {
+                        for arg in args {
+                            self.expr(&arg.value);
+                        }
+                    }
                 }
             }
             _ => {
@@ -432,107 +456,4 @@ fn circle(scope: &Scope, from: &Name, name: &Name) -> Option<Vec<String>> {
         }
     }
     None
-}
-
-/// Calls `each` on the expressions inside an expression, but not on those in objects.
-fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
-    match &expr.node {
-        ExprNode::Items { items, .. } => items.iter().for_each(each),
-        ExprNode::Paren { inner, .. } | ExprNode::Unary { inner, .. } => each(inner),
-        ExprNode::Comp(comp) => {
-            each(&comp.over);
-            comp.filter.iter().for_each(&mut *each);
-            each(&comp.value);
-        }
-        ExprNode::If { arms, otherwise } => {
-            for (cond, value) in arms {
-                each(cond);
-                each(value);
-            }
-            each(otherwise);
-        }
-        ExprNode::Record(fields) => {
-            for field in fields {
-                each(&field.value);
-            }
-        }
-        ExprNode::Chain { first, rest } => {
-            each(first);
-            for (_, _, operand) in rest {
-                each(operand);
-            }
-        }
-        ExprNode::Call { callee, args } => {
-            each(callee);
-            for arg in args {
-                each(&arg.value);
-            }
-        }
-        ExprNode::Index { of, at } => {
-            each(of);
-            each(at);
-        }
-        ExprNode::Member { of, .. } => each(of),
-        ExprNode::With { of, fields } => {
-            each(of);
-            for field in fields {
-                each(&field.value);
-            }
-        }
-        _ => {}
-    }
-}
-
-fn mention_body(def: &FnDef, out: &mut BTreeSet<Arc<str>>) {
-    match &def.body {
-        FnBody::Value(value) => mention(value, out),
-        FnBody::Template(block) => mention_stmts(&block.stmts, out),
-    }
-}
-
-fn mention(expr: &Expr, out: &mut BTreeSet<Arc<str>>) {
-    match &expr.node {
-        ExprNode::Path(path) => out.extend(path.first().map(|name| name.text.clone())),
-        ExprNode::Object(object) => mention_stmts(&object.body.stmts, out),
-        _ => children(expr, &mut |child| mention(child, out)),
-    }
-}
-
-fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
-    for stmt in stmts {
-        match &stmt.node {
-            StmtNode::Let { value, .. }
-            | StmtNode::Set { value, .. }
-            | StmtNode::Assert { cond: value, .. }
-            | StmtNode::Call(value) => mention(value, out),
-            StmtNode::Fn(def) => mention_body(def, out),
-            StmtNode::For { over, body, .. } => {
-                mention(over, out);
-                mention_stmts(&body.stmts, out);
-            }
-            StmtNode::If { arms, otherwise } => {
-                for (cond, block) in arms {
-                    mention(cond, out);
-                    mention_stmts(&block.stmts, out);
-                }
-                if let Some(block) = otherwise {
-                    mention_stmts(&block.stmts, out);
-                }
-            }
-            StmtNode::Place { what, body, .. } => {
-                mention(what, out);
-                if let Some(block) = body {
-                    mention_stmts(&block.stmts, out);
-                }
-            }
-            StmtNode::Expect(said) => {
-                let at = said.at.iter().flat_map(|(_, args)| args).map(|arg| &arg.value);
-                let given = said.given.iter().map(|field| &field.value);
-                at.chain(&said.values).chain(given).for_each(|value| mention(value, out));
-            }
-            StmtNode::Field(field) => mention(&field.value, out),
-            StmtNode::Object(object) => mention_stmts(&object.body.stmts, out),
-            _ => {}
-        }
-    }
 }

@@ -19,6 +19,8 @@ pub(super) struct Explained {
     pub(super) resume: Option<usize>,
 }
 
+/// What is said of `==` where a value is given.
+pub(crate) const COMPARES: &str = "`==` compares; a value is given with `=`";
 /// What is said of an `else` that nothing stands before.
 pub(super) const LONE_ELSE: &str = "`else` without an `if` before it";
 
@@ -193,8 +195,7 @@ impl<'a> Around<'a> {
         }
         let doubled = [Some(current), Some(before), self.tokens.get(self.at + 1)];
         let doubled = doubled.into_iter().flatten().find(|t| t.text == "==")?;
-        let message = "`==` compares; a value is given with `=`".to_owned();
-        Some(self.error("E0013", doubled, message).fix(self.span(doubled), "="))
+        Some(self.error("E0013", doubled, COMPARES.to_owned()).fix(self.span(doubled), "="))
     }
 
     /// A word that begins a line after an operator, near the place where reading stopped: how many

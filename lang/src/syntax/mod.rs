@@ -11,6 +11,7 @@ mod tests;
 mod tree;
 
 pub(crate) use build::RESERVED;
+pub(crate) use explain::COMPARES;
 
 #[cfg(test)]
 pub(crate) use parse::parse_whole;

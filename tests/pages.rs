@@ -23,6 +23,8 @@ const SMALL: Budgets = Budgets {
     nodes: 10,
     instances: 100,
     string: 64,
+    pieces: 64,
+    value_bytes: 4000,
     nesting: 16,
     diagnostics: 3,
 };

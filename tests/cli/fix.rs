@@ -24,7 +24,7 @@ fn what_is_sure_is_mended_in_the_file_where_it_stands() {
     }
     let mended = "scene 1\nshape sphere { radius = 5 cm }\nlet a = (0, 1, 0)\n";
     assert_eq!(text(&folder, "parts/b.scene"), mended);
-    assert!(text(&folder, "a.scene").starts_with(&SCENE.replace("samples = 4", "samples = 4")));
+    assert!(text(&folder, "a.scene").starts_with(SCENE));
     assert_eq!(folder.names(), ["a.scene", "parts"]);
 }
 
@@ -55,10 +55,7 @@ fn what_a_mend_uncovers_is_mended_too() {
     let wrong = SCENE.replace("scene 1\n", "").replace("{ radius = 1 m,", "{ radus: 1 m,");
     let folder = Folder::new("fix-again").with("a.scene", &wrong);
     let done = folder.luxel(&["check", "a.scene", "--fix"]);
-    assert_eq!(
-        (done.code, text(&folder, "a.scene")),
-        (0, SCENE.replace("radius = 1", "radius = 1"))
-    );
+    assert_eq!((done.code, text(&folder, "a.scene")), (0, SCENE.to_owned()));
     let again = folder.luxel(&["check", "a.scene", "--fix"]);
     assert_eq!((again.code, &*again.err), (0, ""), "{again:?}");
 }

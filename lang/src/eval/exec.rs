@@ -192,7 +192,7 @@ impl Evaluator<'_> {
             inner.define(&item.text, element);
             count += 1.0;
             self.block(block, &inner, body);
-            if !self.tick(1, over.span) {
+            if !self.tick(2, over.span) {
                 break;
             }
         }

@@ -124,6 +124,17 @@ impl Evaluator<'_> {
 
     /// `object with { … }`: the same object with some fields given anew.
     pub(super) fn amend(&mut self, value: Value, fields: Vec<FieldValue>, span: Span) -> Value {
+        let old = match &value {
+            Value::Object(object) => object.fields.len(),
+            Value::Record(fields) => fields.len(),
+            _ => 0,
+        };
+        let all = old + fields.len();
+        if !self.tick((old * fields.len()) as u64, span)
+            || !self.hold(all * size_of::<FieldValue>(), span)
+        {
+            return Value::Poison;
+        }
         match value {
             Value::Object(object) if object.head.kind.is_some() => {
                 let all = merged(&object.fields, fields);

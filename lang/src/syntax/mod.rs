@@ -9,6 +9,7 @@ mod parse;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod weigh;
 
 pub(crate) use build::RESERVED;
 pub(crate) use explain::COMPARES;

@@ -10,6 +10,7 @@ use super::build::Builder;
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
+use super::weigh::weigh;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
 use crate::prescan::{Fault, scan};
@@ -258,6 +259,12 @@ impl Reader<'_> {
     /// Reads one statement. `keep` says whether it becomes part of the tree.
     fn chunk(&mut self, chunk: Range<usize>, keep: bool) {
         let text = &self.text[chunk.clone()];
+        if self.is_too_large(&chunk) {
+            if keep {
+                self.broken(chunk);
+            }
+            return;
+        }
         match SceneParser::parse(Rule::one_stmt, text) {
             Ok(pairs) => {
                 let mut builder = Builder {
@@ -282,6 +289,28 @@ impl Reader<'_> {
                 self.recover(chunk.start + at, chunk, keep);
             }
         }
+    }
+
+    /// Whether a statement would take too much to read, which is told.
+    fn is_too_large(&mut self, chunk: &Range<usize>) -> bool {
+        let Budgets { pieces, string, .. } = *self.budgets;
+        if chunk.len() <= pieces.min(string) {
+            return false;
+        }
+        let weight = weigh(&self.text[chunk.clone()], string);
+        if let Some(at) = weight.text {
+            let span = self.span(chunk.start + at.start..chunk.start + at.end);
+            let message = format!("a string of more than {string} bytes");
+            self.sink.push(Diagnostic::error("E0509", span, message));
+        } else if weight.pieces > pieces {
+            let first = tokens(self.text, chunk.clone()).next().map_or(0..0, |t| t.start..t.end());
+            let message = format!("a statement of more than {pieces} words and marks");
+            let found = Diagnostic::error("E0510", self.span(first), message);
+            self.sink.push(found.help("part it; many numbers belong into `#[ … ]` or a file"));
+        } else {
+            return false;
+        }
+        true
     }
 
     /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those

@@ -267,7 +267,7 @@ impl Planter<'_> {
 
     /// Whether a brace opens the body of an object.
     fn is_object(&self, open: usize) -> bool {
-        let head = open - if self.is(open - 1, Kind::Text) { 1 } else { 0 };
+        let head = open - usize::from(self.is(open - 1, Kind::Text));
         (CATEGORIES.contains(&self.at(head - 1)) || CATEGORIES.contains(&self.at(head - 2)))
             && self.is(head - 1, Kind::Word)
     }

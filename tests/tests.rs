@@ -44,9 +44,16 @@ mod manual;
 #[cfg(test)]
 mod motion;
 #[cfg(test)]
+mod pages;
+#[cfg(test)]
+#[path = "../lang/tests/language/plant.rs"]
+mod plant;
+#[cfg(test)]
 mod probe;
 #[cfg(test)]
 mod scenes;
+#[cfg(test)]
+mod seeded;
 #[cfg(test)]
 mod solids;
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! `luxel check`: everything that is wrong with scenes, without rendering.
 
+mod fix;
+
 use std::path::PathBuf;
 
 use luxel_core::diag::Diagnostic;
@@ -12,12 +14,15 @@ use crate::report::{self, Form, Stream};
 /// Tell everything that is wrong with scenes
 ///
 /// Reads each scene with its meshes and textures and makes it ready to trace. Exit code 1 if any
-/// has an error; warnings alone are fine.
+/// has an error; warnings alone are fine. --fix first writes the mends that can only be meant so, as
+/// a misspelt name with one known name near: each is told with its place, before and after. What is
+/// likely, or one of several, is left to a person.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
   luxel check scenes/*.scene
   luxel check scenes/cornell.scene --print
+  luxel check scenes/cornell.scene --fix
   luxel check scenes/cornell.scene --json")]
 pub(crate) struct Args {
     /// The scenes
@@ -29,6 +34,9 @@ pub(crate) struct Args {
     /// Diagnostics as JSON lines on standard output
     #[arg(long)]
     json: bool,
+    /// Apply the mends that are sure to the scene's files, then tell what is left
+    #[arg(long)]
+    fix: bool,
     #[command(flatten)]
     load: LoadArgs,
     #[command(flatten)]
@@ -42,6 +50,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     plugins.notes.tell(form, stream)?;
     let mut exit = Exit::Fine;
     for file in &args.files {
+        if args.fix {
+            fix::mended(file, &args.load, &plugins, form)?;
+        }
         let loaded = load::load(file, &args.load, None, &plugins, &Course::default())?;
         report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream)?;
         if loaded.stage.is_none() || loaded.diagnostics.iter().any(Diagnostic::is_error) {

@@ -8,10 +8,10 @@ use luxel_core::diag::{Sources, Span};
 use luxel_core::render::Options;
 use luxel_core::scene::{Feature, NodeId, called};
 use luxel_core::stage::{ColorChoice, Stage};
-use luxel_lang::CATALOGUE;
 use serde_json::{Value, json};
 
 use crate::args::{self, LoadArgs, PluginArgs};
+use crate::codes;
 use crate::exit::{Exit, Failure};
 use crate::load::{self, Course, Loaded};
 use crate::report::{self, Form, Stream};
@@ -24,7 +24,7 @@ use crate::verify::Run;
 /// the places that require it, or left out, with the reason; and what --require and --drop change.
 /// --cost measures the time of each, with the quartiles of nine rounds: of one that is required, over the
 /// time without it; of another, if its code ran for nothing.
-/// A code of a message, as E0402, is explained as well.
+/// A code of a message, as E0402, is explained as well: what it means, an example, and the mend.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -53,9 +53,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    if let Some((code, title)) = code(&args.file)? {
-        let told = json!({ "code": code, "title": title });
-        report::out(&if args.json { format!("{told}\n") } else { format!("{code}: {title}\n") })?;
+    if let Some(page) = codes::asked(&args.file)? {
+        report::out(&if args.json { codes::json(&page) } else { codes::text(&page) })?;
         return Ok(Exit::Fine);
     }
     let plugins = load::registry(&args.plugins)?;
@@ -75,19 +74,6 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let told = Told { file: &args.file, stage, sources, prices };
     report::out(&if args.json { format!("{}\n", told.object()) } else { told.text() })?;
     Ok(Exit::Fine)
-}
-
-/// The message that is meant, if what was given is no file but looks like a code.
-fn code(given: &Path) -> Result<Option<(&'static str, &'static str)>, Failure> {
-    let word = given.to_str().unwrap_or_default().to_uppercase();
-    let digits = word.strip_prefix('E').unwrap_or_default();
-    if digits.len() != 4 || !digits.bytes().all(|byte| byte.is_ascii_digit()) || given.exists() {
-        return Ok(None);
-    }
-    match CATALOGUE.iter().find(|(code, _)| *code == word) {
-        Some(found) => Ok(Some(*found)),
-        None => Err(Failure::new(Exit::Input, format!("no message has the code {word}"))),
-    }
 }
 
 /// Places that are shown of one feature.
@@ -218,19 +204,4 @@ fn place(span: Span, sources: &Sources) -> String {
 fn counts(stage: &Stage) -> [usize; 4] {
     let lights = stage.lights.len();
     [stage.placements.len(), stage.materials.len(), lights, stage.media.len()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn codes_are_told_from_files_and_unknown_ones_are_refused() {
-        let found = |word: &str| code(Path::new(word)).map_err(|failure| failure.message);
-        assert_eq!(found("e0402"), Ok(Some(("E0402", "an unknown parameter"))));
-        assert_eq!(found("E9999"), Err("no message has the code E9999".to_owned()));
-        for file in ["a.scene", "E0402.scene", "E04", "fog", "E040é"] {
-            assert_eq!(found(file), Ok(None), "{file}");
-        }
-    }
 }

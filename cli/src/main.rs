@@ -4,6 +4,7 @@
 mod args;
 mod check;
 mod checkpoint;
+mod codes;
 mod compare;
 mod denoise;
 mod describe;

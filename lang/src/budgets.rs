@@ -25,6 +25,10 @@ pub struct Budgets {
     pub instances: u64,
     /// Bytes of one string.
     pub string: usize,
+    /// Words, marks and texts of one statement, numbers left out.
+    pub pieces: usize,
+    /// Bytes that large lists, comprehensions and records hold, all that were made counted.
+    pub value_bytes: usize,
     /// How deep evaluation may nest: blocks, calls and brackets together.
     pub nesting: usize,
     /// Diagnostics that are kept.
@@ -35,16 +39,18 @@ impl Default for Budgets {
     fn default() -> Self {
         Self {
             file_bytes: 64 << 20,
-            total_bytes: 256 << 20,
+            total_bytes: 128 << 20,
             include_depth: 32,
             includes: 10_000,
             brackets: 128,
             operators: 4096,
-            steps: 100_000_000,
+            steps: 25_000_000,
             list: 10_000_000,
             nodes: 1_000_000,
             instances: 100_000_000,
             string: 1 << 20,
+            pieces: 300_000,
+            value_bytes: 96 << 20,
             nesting: 640,
             diagnostics: 100,
         }

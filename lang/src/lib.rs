@@ -13,7 +13,7 @@ mod sink;
 mod syntax;
 
 pub use budgets::Budgets;
-pub use catalogue::CATALOGUE;
+pub use catalogue::{CATALOGUE, Example, Page, Setup, page, setup};
 
 use std::path::Path;
 

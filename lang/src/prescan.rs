@@ -79,6 +79,9 @@ const PREFIX: [&[u8]; 18] = [
     b"use", b"place", b"set", b"assert", b"expect", b"units", b"scene",
 ];
 
+/// Faults that are noted: with more a text is no scene, and nothing after the last is scanned.
+const FAULTS: usize = 1000;
+
 /// Bytes that matter inside brackets: quotes, slashes, hashes and brackets.
 const STRUCTURAL: [bool; 256] = {
     let mut table = [false; 256];
@@ -142,6 +145,9 @@ impl Scanner<'_> {
                 }
             }
             let Some(&byte) = self.bytes.get(self.at) else { break };
+            if self.out.faults.len() >= FAULTS {
+                return;
+            }
             match byte {
                 b'"' => self.string(),
                 b'/' if self.next_is(b'/') => self.line_comment(),
@@ -310,14 +316,37 @@ impl Scanner<'_> {
         true
     }
 
+    /// How many brackets of the rest of the line close none of their kind, if `open` are open.
+    fn misfits(&self, open: &[usize]) -> usize {
+        let rest = &self.bytes[self.at + 1..];
+        let line = &rest[..memchr(b'\n', rest).unwrap_or(rest.len()).min(LOOKED_AT)];
+        // Few are enough: what closes on one line.
+        let mut open: Vec<u8> = open.iter().rev().take(8).rev().map(|o| self.bytes[*o]).collect();
+        let mut misfits = 0;
+        for byte in line {
+            match byte {
+                b'(' | b'[' | b'{' => open.push(*byte),
+                b')' | b']' | b'}' => {
+                    let fits = open.pop().is_some_and(|last| closing(last) == *byte);
+                    misfits += usize::from(!fits);
+                }
+                _ => {}
+            }
+        }
+        misfits
+    }
+
     fn close_bracket(&mut self, byte: u8) {
         match self.open.pop() {
             None => self.out.faults.push(Fault::Stray { at: self.at }),
             Some(open) if closing(self.bytes[open]) != byte => {
                 self.out.faults.push(Fault::Mismatch { open, at: self.at });
-                // An outer bracket of this kind closes here too; else only this one does.
+                // An outer bracket of this kind closes here too, if the line goes on better so; else
+                // only this one does.
                 let outer = self.open.iter().rposition(|&o| closing(self.bytes[o]) == byte);
-                if let Some(outer) = outer {
+                if let Some(outer) = outer
+                    && self.misfits(&self.open[..outer]) <= self.misfits(&self.open)
+                {
                     self.open.truncate(outer);
                 }
             }
@@ -327,6 +356,9 @@ impl Scanner<'_> {
         self.at += 1;
     }
 }
+
+/// Bytes of a line that are looked at to see which bracket is the wrong one.
+const LOOKED_AT: usize = 256;
 
 /// The bracket that closes an open one.
 fn closing(open: u8) -> u8 {

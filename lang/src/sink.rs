@@ -4,6 +4,17 @@ use std::collections::HashSet;
 
 use luxel_core::diag::{Diagnostic, Span};
 
+/// Characters of one line that is told: a name may be as long as a file.
+const LONGEST: usize = 4000;
+
+/// Cuts a line that nobody reads to its end.
+fn shorten(line: &mut String) {
+    if let Some((end, _)) = line.char_indices().nth(LONGEST) {
+        line.truncate(end);
+        line.push('…');
+    }
+}
+
 /// Diagnostics of one load, in the order in which they were found.
 #[derive(Debug)]
 pub(crate) struct Sink {
@@ -22,12 +33,13 @@ impl Sink {
 
     /// Keeps a diagnostic, unless the same code was told of the same place: a loop makes each
     /// mistake once.
-    pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
+    pub(crate) fn push(&mut self, mut diagnostic: Diagnostic) {
         if !self.seen.insert((diagnostic.code, diagnostic.span())) {
             return;
         }
         self.errors += usize::from(diagnostic.is_error());
         if self.list.len() < self.limit {
+            std::iter::once(&mut diagnostic.message).chain(&mut diagnostic.help).for_each(shorten);
             self.list.push(diagnostic);
         } else {
             self.dropped += 1;

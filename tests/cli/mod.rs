@@ -9,6 +9,7 @@ mod docs;
 mod explain;
 #[cfg(test)]
 mod faulty;
+mod fix;
 mod grown;
 mod hostile;
 mod isolate;

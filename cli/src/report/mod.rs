@@ -112,7 +112,7 @@ pub(crate) fn diagnostics(
                 put(stream, &format!("{text}\n\n"))?;
             }
             if !found.is_empty() {
-                put(stream, &format!("{}\n", plain::count(found)))?;
+                put(stream, &format!("{}\n", plain::closing(found)))?;
             }
         }
     }

@@ -21,6 +21,13 @@ pub(super) fn count(found: &[Diagnostic]) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
+/// How many there are, and where to read more of the first error, or of the first warning.
+pub(super) fn closing(found: &[Diagnostic]) -> String {
+    let first = found.iter().find(|diagnostic| diagnostic.is_error()).or(found.first());
+    let more = first.map(|first| format!("; more: luxel explain {}", first.code));
+    format!("{}{}", count(found), more.unwrap_or_default())
+}
+
 /// One object: `code, severity, message, file, line, column, end_line, end_column, labels, help,
 /// fixes`. Lines and columns count from 1, columns in characters; `null` where no place is at fault.
 pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
@@ -38,6 +45,7 @@ pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     let fixes = fixes.iter().map(|fix| {
         let mut object = place(fix.span, sources);
         object["replacement"] = json!(fix.replacement);
+        object["grade"] = json!(fix.grade);
         object
     });
     object["label"] = json!(diagnostic.labels.first().map(|label| &label.text));
@@ -87,6 +95,7 @@ mod tests {
         assert_eq!((&value["column"], &value["end_column"]), (&json!(5), &json!(8)));
         assert_eq!(value["labels"][0]["line"], 1);
         assert_eq!(value["fixes"][0]["replacement"], "gold");
+        assert_eq!(value["fixes"][0]["grade"], "sure");
         assert_eq!(value["severity"], "error");
         let nowhere = json(&Diagnostic::unplaced("E0409", "no camera"), &sources);
         assert_eq!((&nowhere["line"], &nowhere["code"]), (&Value::Null, &json!("E0409")));
@@ -97,7 +106,11 @@ mod tests {
         let error = Diagnostic::unplaced("E0001", "x");
         let warning = Diagnostic { severity: Severity::Warning, ..error.clone() };
         assert_eq!(count(&[error.clone(), error.clone(), warning]), "2 errors, 1 warning");
-        assert_eq!(count(&[error]), "1 error");
+        assert_eq!(count(std::slice::from_ref(&error)), "1 error");
+        let warning = Diagnostic { severity: Severity::Warning, code: "E0022", ..error.clone() };
+        let all = [warning.clone(), error];
+        assert_eq!(closing(&all), "1 error, 1 warning; more: luxel explain E0001");
+        assert_eq!(closing(&[warning]), "1 warning; more: luxel explain E0022");
         assert_eq!(clean("a\x1b[31m\nb"), "a\u{fffd}[31m\nb");
     }
 }

@@ -1,7 +1,7 @@
 //! Diagnostics for people: the message, the lines at fault, advice and mends, as rustc shows them.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Patch, Renderer, Snippet};
-use luxel_core::diag::{Diagnostic, Label, Severity, Sources};
+use luxel_core::diag::{Diagnostic, Grade, Label, Severity, Sources};
 
 use super::plain::clean;
 use super::window::Window;
@@ -30,8 +30,11 @@ pub(super) fn render(diagnostic: &Diagnostic, sources: &Sources, coloured: bool)
         let line = line_of(sources, fix.span.source, window.start);
         let patch = Patch::new(window.spans[0].clone(), fix.replacement.clone());
         let snippet = Snippet::source(window.text).line_start(line).patch(patch);
-        groups
-            .push(Group::with_title(Level::HELP.secondary_title("this mends it")).element(snippet));
+        let title = match fix.grade {
+            Grade::Sure => "this mends it",
+            Grade::Guess => "perhaps this is meant",
+        };
+        groups.push(Group::with_title(Level::HELP.secondary_title(title)).element(snippet));
     }
     let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
     renderer.render(&groups)

@@ -2,12 +2,16 @@
 //!
 //! A `Diagnostic` is data. Printing it is the command line's work; nothing here does input or output.
 
+mod mend;
+mod near;
 mod sources;
 
 use std::fmt;
 
 use serde::Serialize;
 
+pub use mend::{Mended, mend};
+pub use near::{Near, near, nearest};
 pub use sources::{LineColumn, SourceId, Sources};
 
 /// A range of bytes in one source file, `start <= end`, both on character boundaries.
@@ -62,6 +66,16 @@ pub struct Label {
     pub text: String,
 }
 
+/// How sure a mend is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Grade {
+    /// It says what the author meant: a program may apply it unasked.
+    Sure,
+    /// It is likely, or one of several: a person chooses.
+    Guess,
+}
+
 /// A replacement that mends the mistake.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fix {
@@ -69,6 +83,16 @@ pub struct Fix {
     pub span: Span,
     /// The new text.
     pub replacement: String,
+    /// Whether it may be applied unasked.
+    pub grade: Grade,
+}
+
+impl Fix {
+    /// The text of the fix's file with the fix applied.
+    pub fn applied(&self, text: &str) -> String {
+        let Span { start, end, .. } = self.span;
+        format!("{}{}{}", &text[..start as usize], self.replacement, &text[end as usize..])
+    }
 }
 
 /// One mistake (or warning), with its code, places, advice and mends.
@@ -134,11 +158,37 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a mend.
+    /// Adds a mend that is sure.
     #[must_use]
-    pub fn fix(mut self, span: Span, replacement: impl Into<String>) -> Self {
-        self.fixes.push(Fix { span, replacement: replacement.into() });
+    pub fn fix(self, span: Span, replacement: impl Into<String>) -> Self {
+        self.mend(span, replacement, Grade::Sure)
+    }
+
+    /// Adds a mend that a person must choose.
+    #[must_use]
+    pub fn guess(self, span: Span, replacement: impl Into<String>) -> Self {
+        self.mend(span, replacement, Grade::Guess)
+    }
+
+    /// Adds a mend of a grade.
+    #[must_use]
+    pub fn mend(mut self, span: Span, replacement: impl Into<String>, grade: Grade) -> Self {
+        self.fixes.push(Fix { span, replacement: replacement.into(), grade });
         self
+    }
+
+    /// Asks whether a near name was meant, and offers it.
+    #[must_use]
+    pub fn meant(self, span: Span, near: Option<Near<'_>>) -> Self {
+        let Some(Near { name, grade }) = near else { return self };
+        self.help(format!("did you mean `{name}`?")).mend(span, name, grade)
+    }
+
+    /// The same for a text in quotes.
+    #[must_use]
+    pub fn meant_text(self, span: Span, near: Option<Near<'_>>) -> Self {
+        let Some(Near { name, grade }) = near else { return self };
+        self.help(format!("did you mean \"{name}\"?")).mend(span, format!("\"{name}\""), grade)
     }
 
     /// The primary place.
@@ -155,28 +205,5 @@ impl Diagnostic {
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.code, self.message)
-    }
-}
-
-/// The name among `known` that is nearest to `found`, if one is near enough to be a slip of the pen.
-///
-/// Near is a Damerau–Levenshtein distance of at most a third of the longer name, at least one.
-pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    known
-        .into_iter()
-        .map(|name| (strsim::damerau_levenshtein(found, name), name))
-        .filter(|&(distance, name)| distance <= (found.len().max(name.len()) / 3).max(1))
-        .min()
-        .map(|(_, name)| name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nearest_names_a_slip_and_refuses_a_stranger() {
-        assert_eq!(nearest("radus", ["radius", "center"]), Some("radius"));
-        assert_eq!(nearest("wavelength", ["radius", "center"]), None);
     }
 }

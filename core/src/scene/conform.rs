@@ -15,7 +15,7 @@ use luxel_sdk::params::{Dimension, Look, Param, Role, Type, Unit};
 pub use range::{number_words, range_words};
 
 use super::{Color, NodeId, Value};
-use crate::diag::nearest;
+use crate::diag::{Near, near};
 
 /// A value before anyone knows which parameter it is for.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ pub struct Misfit {
     /// Advice; may be empty.
     pub help: String,
     /// The word that was probably meant, for a choice.
-    pub word: Option<&'static str>,
+    pub word: Option<Near<'static>>,
     /// Units that a bare number most likely lacks.
     pub units: Vec<&'static str>,
 }
@@ -173,7 +173,7 @@ fn choice(param: &Param, word: Arc<str>) -> Result<Value, Misfit> {
     }
     let message = format!("`{}` has no choice \"{word}\"", param.name);
     let known = format!("known are \"{}\"", words(param));
-    let near = nearest(&word, param.words());
+    let near = near(&word, param.words());
     Err(Misfit { word: near, ..Misfit::new("E0416", message).help(known) })
 }
 

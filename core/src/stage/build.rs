@@ -313,7 +313,7 @@ impl Maker<'_> {
         {
             let message = format!("{} triangles without area left out", mesh.dropped());
             let span = self.scene.node(id).span;
-            self.builder.diagnostics.push(Diagnostic::warning("E0418", span, message));
+            self.builder.diagnostics.push(Diagnostic::warning("E0417", span, message));
         }
         self.made.shapes.put(hash, (object, geometry.clone()));
         self.made.geometries.push(geometry);

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 
 use super::Evaluator;
 use super::builtins::Given;
@@ -107,11 +107,8 @@ impl Evaluator<'_> {
         let known = || def.params.iter().map(|p| &*p.name.text);
         let diagnostic = if let Some(name) = &arg.name {
             let message = format!("`{}` has no parameter `{}`", def.name.text, name.text);
-            let found = Diagnostic::error("E0402", name.span, message);
-            match nearest(&name.text, known()) {
-                Some(near) => found.help(format!("did you mean `{near}`?")).fix(name.span, near),
-                None => found,
-            }
+            Diagnostic::error("E0402", name.span, message)
+                .meant(name.span, near(&name.text, known()))
         } else {
             let message = format!("`{}` takes {} arguments", def.name.text, def.params.len());
             Diagnostic::error("E0402", arg.value.span, message)

@@ -1,6 +1,6 @@
 //! Words that other renderers have for what is meant here.
 
-use luxel_core::diag::nearest;
+use luxel_core::diag::{Grade, Near, near};
 
 /// Their word and ours. Ours counts only where it is known: whether it is, plugins decide.
 const WORDS: [(&str, &str); 22] = [
@@ -28,11 +28,12 @@ const WORDS: [(&str, &str); 22] = [
     ("pathtracer", "path"),
 ];
 
-/// The known word that is meant: another's word for it, or the nearest.
-pub(super) fn meant<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
+/// The known word that is meant: another's word for it, which is a guess, or the nearest.
+pub(super) fn meant<'a>(found: &str, known: &[&'a str]) -> Option<Near<'a>> {
     let theirs = WORDS.iter().filter(|(theirs, _)| *theirs == found);
     let ours = theirs.filter_map(|(_, ours)| known.iter().copied().find(|known| known == ours));
-    ours.into_iter().next().or_else(|| nearest(found, known.iter().copied()))
+    let ours = ours.into_iter().next().map(|name| Near { name, grade: Grade::Guess });
+    ours.or_else(|| near(found, known.iter().copied()))
 }
 
 #[cfg(test)]
@@ -41,9 +42,10 @@ mod tests {
 
     #[test]
     fn a_word_of_another_renderer_is_understood_where_ours_is_known() {
-        assert_eq!(meant("distant", &["point", "directional"]), Some("directional"));
-        assert_eq!(meant("irradiance", &["illuminance", "radiance"]), Some("illuminance"));
-        assert_eq!(meant("distant", &["point", "spot"]), None);
-        assert_eq!(meant("radus", &["center", "radius"]), Some("radius"));
+        let name = |found, known: &[&'static str]| meant(found, known).map(|near| near.name);
+        assert_eq!(name("distant", &["point", "directional"]), Some("directional"));
+        assert_eq!(name("irradiance", &["illuminance", "radiance"]), Some("illuminance"));
+        assert_eq!(name("distant", &["point", "spot"]), None);
+        assert_eq!(name("radus", &["center", "radius"]), Some("radius"));
     }
 }

@@ -2,8 +2,9 @@
 
 use std::rc::Rc;
 
-use luxel_core::diag::Diagnostic;
-use luxel_core::diag::Span;
+use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::registry::Registry;
+use luxel_sdk::abi::Class;
 
 use super::Evaluator;
 use super::env::Env;
@@ -27,11 +28,13 @@ pub(super) struct Body {
     pub(super) place: Place,
     pub(super) fields: Vec<FieldValue>,
     pub(super) broken: bool,
+    /// The class whose parameters the fields are, if it is known.
+    pub(super) class: Option<Class>,
 }
 
 impl Body {
     pub(super) fn new(place: Place) -> Self {
-        Self { place, fields: vec![], broken: false }
+        Self { place, fields: vec![], broken: false, class: None }
     }
 }
 
@@ -119,14 +122,14 @@ impl Evaluator<'_> {
             StmtNode::Field(field) => {
                 let value = self.field(field, env);
                 if body.place == Place::File {
-                    self.stray_field(&field.name);
+                    self.stray_field(&field.name, env);
                 }
                 body.fields.push(value);
             }
             StmtNode::Object(object) => {
                 let value = self.object(object, env);
                 if body.place == Place::Object {
-                    self.stray_object(object);
+                    self.stray_object(object, body);
                 } else {
                     self.labels.add(object.label.as_ref(), &value);
                     self.emit(&value, object.head());
@@ -137,25 +140,28 @@ impl Evaluator<'_> {
         }
     }
 
-    fn stray_field(&mut self, name: &Name) {
+    fn stray_field(&mut self, name: &Name, env: &Env) {
         let message = format!("`{}` stands in no object", name.text);
         let start = Span { end: name.span.start, ..name.span };
-        self.tell(
-            Diagnostic::error("E0113", name.span, message)
-                .help("a name is defined with `let`")
-                .fix(start, "let "),
-        );
+        let found = Diagnostic::error("E0113", name.span, message);
+        self.tell(if env.get(&name.text).is_some() {
+            found.help("a name keeps its value: give the new one a name of its own")
+        } else {
+            found.help("a name is defined with `let`").fix(start, "let ")
+        });
     }
 
-    fn stray_object(&mut self, object: &crate::syntax::Object) {
+    fn stray_object(&mut self, object: &crate::syntax::Object, body: &Body) {
         let word = &object.category.text;
         let message = format!("a {word} cannot stand in this object without a name");
+        let found = Diagnostic::error("E0026", object.head(), message)
+            .help(format!("give it to a parameter: `{word} = {word} …`"));
         let start = Span { end: object.category.span.start, ..object.category.span };
-        self.tell(
-            Diagnostic::error("E0026", object.head(), message)
-                .help(format!("give it to a parameter: `{word} = {word} …`"))
-                .fix(start, format!("{word} = ")),
-        );
+        let takes = body
+            .class
+            .is_some_and(|class| Registry::params(&class).any(|param| param.name == &**word));
+        let given = body.fields.iter().any(|field| field.name.text == *word);
+        self.tell(if takes && !given { found.fix(start, format!("{word} = ")) } else { found });
     }
 
     /// Whether things may be emitted here; told if not.
@@ -186,7 +192,7 @@ impl Evaluator<'_> {
             inner.define(&item.text, element);
             count += 1.0;
             self.block(block, &inner, body);
-            if !self.tick(1, over.span) {
+            if !self.tick(2, over.span) {
                 break;
             }
         }
@@ -259,7 +265,7 @@ impl Evaluator<'_> {
         let value = self.apply(&function, args, call.span, env);
         match value {
             Value::Object(_) if body.place != Place::Object => self.emit(&value, call.span),
-            Value::Poison => self.damaged = true,
+            Value::Poison => (self.damaged, body.broken) = (true, true),
             _ => {
                 let message = "this call gives a value that nothing uses";
                 self.tell(

@@ -1,6 +1,6 @@
 //! `expect mean = 0.5 ± 0.01`: what a file says of its picture. Nothing here measures it.
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_core::film::Rect;
 use luxel_core::scene::{Area, Claim, Color, Expectation, Expected};
 use luxel_core::stage::Film;
@@ -68,10 +68,8 @@ impl Evaluator<'_> {
 
     fn unknown_claim(&mut self, name: &Name) {
         let message = format!("nothing called `{}` can be expected", name.text);
-        let mut found = Diagnostic::error("E0602", name.span, message);
-        if let Some(near) = nearest(&name.text, FORMS.iter().map(|(word, _)| *word)) {
-            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let found = Diagnostic::error("E0602", name.span, message)
+            .meant(name.span, near(&name.text, FORMS.iter().map(|(word, _)| *word)));
         self.tell(found.help("known are mean, pixel, region and same_as"));
     }
 
@@ -211,14 +209,13 @@ impl Evaluator<'_> {
     /// Whether the file declares a parameter before; told if not.
     fn declares(&mut self, name: &Name) -> bool {
         let known: Vec<String> = self.params.iter().map(|param| param.name.clone()).collect();
-        if known.iter().any(|known| **known == *name.text) {
+        // What could not be read may have declared it.
+        if self.damaged || known.iter().any(|known| **known == *name.text) {
             return true;
         }
         let message = format!("no parameter `{}` is declared before", name.text);
-        let mut found = Diagnostic::error("E0111", name.span, message);
-        if let Some(near) = nearest(&name.text, known.iter().map(String::as_str)) {
-            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let found = Diagnostic::error("E0111", name.span, message)
+            .meant(name.span, near(&name.text, known.iter().map(String::as_str)));
         self.tell(found);
         false
     }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::{Dimension, Unit};
 
 use super::Evaluator;
@@ -154,10 +154,8 @@ impl Evaluator<'_> {
             other => other.describe(),
         };
         let message = format!("there is no `{}` in {what}", name.text);
-        let mut diagnostic = Diagnostic::error("E0101", name.span, message);
-        if let Some(near) = nearest(&name.text, known) {
-            diagnostic = diagnostic.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let diagnostic = Diagnostic::error("E0101", name.span, message)
+            .meant(name.span, near(&name.text, known));
         self.tell(diagnostic);
         Value::Poison
     }
@@ -167,6 +165,10 @@ impl Evaluator<'_> {
         for item in items {
             let value = self.eval(item, env);
             values.push(self.with_unit(value, unit, item.span));
+        }
+        let is_large = items.len() >= LARGE;
+        if is_large && !self.hold(items.len() * size_of::<Value>(), items[0].span) {
+            return Value::Poison;
         }
         if values.iter().any(Value::is_poison) {
             return Value::Poison;
@@ -257,7 +259,11 @@ impl Evaluator<'_> {
             let wanted =
                 comp.filter.as_ref().is_none_or(|f| self.condition(f, &inner) == Some(true));
             if wanted {
-                out.push(self.eval(&comp.value, &inner));
+                let value = self.eval(&comp.value, &inner);
+                if !self.hold(value.bytes(), span) {
+                    break;
+                }
+                out.push(value);
             }
             if out.len() > self.budgets.list {
                 let message = format!("a list of more than {} elements", self.budgets.list);
@@ -271,7 +277,12 @@ impl Evaluator<'_> {
         if self.stopped || out.iter().any(Value::is_poison) {
             return Value::Poison;
         }
-        Value::list(out, Form::List)
+        let made = out.len() * size_of::<Value>();
+        let list = Value::list(out, Form::List);
+        if let Value::Numbers(packed) = &list {
+            self.held -= made.saturating_sub(packed.data.len() * size_of::<f64>()).min(self.held);
+        }
+        list
     }
 
     /// What a loop runs over; `None` after a mistake.
@@ -298,6 +309,9 @@ impl Evaluator<'_> {
         }
     }
 }
+
+/// Lists of fewer elements than this are as many as statements make.
+const LARGE: usize = 64;
 
 /// What a loop runs over.
 pub(super) enum Elements {

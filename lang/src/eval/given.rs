@@ -30,17 +30,13 @@ impl Evaluator<'_> {
 
     fn misfit(&mut self, misfit: &Misfit, span: Span) {
         let mut diagnostic = Diagnostic::error(misfit.code, span, misfit.message.clone());
-        if let Some(word) = misfit.word {
-            diagnostic = diagnostic
-                .help(format!("did you mean \"{word}\"?"))
-                .fix(span, format!("\"{word}\""));
-        }
+        diagnostic = diagnostic.meant_text(span, misfit.word);
         if !misfit.help.is_empty() {
             diagnostic = diagnostic.help(misfit.help.clone());
         }
         let end = Span { start: span.end, ..span };
         for unit in &misfit.units {
-            diagnostic = diagnostic.fix(end, format!(" {unit}"));
+            diagnostic = diagnostic.guess(end, format!(" {unit}"));
         }
         self.tell(diagnostic);
     }

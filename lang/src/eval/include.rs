@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_core::files::FileError;
 use luxel_sdk::params::{Dimension, Unit};
 
@@ -83,7 +83,7 @@ impl Evaluator<'_> {
         let source = self.sources.add(name, text.clone());
         let tree = syntax::parse(&text, source, &self.budgets, &mut self.sink);
         self.stopped |= self.sink.is_full();
-        resolve::resolve(&tree, &mut self.sink);
+        resolve::resolve(&tree, &text, &mut self.sink);
         let units = self.units(&tree.stmts);
         Some(Rc::new(ReadFile { tree, units }))
     }
@@ -212,6 +212,9 @@ impl Evaluator<'_> {
         let mut overrides = BTreeMap::new();
         for field in with {
             if !params.iter().any(|p| p.text == field.name.text) {
+                if is_damaged(&read.tree) {
+                    continue;
+                }
                 self.no_param(&field.name, &params);
                 continue;
             }
@@ -228,11 +231,9 @@ impl Evaluator<'_> {
 
     fn no_param(&mut self, name: &Name, params: &[&Name]) {
         let message = format!("the file declares no parameter `{}`", name.text);
-        let mut found = Diagnostic::error("E0111", name.span, message);
         let known = || params.iter().map(|p| &*p.text);
-        if let Some(near) = nearest(&name.text, known()) {
-            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let found = Diagnostic::error("E0111", name.span, message)
+            .meant(name.span, near(&name.text, known()));
         self.tell(found);
     }
 
@@ -269,6 +270,11 @@ pub(super) fn params(tree: &Tree) -> impl Iterator<Item = &Name> {
         StmtNode::Param(def) => Some(&def.name),
         _ => None,
     })
+}
+
+/// Whether a statement could not be read: it may have declared anything.
+pub(super) fn is_damaged(tree: &Tree) -> bool {
+    tree.stmts.iter().any(|stmt| matches!(stmt.node, StmtNode::Broken { .. }))
 }
 
 fn placed(code: &'static str, span: Option<Span>, message: String) -> Diagnostic {

@@ -15,6 +15,7 @@ mod expr;
 mod finish;
 mod given;
 mod include;
+mod mention;
 mod object;
 mod ops;
 mod params;
@@ -60,6 +61,7 @@ pub(crate) fn load(
         depth: 0,
         placements: 0,
         stopped: false,
+        held: 0,
         bytes_read: 0,
         includes: 0,
         read: BTreeMap::new(),
@@ -94,6 +96,8 @@ struct Evaluator<'a> {
     placements: usize,
     /// A budget is spent: everything winds up.
     stopped: bool,
+    /// Bytes of lists and records that were made so far.
+    held: usize,
     bytes_read: usize,
     /// Files included or imported so far.
     includes: usize,
@@ -140,6 +144,17 @@ impl Evaluator<'_> {
         if self.steps > self.budgets.steps && !self.stopped {
             let message = format!("evaluation takes more than {} steps", self.budgets.steps);
             self.over_budget("E0502", span, message);
+        }
+        !self.stopped
+    }
+
+    /// Counts memory that a value will hold; `false` when there may be no more.
+    fn hold(&mut self, bytes: usize, span: Span) -> bool {
+        self.held = self.held.saturating_add(bytes);
+        if self.held > self.budgets.value_bytes && !self.stopped {
+            let limit = self.budgets.value_bytes;
+            let message = format!("lists and records hold more than {limit} bytes");
+            self.over_budget("E0503", span, message);
         }
         !self.stopped
     }

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_core::registry::Registry;
 use luxel_core::scene::{Argument, GroupId, Node, NodeId, Pose, Value as Fitted};
 use luxel_sdk::abi::Class;
@@ -29,6 +29,8 @@ impl Evaluator<'_> {
         }
         let head = self.head(object, span);
         let mut body = Body::new(Place::Object);
+        let class = |head: &Head| self.registry.class(head.kind?, &head.class.text);
+        body.class = head.as_ref().and_then(class).copied();
         self.block(&object.body, env, &mut body);
         match head {
             Some(head) if !body.broken => self.build(&head, body.fields),
@@ -44,10 +46,8 @@ impl Evaluator<'_> {
         let Some(kind) = Kind::of_word(&category.text) else {
             let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
             let message = format!("there is no kind of object `{}`", category.text);
-            let mut found = Diagnostic::error("E0401", category.span, message);
-            if let Some(near) = nearest(&category.text, words()) {
-                found = found.help(format!("did you mean `{near}`?")).fix(category.span, near);
-            }
+            let found = Diagnostic::error("E0401", category.span, message)
+                .meant(category.span, near(&category.text, words()));
             let known: Vec<_> = words().collect();
             self.tell(found.help(format!("known are {}", known.join(", "))));
             return None;
@@ -73,10 +73,7 @@ impl Evaluator<'_> {
         let missing = namesake || (near.is_none() && !self.unloaded.is_empty());
         let code = if missing { "E0414" } else { "E0401" };
         let message = format!("there is no {kind} `{}`", class.text);
-        let mut found = Diagnostic::error(code, class.span, message);
-        if let Some(near) = near {
-            found = found.help(format!("did you mean `{near}`?")).fix(class.span, near);
-        }
+        let mut found = Diagnostic::error(code, class.span, message).meant(class.span, near);
         if missing {
             let advice = self.unloaded.iter().take(SHOWN).map(|library| library.advice.clone());
             found = advice.fold(found, Diagnostic::help);
@@ -116,7 +113,10 @@ impl Evaluator<'_> {
                     pose = self.transform(&field.value, field.span).unwrap_or_default();
                 }
                 "material" => material = self.node_of(field, Kind::Material),
-                _ => self.unknown(field, "a group or placement", &["transform", "material"]),
+                _ => {
+                    let known = ["transform", "material"];
+                    let _ = self.unknown(field, "a group or placement", &known, fields);
+                }
             }
         }
         (pose, material)
@@ -124,6 +124,17 @@ impl Evaluator<'_> {
 
     /// `object with { … }`: the same object with some fields given anew.
     pub(super) fn amend(&mut self, value: Value, fields: Vec<FieldValue>, span: Span) -> Value {
+        let old = match &value {
+            Value::Object(object) => object.fields.len(),
+            Value::Record(fields) => fields.len(),
+            _ => 0,
+        };
+        let all = old + fields.len();
+        if !self.tick((old * fields.len()) as u64, span)
+            || !self.hold(all * size_of::<FieldValue>(), span)
+        {
+            return Value::Poison;
+        }
         match value {
             Value::Object(object) if object.head.kind.is_some() => {
                 let all = merged(&object.fields, fields);
@@ -158,6 +169,7 @@ impl Evaluator<'_> {
         let (mut params, mut overrides) = (vec![], vec![]);
         let mut pose = Pose::IDENTITY;
         let (mut poisoned, mut depth) = (false, 0);
+        let mut meant = vec![];
         for (i, field) in fields.iter().enumerate() {
             self.given_twice(&fields[..i], field);
             let Some(param) = Registry::params(&class).find(|p| p.name == &*field.name.text) else {
@@ -170,11 +182,11 @@ impl Evaluator<'_> {
                     "materials" if class.kind == Kind::Importer => {
                         overrides = self.materials(field, &mut poisoned);
                     }
-                    _ => self.unknown_param(&class, field),
+                    _ => meant.extend(self.unknown_param(&class, field, &fields)),
                 }
                 continue;
             };
-            self.deprecated(param, field);
+            self.deprecated(param, field, &fields);
             if let Value::Object(inner) = &field.value {
                 depth = depth.max(inner.depth);
                 if param.ty != Type::Part {
@@ -186,7 +198,7 @@ impl Evaluator<'_> {
                 None => poisoned = true,
             }
         }
-        self.complete(&class, head, &fields);
+        self.complete(&class, head, &fields, &meant);
         if depth >= self.budgets.nesting {
             let message = format!("objects stand in one another more than {depth} deep");
             return self.poison("E0507", head.span, message);
@@ -269,19 +281,26 @@ impl Evaluator<'_> {
         }
     }
 
-    fn deprecated(&mut self, param: &Param, field: &FieldValue) {
+    fn deprecated(&mut self, param: &Param, field: &FieldValue, all: &[FieldValue]) {
         if param.deprecated.is_empty() {
             return;
         }
         let message = format!("`{}` is now called `{}`", param.name, param.deprecated);
-        self.tell(
-            Diagnostic::warning("E0410", field.name.span, message)
-                .fix(field.name.span, param.deprecated),
-        );
+        let found = Diagnostic::warning("E0410", field.name.span, message);
+        self.tell(match all.iter().find(|other| &*other.name.text == param.deprecated) {
+            Some(new) => found.label(new.name.span, "it is given here as well"),
+            None => found.fix(field.name.span, param.deprecated),
+        });
     }
 
-    fn unknown_param(&mut self, class: &Class, field: &FieldValue) {
-        let mut known: Vec<&str> =
+    /// Tells of a field that the class does not have; gives the parameter that was probably meant.
+    fn unknown_param(
+        &mut self,
+        class: &Class,
+        field: &FieldValue,
+        all: &[FieldValue],
+    ) -> Option<&'static str> {
+        let mut known: Vec<&'static str> =
             Registry::params(class).filter(|p| p.deprecated.is_empty()).map(|p| p.name).collect();
         if stands_somewhere(class.kind) {
             known.push("transform");
@@ -289,27 +308,41 @@ impl Evaluator<'_> {
         if class.kind == Kind::Importer {
             known.push("materials");
         }
-        self.unknown(field, &format!("{} {}", class.kind, class.name), &known);
+        self.unknown(field, &format!("{} {}", class.kind, class.name), &known, all)
     }
 
-    fn unknown(&mut self, field: &FieldValue, what: &str, known: &[&str]) {
+    /// Tells of a name that is no parameter; gives the one that was probably meant. What is given
+    /// among `all` is not offered again.
+    fn unknown(
+        &mut self,
+        field: &FieldValue,
+        what: &str,
+        known: &[&'static str],
+        all: &[FieldValue],
+    ) -> Option<&'static str> {
         let name = &field.name;
         let message = format!("`{what}` has no parameter `{}`", name.text);
-        let mut found = Diagnostic::error("E0402", name.span, message);
-        if let Some(near) = meant(&name.text, known) {
-            found = found.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
+        let near = meant(&name.text, known);
+        let given = near.and_then(|near| all.iter().find(|other| *other.name.text == *near.name));
+        let found = Diagnostic::error("E0402", name.span, message);
+        let found = match given {
+            Some(given) => found.label(given.name.span, "this one is given already"),
+            None => found.meant(name.span, near),
+        };
         self.tell(found.help(format!("known are {}", known.join(", "))));
+        near.map(|near| near.name)
     }
 
-    /// Checks that what must be given is given, and groups exactly once.
-    fn complete(&mut self, class: &Class, head: &Head, fields: &[FieldValue]) {
+    /// Checks that what must be given is given, and groups exactly once. What is `meant` by a
+    /// misspelt name counts as given.
+    fn complete(&mut self, class: &Class, head: &Head, fields: &[FieldValue], meant: &[&str]) {
         let given = |name: &str| fields.iter().find(|f| &*f.name.text == name);
         let missing = |params: &[&str]| params.join("`, `");
         let mut absent = vec![];
         let mut groups: Vec<&'static str> = vec![];
         for param in Registry::params(class) {
-            if param.required && param.group.is_empty() && given(param.name).is_none() {
+            let is_given = given(param.name).is_some() || meant.contains(&param.name);
+            if param.required && param.group.is_empty() && !is_given {
                 absent.push(param.name);
             }
             if !param.group.is_empty() && !groups.contains(&param.group) {
@@ -346,7 +379,10 @@ impl Evaluator<'_> {
                 let message = format!("`{a}` and `{b}` are both given; only one can be");
                 let found = Diagnostic::error("E0406", second.span, message);
                 self.tell(found.label(first.span, "first given here"));
-            } else if chosen.is_empty() && !members.contains(&"scale") {
+            } else if chosen.is_empty()
+                && !members.contains(&"scale")
+                && !members.iter().any(|member| meant.contains(member))
+            {
                 let message = format!("one of `{}` is wanted", missing(&members));
                 self.tell(Diagnostic::error("E0403", head.class.span, message));
             }

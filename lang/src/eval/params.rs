@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_core::scene::NodeId;
 use luxel_sdk::params::{Dimension, Unit};
 
@@ -147,6 +147,9 @@ impl Evaluator<'_> {
                 _ => None,
             });
             let Some(def) = def else {
+                if include::is_damaged(tree) {
+                    continue;
+                }
                 self.no_setting(tree, name, Span::new(source, 0, name.len()));
                 continue;
             };
@@ -197,11 +200,9 @@ impl Evaluator<'_> {
 
     fn no_setting(&mut self, tree: &Tree, name: &str, span: Span) {
         let message = format!("the scene declares no parameter `{name}`");
-        let mut found = Diagnostic::error("E0111", span, message);
         let known: Vec<&str> = include::params(tree).map(|p| &*p.text).collect();
-        if let Some(near) = nearest(name, known.iter().copied()) {
-            found = found.help(format!("did you mean `{near}`?")).fix(span, near);
-        }
+        let found = Diagnostic::error("E0111", span, message)
+            .meant(span, near(name, known.iter().copied()));
         let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
         self.tell(found.help(format!("declared are {list}")));
     }
@@ -277,10 +278,8 @@ impl Evaluator<'_> {
 
     fn no_label(&mut self, label: &Name) {
         let message = format!("nothing in the scene is labelled \"{}\"", label.text);
-        let mut found = Diagnostic::error("E0109", label.span, message);
-        if let Some(near) = nearest(&label.text, self.labels.objects.keys().map(|l| &**l)) {
-            found = found.help(format!("did you mean `{near}`?")).fix(label.span, near);
-        }
+        let found = Diagnostic::error("E0109", label.span, message)
+            .meant(label.span, near(&label.text, self.labels.objects.keys().map(|l| &**l)));
         self.tell(found.help("a label is the text after the kind: `shape sphere \"ball\" { … }`"));
     }
 }

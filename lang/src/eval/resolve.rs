@@ -5,25 +5,28 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use luxel_sdk::params::Unit;
 
+use super::mention::{children, mention_body};
 use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
-    Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
+    Arg, COMPARES, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Op, RESERVED,
+    Stmt, StmtNode, Tree, Ty,
 };
 
 /// Tells every name that is unknown, used too early or defined twice.
-pub(super) fn resolve(tree: &Tree, sink: &mut Sink) {
-    let mut resolver = Resolver { sink, scopes: vec![], functions: vec![] };
+pub(super) fn resolve(tree: &Tree, text: &str, sink: &mut Sink) {
+    let mut resolver = Resolver { sink, text, scopes: vec![], functions: vec![], in_object: false };
     resolver.block(&tree.stmts, &[]);
 }
 
 /// Whether an expression names nothing but what every scene has, and makes no object.
 pub(super) fn is_constant(expr: &Expr) -> bool {
     let mut sink = Sink::new(usize::MAX);
-    let mut resolver = Resolver { sink: &mut sink, scopes: vec![], functions: vec![] };
+    let mut resolver =
+        Resolver { sink: &mut sink, text: "", scopes: vec![], functions: vec![], in_object: false };
     resolver.scopes.push(Scope::default());
     resolver.expr(expr);
     sink.errors() == 0
@@ -45,6 +48,10 @@ struct Resolver<'a> {
     scopes: Vec<Scope>,
     /// The functions whose bodies are being read.
     functions: Vec<Name>,
+    /// The file.
+    text: &'a str,
+    /// In the body of an object that holds no others.
+    in_object: bool,
 }
 
 /// The name that a statement defines.
@@ -82,6 +89,10 @@ impl Resolver<'_> {
     }
 
     fn define(&mut self, name: &Name) {
+        // Told where it was read.
+        if RESERVED.contains(&&*name.text) {
+            return;
+        }
         if let Some(unit) = Unit::named(&name.text) {
             let message = format!(
                 "`{}` is a unit ({}) and cannot be a name",
@@ -155,7 +166,7 @@ impl Resolver<'_> {
                 self.label(stmt, object.label.as_ref());
                 self.object(object);
             }
-            StmtNode::Call(call) => self.expr(call),
+            StmtNode::Call(call) => self.call(call),
             StmtNode::Broken { defines } => {
                 if let (Some(name), Some(scope)) = (defines, self.scopes.last_mut()) {
                     scope.names.entry(name.text.clone()).or_insert(name.span);
@@ -224,7 +235,70 @@ impl Resolver<'_> {
     }
 
     fn object(&mut self, object: &Object) {
+        let outer = std::mem::replace(&mut self.in_object, &*object.category.text != "group");
         self.block(&object.body.stmts, &[]);
+        self.in_object = outer;
+    }
+
+    /// A call as a statement. In an object, where none can stand, `center (0, 1, 0)` is a parameter
+    /// whose `=` is missing.
+    fn call(&mut self, call: &Expr) {
+        match called(call).filter(|name| self.in_object && self.is_unknown(name)) {
+            Some(name) => self.no_equals(call, name),
+            None => self.expr(call),
+        }
+    }
+
+    fn is_unknown(&self, name: &Name) -> bool {
+        let name = &name.text;
+        let known = |s: &Scope| s.names.contains_key(name) || s.later.contains_key(name);
+        !self.scopes.iter().any(known) && builtins::value(name).is_none()
+    }
+
+    /// Arguments of a call; of a function that every scene has, `to (0, 1, 0)` is one whose `=` is
+    /// missing.
+    fn args(&mut self, function: &[Name], args: &[Arg]) {
+        let words: Vec<&str> = function.iter().map(|name| &*name.text).collect();
+        let function = words.join(".");
+        for arg in args {
+            let takes = |name: &&Name| builtins::takes(&function, &name.text);
+            let name = called(&arg.value).filter(takes).filter(|name| self.is_unknown(name));
+            match name.filter(|_| arg.name.is_none()) {
+                Some(name) => self.no_equals(&arg.value, name),
+                None if self.is_compared(&function, &arg.value) => {}
+                None => self.expr(&arg.value),
+            }
+        }
+    }
+
+    /// Whether an argument compares a name of the function's own with a value, which is told:
+    /// `to == (0, 1, 0)`.
+    fn is_compared(&mut self, function: &str, value: &Expr) -> bool {
+        let ExprNode::Chain { first, rest } = &value.node else { return false };
+        let (ExprNode::Path(path), [(Op::Eq, op, given)]) = (&first.node, &rest[..]) else {
+            return false;
+        };
+        let takes = path.len() == 1 && builtins::takes(function, &path[0].text);
+        if !takes || !self.is_unknown(&path[0]) {
+            return false;
+        }
+        self.sink.push(Diagnostic::error("E0013", *op, COMPARES).fix(*op, "="));
+        self.expr(given);
+        true
+    }
+
+    /// Tells that a call is a name and its value.
+    fn no_equals(&mut self, call: &Expr, name: &Name) {
+        let ExprNode::Call { args, .. } = &call.node else { return };
+        let (end, name) = (name.span.end, &name.text);
+        let blanks = self.text[end as usize..].find('(').unwrap_or(0);
+        let value = Span { start: end + u32::try_from(blanks).unwrap_or(0), ..call.span };
+        let message = format!("`=` is missing between `{name}` and its value");
+        let gap = Span { start: end, end, ..value };
+        self.sink.push(Diagnostic::error("E0012", value, message).fix(gap, " ="));
+        for arg in args {
+            self.expr(&arg.value);
+        }
     }
 
     fn fields(&mut self, fields: &[Field]) {
@@ -238,10 +312,8 @@ impl Resolver<'_> {
             return;
         }
         let message = format!("there is no type `{}`", ty.name.text);
-        let mut found = Diagnostic::error("E0215", ty.name.span, message);
-        if let Some(near) = types::nearest_type(&ty.name.text) {
-            found = found.help(format!("did you mean `{near}`?")).fix(ty.name.span, near);
-        }
+        let found = Diagnostic::error("E0215", ty.name.span, message)
+            .meant(ty.name.span, near(&ty.name.text, types::names()));
         let known: Vec<_> = types::names().collect();
         self.sink.push(found.help(format!("known are {}", known.join(", "))));
     }
@@ -251,6 +323,17 @@ impl Resolver<'_> {
             ExprNode::Path(path) => self.path(path, expr.span),
             ExprNode::Object(object) => self.object(object),
             ExprNode::Comp(comp) => self.comp(comp),
+            ExprNode::Call { callee, args } => {
+                self.expr(callee);
+                match &callee.node {
+                    ExprNode::Path(path) => self.args(path, args),
+                    _ => {
+                        for arg in args {
+                            self.expr(&arg.value);
+                        }
+                    }
+                }
+            }
             _ => {
                 let mut inner = vec![];
                 children(expr, &mut |child| inner.push(child));
@@ -325,8 +408,9 @@ impl Resolver<'_> {
         // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
         let ending = builtins::names()
             .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
-        if let Some(near) = ending.or_else(|| nearest(shown, known.iter().copied())) {
-            found = found.help(format!("did you mean `{near}`?")).fix(place, near);
+        let ending = ending.map(|name| Near { name, grade: Grade::Sure });
+        if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
+            found = found.meant(place, Some(near));
         } else if shown == "range" {
             found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
         } else {
@@ -336,6 +420,17 @@ impl Resolver<'_> {
             );
         }
         found
+    }
+}
+
+/// The single name that is called, if an expression is such a call.
+fn called(call: &Expr) -> Option<&Name> {
+    match &call.node {
+        ExprNode::Call { callee, .. } => match &callee.node {
+            ExprNode::Path(path) if path.len() == 1 => path.first(),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
@@ -361,107 +456,4 @@ fn circle(scope: &Scope, from: &Name, name: &Name) -> Option<Vec<String>> {
         }
     }
     None
-}
-
-/// Calls `each` on the expressions inside an expression, but not on those in objects.
-fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
-    match &expr.node {
-        ExprNode::Items { items, .. } => items.iter().for_each(each),
-        ExprNode::Paren { inner, .. } | ExprNode::Unary { inner, .. } => each(inner),
-        ExprNode::Comp(comp) => {
-            each(&comp.over);
-            comp.filter.iter().for_each(&mut *each);
-            each(&comp.value);
-        }
-        ExprNode::If { arms, otherwise } => {
-            for (cond, value) in arms {
-                each(cond);
-                each(value);
-            }
-            each(otherwise);
-        }
-        ExprNode::Record(fields) => {
-            for field in fields {
-                each(&field.value);
-            }
-        }
-        ExprNode::Chain { first, rest } => {
-            each(first);
-            for (_, _, operand) in rest {
-                each(operand);
-            }
-        }
-        ExprNode::Call { callee, args } => {
-            each(callee);
-            for arg in args {
-                each(&arg.value);
-            }
-        }
-        ExprNode::Index { of, at } => {
-            each(of);
-            each(at);
-        }
-        ExprNode::Member { of, .. } => each(of),
-        ExprNode::With { of, fields } => {
-            each(of);
-            for field in fields {
-                each(&field.value);
-            }
-        }
-        _ => {}
-    }
-}
-
-fn mention_body(def: &FnDef, out: &mut BTreeSet<Arc<str>>) {
-    match &def.body {
-        FnBody::Value(value) => mention(value, out),
-        FnBody::Template(block) => mention_stmts(&block.stmts, out),
-    }
-}
-
-fn mention(expr: &Expr, out: &mut BTreeSet<Arc<str>>) {
-    match &expr.node {
-        ExprNode::Path(path) => out.extend(path.first().map(|name| name.text.clone())),
-        ExprNode::Object(object) => mention_stmts(&object.body.stmts, out),
-        _ => children(expr, &mut |child| mention(child, out)),
-    }
-}
-
-fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
-    for stmt in stmts {
-        match &stmt.node {
-            StmtNode::Let { value, .. }
-            | StmtNode::Set { value, .. }
-            | StmtNode::Assert { cond: value, .. }
-            | StmtNode::Call(value) => mention(value, out),
-            StmtNode::Fn(def) => mention_body(def, out),
-            StmtNode::For { over, body, .. } => {
-                mention(over, out);
-                mention_stmts(&body.stmts, out);
-            }
-            StmtNode::If { arms, otherwise } => {
-                for (cond, block) in arms {
-                    mention(cond, out);
-                    mention_stmts(&block.stmts, out);
-                }
-                if let Some(block) = otherwise {
-                    mention_stmts(&block.stmts, out);
-                }
-            }
-            StmtNode::Place { what, body, .. } => {
-                mention(what, out);
-                if let Some(block) = body {
-                    mention_stmts(&block.stmts, out);
-                }
-            }
-            StmtNode::Expect(said) => {
-                let at = said.at.iter().flat_map(|(_, args)| args).map(|arg| &arg.value);
-                let given = said.given.iter().map(|field| &field.value);
-                at.chain(&said.values).chain(given).for_each(|value| mention(value, out));
-            }
-            StmtNode::Field(field) => mention(&field.value, out),
-            StmtNode::Object(object) => mention_stmts(&object.body.stmts, out),
-            _ => {}
-        }
-    }
 }

@@ -1,6 +1,6 @@
 //! Types that a scene file writes, and whether values fit them.
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Dimension;
 
@@ -46,11 +46,6 @@ const OTHERS: [&str; 12] = [
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.iter().map(|(_, word)| *word);
     NUMBERS.iter().map(|(name, _)| *name).chain(OTHERS).chain(kinds)
-}
-
-/// The type that is nearest to an unknown one.
-pub(super) fn nearest_type(name: &str) -> Option<&'static str> {
-    nearest(name, names())
 }
 
 /// What a type of numbers measures.
@@ -174,7 +169,7 @@ impl Evaluator<'_> {
             "give the number a unit, or state the file's units once: `units { length = mm }`",
         );
         for unit in likely_units(wanted) {
-            diagnostic = diagnostic.fix(end, format!(" {unit}"));
+            diagnostic = diagnostic.guess(end, format!(" {unit}"));
         }
         self.tell(diagnostic);
         Value::Poison

@@ -162,6 +162,18 @@ impl Value {
         Self::Numbers(Rc::new(Numbers { data: data.into(), dimension, form }))
     }
 
+    /// About how many bytes it takes, the smaller part of what it shares left out.
+    pub(crate) fn bytes(&self) -> usize {
+        let inside = match self {
+            Self::Numbers(n) => 64 + n.data.len() * size_of::<f64>(),
+            Self::Items(i) => 64 + i.items.len() * size_of::<Self>(),
+            Self::Record(fields) => 64 + fields.len() * size_of::<FieldValue>(),
+            Self::Transform(_) | Self::Look(_) | Self::Object(_) => 256,
+            _ => 0,
+        };
+        size_of::<Self>() + inside
+    }
+
     /// Whether a mistake left it.
     pub(crate) fn is_poison(&self) -> bool {
         matches!(self, Self::Poison)

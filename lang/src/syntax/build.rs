@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
+use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, nearest};
 use luxel_sdk::params::{UNITS, Unit};
 use pest::iterators::Pair;
 
@@ -23,7 +23,7 @@ pub(super) struct Builder<'a> {
 }
 
 /// Names that no definition may take.
-pub(super) const RESERVED: [&str; 19] = [
+pub(crate) const RESERVED: [&str; 19] = [
     "let", "param", "fn", "for", "if", "else", "include", "import", "use", "place", "set",
     "assert", "expect", "units", "with", "as", "in", "true", "false",
 ];
@@ -362,10 +362,10 @@ impl Builder<'_> {
         let span = self.span(pair);
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
         match suggest_unit(&bad) {
-            Some(unit) => {
+            Some((unit, grade)) => {
                 diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));
                 if bad == text {
-                    diagnostic = diagnostic.fix(span, unit);
+                    diagnostic = diagnostic.mend(span, unit, grade);
                 }
             }
             None => diagnostic = diagnostic.help("a variable is multiplied by `*`"),
@@ -380,8 +380,8 @@ fn doc(pair: &Pair<'_, Rule>, span: Span) -> Doc {
     Doc { text: text.strip_prefix(' ').unwrap_or(text).to_owned(), span }
 }
 
-/// The unit that a misspelt one stands for: full names, or a slip of the pen.
-fn suggest_unit(text: &str) -> Option<&'static str> {
+/// The unit that a misspelt one stands for: full names are sure, slips of the pen are guessed.
+fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
     const FULL: [(&str, &str); 17] = [
         ("meter", "m"),
         ("metre", "m"),
@@ -405,7 +405,8 @@ fn suggest_unit(text: &str) -> Option<&'static str> {
     let singular = lower.strip_suffix('s').unwrap_or(&lower);
     let full = FULL.iter().find(|(name, _)| *name == singular).map(|(_, unit)| *unit);
     let case = UNITS.iter().find(|(name, _)| name.to_lowercase() == lower).map(|(name, _)| *name);
-    full.or(case).or_else(|| nearest(text, UNITS.iter().map(|(name, _)| *name)))
+    let near = case.or_else(|| nearest(text, UNITS.iter().map(|(name, _)| *name)));
+    full.map(|unit| (unit, Grade::Sure)).or(near.map(|unit| (unit, Grade::Guess)))
 }
 
 /// Resolves escapes; the grammar and the pre-scan let only known ones through.

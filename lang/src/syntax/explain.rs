@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
+use luxel_core::diag::{Diagnostic, Grade, Near, SourceId, Span, near};
 
 use super::build::RESERVED;
 use super::lex::{Token, TokenKind, tokens};
@@ -18,6 +18,11 @@ pub(super) struct Explained {
     /// Where a statement begins that the mistake swallowed.
     pub(super) resume: Option<usize>,
 }
+
+/// What is said of `==` where a value is given.
+pub(crate) const COMPARES: &str = "`==` compares; a value is given with `=`";
+/// What is said of an `else` that nothing stands before.
+pub(super) const LONE_ELSE: &str = "`else` without an `if` before it";
 
 /// Whether a word is a directive of pbrt's language.
 pub(super) fn is_pbrt(word: &str) -> bool {
@@ -150,12 +155,14 @@ impl<'a> Around<'a> {
         if is_pbrt(first.text) && second.is_none_or(|t| t.text != "=") {
             let message = format!("`{}` looks like pbrt's language", first.text);
             let found = self.error("E0021", first, message);
-            return Some(found.help("`luxel convert` turns a pbrt file into a scene"));
+            return Some(
+                found
+                    .help("a scene begins with `scene 1` and says `shape sphere { radius = 1 m }`"),
+            );
         }
         let current = self.current()?;
         if current.text == "else" {
-            let message = "`else` without an `if` before it".to_owned();
-            return Some(self.error("E0020", current, message));
+            return Some(self.error("E0020", current, LONE_ELSE.to_owned()));
         }
         let before = self.before(1)?;
         if current.text == ":" && before.kind == TokenKind::Word {
@@ -188,8 +195,7 @@ impl<'a> Around<'a> {
         }
         let doubled = [Some(current), Some(before), self.tokens.get(self.at + 1)];
         let doubled = doubled.into_iter().flatten().find(|t| t.text == "==")?;
-        let message = "`==` compares; a value is given with `=`".to_owned();
-        Some(self.error("E0013", doubled, message).fix(self.span(doubled), "="))
+        Some(self.error("E0013", doubled, COMPARES.to_owned()).fix(self.span(doubled), "="))
     }
 
     /// A word that begins a line after an operator, near the place where reading stopped: how many
@@ -258,7 +264,11 @@ impl<'a> Around<'a> {
             if !begins || !value.begins_operand() || value.first_on_line || value.text == "{" {
                 continue;
             }
-            if RESERVED.contains(&word.text) {
+            // `lte x = 5`, `fro i in list`, `palce x`: a misspelt word of the language.
+            let after = self.tokens.get(self.at + 1 - value_at).map_or("", |t| t.text);
+            let names = value.kind == TokenKind::Word && matches!(after, "=" | "in");
+            let is_first = self.open.is_empty() && near(word.text, RESERVED).is_some();
+            if names || is_first || RESERVED.contains(&word.text) {
                 continue;
             }
             let gap = Span::new(self.source, word.end(), word.end());
@@ -292,13 +302,14 @@ impl<'a> Around<'a> {
             };
             return Diagnostic::error("E0023", span, "the statement ends too soon");
         };
-        let message = format!("`{}` is not expected here", short(current.text));
-        let mut found = self.error("E0023", current, message);
-        let first = self.tokens[0].text;
-        if let Some(known) = nearest(first, RESERVED).filter(|known| *known != first) {
-            found = found.help(format!("did you mean `{known}` instead of `{first}`?"));
+        let first = self.tokens.iter().find(|t| t.kind != TokenKind::Doc).unwrap_or(current);
+        if let Some(near) = near(first.text, RESERVED).filter(|near| near.name != first.text) {
+            let message = format!("`{}` begins no statement", short(first.text));
+            let near = Near { grade: Grade::Guess, ..near };
+            return self.error("E0023", first, message).meant(self.span(first), Some(near));
         }
-        found
+        let message = format!("`{}` is not expected here", short(current.text));
+        self.error("E0023", current, message)
     }
 }
 

@@ -144,7 +144,7 @@ impl Builder<'_> {
         if adjacent && matches!(unit.as_str(), "e" | "E") {
             let message = "a number ends in an exponent without digits";
             self.sink.push(
-                Diagnostic::error("E0016", whole, message).fix(whole, token.as_str().to_owned()),
+                Diagnostic::error("E0016", whole, message).guess(whole, token.as_str().to_owned()),
             );
             return ExprNode::Broken;
         }
@@ -201,11 +201,10 @@ impl Builder<'_> {
     /// Many literal numbers; `None` if one is bad, which is told.
     fn numbers(&mut self, pair: &Pair<'_, Rule>) -> Option<(Vec<f64>, Span)> {
         let span = self.span(pair);
-        match number::parse_many(pair.as_str()) {
+        match number::parse_many(pair.as_str(), self.budgets.list) {
             Ok(data) if data.len() <= self.budgets.list => Some((data, span)),
-            Ok(data) => {
-                let limit = self.budgets.list;
-                let message = format!("a list of {} elements; the limit is {limit}", data.len());
+            Ok(_) => {
+                let message = format!("a list of more than {} elements", self.budgets.list);
                 self.sink.push(Diagnostic::error("E0503", span, message));
                 None
             }

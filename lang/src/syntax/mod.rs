@@ -9,6 +9,10 @@ mod parse;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod weigh;
+
+pub(crate) use build::RESERVED;
+pub(crate) use explain::COMPARES;
 
 #[cfg(test)]
 pub(crate) use parse::parse_whole;

@@ -62,12 +62,13 @@ fn parse_slowly(token: &[u8]) -> Option<f64> {
     text.parse().ok()
 }
 
-/// The numbers of `text`, separated by blanks or commas; comments are skipped.
-pub(crate) fn parse_many(text: &str) -> Result<Vec<f64>, BadToken> {
+/// The numbers of `text`, separated by blanks or commas; comments are skipped. Reading ends when there
+/// are more than `most`.
+pub(crate) fn parse_many(text: &str, most: usize) -> Result<Vec<f64>, BadToken> {
     let bytes = text.as_bytes();
-    let mut out = Vec::with_capacity(bytes.len() / 6);
+    let mut out = Vec::with_capacity((bytes.len() / 6).min(most));
     let mut at = 0;
-    while let Some(&byte) = bytes.get(at) {
+    while let Some(&byte) = bytes.get(at).filter(|_| out.len() <= most) {
         if matches!(byte, b' ' | b'\n' | b'\t' | b'\r' | b',') {
             at += 1;
             continue;
@@ -132,8 +133,9 @@ mod tests {
     #[test]
     fn a_bad_token_is_named_by_place_and_order() {
         let bad = BadToken { start: 5, end: 6, index: 2, overflow: false };
-        assert_eq!(parse_many(" 1 2 x 3"), Err(bad));
-        assert_eq!(parse_many("1, 2 // c\n/* x */3"), Ok(vec![1.0, 2.0, 3.0]));
-        assert!(parse_many("1 1e999").is_err_and(|bad| bad.overflow));
+        assert_eq!(parse_many(" 1 2 x 3", 9), Err(bad));
+        assert_eq!(parse_many("1, 2 // c\n/* x */3", 9), Ok(vec![1.0, 2.0, 3.0]));
+        assert_eq!(parse_many("1 2 3 x", 1), Ok(vec![1.0, 2.0]));
+        assert!(parse_many("1 1e999", 9).is_err_and(|bad| bad.overflow));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, SourceId, Span};
+use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
 use pest::Parser;
 use pest::error::InputLocation;
 
@@ -10,6 +10,7 @@ use super::build::Builder;
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
+use super::weigh::weigh;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
 use crate::prescan::{Fault, scan};
@@ -19,6 +20,9 @@ use crate::sink::Sink;
 const RESUME_LIMIT: usize = 8;
 /// In how many enclosing blocks statements after a mistake are still looked at.
 const BLOCKS_LOOKED_AT: usize = 8;
+
+/// Words before a name that is being defined.
+const DEFINING: [&str; 3] = ["let", "param", "fn"];
 
 /// A file, read.
 #[derive(Debug, Default, PartialEq)]
@@ -129,7 +133,7 @@ impl Reader<'_> {
         if version.text != "1" {
             let span = self.span(version.start..version.end());
             let message = format!("version {} is not known; the newest is 1", version.text);
-            self.sink.push(Diagnostic::error("E0002", span, message).fix(span, "1"));
+            self.sink.push(Diagnostic::error("E0002", span, message).guess(span, "1"));
             return None;
         }
         Some(version.end())
@@ -181,6 +185,8 @@ impl Reader<'_> {
         if token.kind == TokenKind::Doc {
             let message = "this doc comment is attached to nothing";
             self.sink.push(Diagnostic::warning("E0022", span, message));
+        } else if token.text == "else" {
+            self.sink.push(Diagnostic::error("E0020", span, super::explain::LONE_ELSE));
         } else if !matches!(token.text, "," | ";") {
             let found: String = token.text.chars().take(40).collect();
             let message = format!("`{found}` cannot begin a statement");
@@ -230,12 +236,12 @@ impl Reader<'_> {
             Fault::Stray { at } => {
                 let message = format!("this `{}` closes nothing", byte(*at));
                 let span = self.span(*at..at + 1);
-                Diagnostic::error("E0010", span, message).fix(span, "")
+                Diagnostic::error("E0010", span, message).guess(span, "")
             }
             Fault::String { at } => {
                 let message = "a string ends on its line with `\"`";
                 let end = self.span(at.end..at.end);
-                Diagnostic::error("E0005", self.span(at.clone()), message).fix(end, "\"")
+                Diagnostic::error("E0005", self.span(at.clone()), message).guess(end, "\"")
             }
             Fault::Comment { at } => {
                 let message = "this comment is never closed by `*/`";
@@ -253,6 +259,12 @@ impl Reader<'_> {
     /// Reads one statement. `keep` says whether it becomes part of the tree.
     fn chunk(&mut self, chunk: Range<usize>, keep: bool) {
         let text = &self.text[chunk.clone()];
+        if self.is_too_large(&chunk) {
+            if keep {
+                self.broken(chunk);
+            }
+            return;
+        }
         match SceneParser::parse(Rule::one_stmt, text) {
             Ok(pairs) => {
                 let mut builder = Builder {
@@ -277,6 +289,28 @@ impl Reader<'_> {
                 self.recover(chunk.start + at, chunk, keep);
             }
         }
+    }
+
+    /// Whether a statement would take too much to read, which is told.
+    fn is_too_large(&mut self, chunk: &Range<usize>) -> bool {
+        let Budgets { pieces, string, .. } = *self.budgets;
+        if chunk.len() <= pieces.min(string) {
+            return false;
+        }
+        let weight = weigh(&self.text[chunk.clone()], string);
+        if let Some(at) = weight.text {
+            let span = self.span(chunk.start + at.start..chunk.start + at.end);
+            let message = format!("a string of more than {string} bytes");
+            self.sink.push(Diagnostic::error("E0509", span, message));
+        } else if weight.pieces > pieces {
+            let first = tokens(self.text, chunk.clone()).next().map_or(0..0, |t| t.start..t.end());
+            let message = format!("a statement of more than {pieces} words and marks");
+            let found = Diagnostic::error("E0510", self.span(first), message);
+            self.sink.push(found.help("part it; many numbers belong into `#[ … ]` or a file"));
+        } else {
+            return false;
+        }
+        true
     }
 
     /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those
@@ -333,13 +367,13 @@ impl Reader<'_> {
     fn broken(&mut self, chunk: Range<usize>) {
         let span = self.span(chunk.clone());
         let mut words = tokens(self.text, chunk).filter(|t| t.kind != TokenKind::Doc);
-        let mut defines = None;
-        if let Some("let" | "param" | "fn") = words.next().map(|t| t.text) {
-            defines = words
-                .next()
-                .filter(|t| t.kind == TokenKind::Word)
-                .map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
-        }
+        let first = words.next().map_or("", |t| t.text);
+        let name = words.next().filter(|t| t.kind == TokenKind::Word);
+        // `lte x = 5` was to define something too.
+        let mark = words.next().map_or("", |t| t.text);
+        let misspelt = matches!(mark, "=" | ":" | "(") && nearest(first, DEFINING).is_some();
+        let name = name.filter(|_| misspelt || DEFINING.contains(&first));
+        let defines = name.map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
         let node = StmtNode::Broken { defines };
         self.out.stmts.push(Stmt { span, docs: vec![], attrs: vec![], node });
     }

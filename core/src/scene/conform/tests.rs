@@ -89,7 +89,7 @@ fn a_reflectance_reflects_no_more_than_all() {
 fn a_choice_names_the_nearest_word() {
     let choice = Param { ty: Type::Choice, choices: &WORDS, ..LENGTH };
     let misfit = conform(&choice, Given::Text("gxg".into()), &|_| None).unwrap_err();
-    assert_eq!((misfit.code, misfit.word), ("E0416", Some("ggx")));
+    assert_eq!((misfit.code, misfit.word.map(|near| near.name)), ("E0416", Some("ggx")));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_core::scene::Color;
 use luxel_sdk::color as catalogue;
 use luxel_sdk::color::RgbSpace;
@@ -69,8 +69,8 @@ impl Evaluator<'_> {
         self.tell(
             Diagnostic::error("E0206", span, "`rgb` does not say in which space its numbers are")
                 .help("rgb.linear_srgb for measured values, rgb.srgb for values from a screen, or rgb.acescg, rgb.rec2020")
-                .fix(word, "rgb.linear_srgb")
-                .fix(word, "rgb.srgb"),
+                .guess(word, "rgb.linear_srgb")
+                .guess(word, "rgb.srgb"),
         );
         Value::Poison
     }
@@ -120,11 +120,8 @@ impl Evaluator<'_> {
             return Some(name);
         }
         let names: Vec<&str> = names.collect();
-        let mut found = Diagnostic::error("E0407", span, format!("there is no {what} \"{name}\""));
-        if let Some(near) = nearest(&name, names.iter().copied()) {
-            found =
-                found.help(format!("did you mean \"{near}\"?")).fix(span, format!("\"{near}\""));
-        }
+        let found = Diagnostic::error("E0407", span, format!("there is no {what} \"{name}\""))
+            .meant_text(span, near(&name, names.iter().copied()));
         self.tell(found.help(format!("known are {}", names.join(", "))));
         None
     }
@@ -160,6 +157,12 @@ impl Evaluator<'_> {
                 self.poison("E0214", arg.span, shape);
                 return None;
             };
+            if found.is_none() && !call.env.file.units.contains_key(&Dimension::LENGTH) {
+                let message = "`spectrum` wants wavelengths, a length each; these have no unit";
+                let found = Diagnostic::error("E0201", arg.span, message);
+                self.tell(found.help("give each its unit, as in `(400 nm, 0.1)`"));
+                return None;
+            }
             let scale = self.unit_scale(call, found, Dimension::LENGTH, arg.span)?;
             points.push((nanometres(metres * scale), y));
         }

@@ -10,7 +10,7 @@ mod transform;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, nearest};
+use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::Dimension;
 
 use super::Evaluator;
@@ -119,6 +119,12 @@ pub(crate) fn value(name: &str) -> Option<Value> {
     BUILTINS.iter().find(|b| b.name == name).map(Value::Builtin)
 }
 
+/// Whether a function that every scene has takes an argument of this name.
+pub(crate) fn takes(function: &str, name: &str) -> bool {
+    let function = BUILTINS.iter().find(|builtin| builtin.name == function);
+    function.is_some_and(|builtin| builtin.args.iter().any(|arg| arg.trim_end_matches('?') == name))
+}
+
 /// Every name that every scene has.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     BUILTINS.iter().map(|b| b.name).chain(["pi", "tau"])
@@ -135,6 +141,10 @@ impl Evaluator<'_> {
     ) -> Value {
         if builtin.run == Run::Color(color::Make::Bare) {
             return self.bare_rgb(span);
+        }
+        // What a mistake left without a name may belong anywhere.
+        if given.iter().any(|given| given.name.is_none() && given.value.is_poison()) {
+            return Value::Poison;
         }
         let Some(args) = self.arrange(builtin, given, span) else { return Value::Poison };
         if args.iter().flatten().any(|arg| arg.value.is_poison()) {
@@ -174,10 +184,8 @@ impl Evaluator<'_> {
                     let message = format!("`{}` takes {count} arguments", builtin.name);
                     Diagnostic::error("E0402", at, message)
                 };
-                let near = given.name.and_then(|n| nearest(&n.text, args.iter().copied()));
-                if let Some(near) = near {
-                    found = found.help(format!("did you mean `{near}`?")).fix(at, near);
-                }
+                found =
+                    found.meant(at, given.name.and_then(|n| near(&n.text, args.iter().copied())));
                 let usage = format!("it is called as `{}({})`", builtin.name, args.join(", "));
                 self.tell(found.help(usage));
                 return None;
@@ -239,7 +247,7 @@ impl Evaluator<'_> {
             let end = Span { start: span.end, ..span };
             let mut diagnostic = Diagnostic::error("E0201", span, message);
             for unit in super::types::likely_units(wanted) {
-                diagnostic = diagnostic.fix(end, format!(" {unit}"));
+                diagnostic = diagnostic.guess(end, format!(" {unit}"));
             }
             self.tell(diagnostic);
         } else {

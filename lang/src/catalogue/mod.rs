@@ -1,5 +1,9 @@
 //! Every code that the language and the stage tell, with what it stands for.
 
+mod page;
+
+pub use page::{Example, Page, Setup, page, setup};
+
 /// Code and title of every mistake, in order.
 pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0001", "the file is empty or does not begin with `scene 1`"),
@@ -91,6 +95,7 @@ pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0507", "evaluation or objects nested too deeply"),
     ("E0508", "more mistakes than are shown"),
     ("E0509", "a string that is too long"),
+    ("E0510", "a statement that is too long"),
     ("E0601", "an assertion that does not hold"),
     ("E0602", "an expectation that cannot be understood"),
     ("E0603", "an expectation of pixels outside the picture"),

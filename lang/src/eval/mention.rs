@@ -1,0 +1,110 @@
+//! What expressions and statements mention, for whoever asks before they are evaluated.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use crate::syntax::{Expr, ExprNode, FnBody, FnDef, Stmt, StmtNode};
+
+/// Calls `each` on the expressions inside an expression, but not on those in objects.
+pub(super) fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
+    match &expr.node {
+        ExprNode::Items { items, .. } => items.iter().for_each(each),
+        ExprNode::Paren { inner, .. } | ExprNode::Unary { inner, .. } => each(inner),
+        ExprNode::Comp(comp) => {
+            each(&comp.over);
+            comp.filter.iter().for_each(&mut *each);
+            each(&comp.value);
+        }
+        ExprNode::If { arms, otherwise } => {
+            for (cond, value) in arms {
+                each(cond);
+                each(value);
+            }
+            each(otherwise);
+        }
+        ExprNode::Record(fields) => {
+            for field in fields {
+                each(&field.value);
+            }
+        }
+        ExprNode::Chain { first, rest } => {
+            each(first);
+            for (_, _, operand) in rest {
+                each(operand);
+            }
+        }
+        ExprNode::Call { callee, args } => {
+            each(callee);
+            for arg in args {
+                each(&arg.value);
+            }
+        }
+        ExprNode::Index { of, at } => {
+            each(of);
+            each(at);
+        }
+        ExprNode::Member { of, .. } => each(of),
+        ExprNode::With { of, fields } => {
+            each(of);
+            for field in fields {
+                each(&field.value);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The names that a function's body mentions.
+pub(super) fn mention_body(def: &FnDef, out: &mut BTreeSet<Arc<str>>) {
+    match &def.body {
+        FnBody::Value(value) => mention(value, out),
+        FnBody::Template(block) => mention_stmts(&block.stmts, out),
+    }
+}
+
+fn mention(expr: &Expr, out: &mut BTreeSet<Arc<str>>) {
+    match &expr.node {
+        ExprNode::Path(path) => out.extend(path.first().map(|name| name.text.clone())),
+        ExprNode::Object(object) => mention_stmts(&object.body.stmts, out),
+        _ => children(expr, &mut |child| mention(child, out)),
+    }
+}
+
+fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
+    for stmt in stmts {
+        match &stmt.node {
+            StmtNode::Let { value, .. }
+            | StmtNode::Set { value, .. }
+            | StmtNode::Assert { cond: value, .. }
+            | StmtNode::Call(value) => mention(value, out),
+            StmtNode::Fn(def) => mention_body(def, out),
+            StmtNode::For { over, body, .. } => {
+                mention(over, out);
+                mention_stmts(&body.stmts, out);
+            }
+            StmtNode::If { arms, otherwise } => {
+                for (cond, block) in arms {
+                    mention(cond, out);
+                    mention_stmts(&block.stmts, out);
+                }
+                if let Some(block) = otherwise {
+                    mention_stmts(&block.stmts, out);
+                }
+            }
+            StmtNode::Place { what, body, .. } => {
+                mention(what, out);
+                if let Some(block) = body {
+                    mention_stmts(&block.stmts, out);
+                }
+            }
+            StmtNode::Expect(said) => {
+                let at = said.at.iter().flat_map(|(_, args)| args).map(|arg| &arg.value);
+                let given = said.given.iter().map(|field| &field.value);
+                at.chain(&said.values).chain(given).for_each(|value| mention(value, out));
+            }
+            StmtNode::Field(field) => mention(&field.value, out),
+            StmtNode::Object(object) => mention_stmts(&object.body.stmts, out),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What reading a statement will cost, by one look at its bytes.
+
+use std::ops::Range;
+
+/// How large a statement is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Weight {
+    /// Words, marks and texts; numbers and what parts them are read at one go and count nothing.
+    pub(super) pieces: usize,
+    /// The first text that is longer than the limit.
+    pub(super) text: Option<Range<usize>>,
+}
+
+/// Weighs a statement whose brackets and texts close; texts longer than `limit` are noted.
+pub(super) fn weigh(text: &str, limit: usize) -> Weight {
+    let bytes = text.as_bytes();
+    let (mut out, mut at, mut last) = (Weight::default(), 0, b',');
+    while let Some(&byte) = bytes.get(at) {
+        let start = at;
+        at += 1;
+        match byte {
+            b' ' | b'\t' | b'\n' | b'\r' => continue,
+            b'#' if bytes.get(at) == Some(&b'[') => {
+                at += memchr::memchr(b']', &bytes[at..]).unwrap_or(bytes.len() - at);
+            }
+            b'"' => {
+                at = end_of_text(bytes, at);
+                if at - start > limit + 2 && out.text.is_none() {
+                    out.text = Some(start..at);
+                }
+                out.pieces += 1;
+            }
+            b'0'..=b'9' | b'.' | b'e' | b'E' if is_number(last, byte) => {}
+            b',' => {}
+            // A sign before a number, or in its exponent.
+            b'+' | b'-' if matches!(last, b',' | b'[' | b'(' | b'e' | b'E') => {}
+            _ => {
+                let is_word = |b: &&u8| b.is_ascii_alphanumeric() || **b == b'_';
+                if is_word(&&byte) {
+                    at += bytes[at..].iter().take_while(is_word).count();
+                }
+                out.pieces += 1;
+            }
+        }
+        last = byte;
+    }
+    out
+}
+
+/// Whether a byte belongs to a number, by the byte before that is no blank.
+fn is_number(last: u8, byte: u8) -> bool {
+    let digit = byte.is_ascii_digit() || (byte == b'.' && last.is_ascii_digit());
+    let exponent = matches!(byte, b'e' | b'E') && (last.is_ascii_digit() || last == b'.');
+    digit || exponent
+}
+
+/// One past the quote that ends a text.
+fn end_of_text(bytes: &[u8], mut at: usize) -> usize {
+    while let Some(found) = memchr::memchr2(b'"', b'\\', &bytes[at.min(bytes.len())..]) {
+        at += found + 1;
+        if bytes[at - 1] == b'"' {
+            return at;
+        }
+        at += 1;
+    }
+    bytes.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_marks_and_texts_count_and_numbers_do_not() {
+        let pieces = |text| weigh(text, 10).pieces;
+        // `let`, `a`, `=`, the brackets.
+        assert_eq!(pieces("let a = [1, -2.5, 1e-3, 4]"), 5);
+        assert_eq!(pieces("let a = #[ 1 2 x y z ] m"), 5);
+        assert_eq!(pieces("x.a.a + b"), 7);
+        assert_eq!(weigh("a = \"0123456789\"", 10).text, None);
+        assert_eq!(weigh("a = \"01234\\\"6789a\"", 10).text, Some(4..18));
+    }
+}

@@ -1,0 +1,75 @@
+//! `luxel check --fix` and the pages of codes, as a person meets them.
+
+use super::program::{Folder, SCENE};
+
+fn text(folder: &Folder, name: &str) -> String {
+    String::from_utf8(folder.read(name)).unwrap()
+}
+
+#[test]
+fn what_is_sure_is_mended_in_the_file_where_it_stands() {
+    let wrong = SCENE.replace("radius = 1 m", "radus = 1 m").replace("samples = 4", "samples: 4");
+    let folder = Folder::new("fix")
+        .with("a.scene", &format!("{wrong}include \"parts/b.scene\"\n"))
+        .with("parts/b.scene", "scene 1\nshape sphere { radius 5 cm }\nlet a = (0, 1 0)\n");
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert_eq!((done.code, &*done.out), (0, "a.scene: fine\n"), "{done:?}");
+    for part in [
+        "a.scene:7:24: E0017: `:` → `=`\n",
+        "a.scene:9:16: E0402: `radus` → `radius`\n",
+        "parts/b.scene:2:22: E0012: `=` added\n",
+        "parts/b.scene:3:14: E0014: `,` added\n",
+    ] {
+        assert!(done.err.contains(part), "{part} in {}", done.err);
+    }
+    let mended = "scene 1\nshape sphere { radius = 5 cm }\nlet a = (0, 1, 0)\n";
+    assert_eq!(text(&folder, "parts/b.scene"), mended);
+    assert!(text(&folder, "a.scene").starts_with(SCENE));
+    assert_eq!(folder.names(), ["a.scene", "parts"]);
+}
+
+#[test]
+fn what_is_guessed_set_or_outside_is_left_and_told() {
+    let wrong = SCENE.replace("radius = 1 m", "radius = 1");
+    let folder =
+        Folder::new("fix-not").with("in/a.scene", &wrong).with("b.scene", "scene 1\nx = 3");
+    let done = folder.luxel(&["check", "in/a.scene", "--fix", "--set", "nobody=1"]);
+    assert!(done.code == 1 && done.out.is_empty(), "{done:?}");
+    assert!(done.err.contains("E0201") && done.err.contains("E0111"), "{done:?}");
+    assert_eq!(text(&folder, "in/a.scene"), wrong);
+    // A file outside the scene's folder is changed only where it may be read.
+    folder.write("in/a.scene", &format!("{SCENE}include \"../b.scene\"\n"));
+    let done = folder.luxel(&["check", "in/a.scene", "--fix"]);
+    assert!(done.code == 1 && done.err.contains("E0108"), "{done:?}");
+    assert_eq!(text(&folder, "b.scene"), "scene 1\nx = 3");
+    let done = folder.luxel(&["check", "in/a.scene", "--fix", "--allow-path", ".", "--json"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    assert_eq!((&told["fixed"], &told["after"]), (&"E0113".into(), &"let ".into()));
+    assert_eq!((&told["line"], &told["before"]), (&2.into(), &"".into()));
+    assert_eq!(text(&folder, "b.scene"), "scene 1\nlet x = 3");
+}
+
+#[test]
+fn what_a_mend_uncovers_is_mended_too() {
+    let wrong = SCENE.replace("scene 1\n", "").replace("{ radius = 1 m,", "{ radus: 1 m,");
+    let folder = Folder::new("fix-again").with("a.scene", &wrong);
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert_eq!((done.code, text(&folder, "a.scene")), (0, SCENE.to_owned()));
+    let again = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert_eq!((again.code, &*again.err), (0, ""), "{again:?}");
+}
+
+#[test]
+fn a_code_is_explained_with_an_example_and_its_mend() {
+    let folder = Folder::new("explain-page").with("a.scene", "scene 1\nshape spher { }\n");
+    let done = folder.luxel(&["explain", "e0402"]);
+    assert!(done.code == 0 && done.out.starts_with("E0402: an unknown parameter\n\n"), "{done:?}");
+    assert!(done.out.contains("\n    shape sphere { radus = 5 cm }\n"), "{done:?}");
+    assert!(done.out.contains("\n    shape sphere { radius = 5 cm }\n"), "{done:?}");
+    let done = folder.luxel(&["explain", "E0402", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    assert_eq!(told["example"], "scene 1\nshape sphere { radus = 5 cm }\n");
+    let done = folder.luxel(&["check", "a.scene"]);
+    assert!(done.err.ends_with("1 error; more: luxel explain E0401\n"), "{done:?}");
+}

@@ -1,0 +1,91 @@
+//! The pages of the catalogue: each example makes its mistake, and each mended one makes none.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use luxel_core::diag::Diagnostic;
+use luxel_core::files::{FileError, Files, MemoryFiles, normalise};
+use luxel_core::stage;
+use luxel_lang::{Budgets, CATALOGUE, Settings, Setup, load, page, setup};
+
+use crate::load::registry;
+
+/// Small enough that the examples of limits pass them.
+const SMALL: Budgets = Budgets {
+    file_bytes: 400,
+    total_bytes: 1000,
+    include_depth: 1,
+    includes: 4,
+    brackets: 4,
+    operators: 8,
+    steps: 1000,
+    list: 1000,
+    nodes: 10,
+    instances: 100,
+    string: 64,
+    pieces: 64,
+    value_bytes: 4000,
+    nesting: 16,
+    diagnostics: 3,
+};
+
+/// Files in memory, of which those above the scene's folder may not be read.
+struct Fenced(MemoryFiles);
+
+impl Files for Fenced {
+    fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+        let outside = normalise(path).starts_with("..");
+        if outside { Err(FileError::Outside) } else { self.0.read(path) }
+    }
+
+    fn canonical(&self, path: &Path) -> PathBuf {
+        normalise(path)
+    }
+}
+
+/// The bytes of a text in which `\\xE9` and `\\0` stand for single ones.
+fn bytes(text: &str) -> Vec<u8> {
+    let text = text.replace("\\0", "\0");
+    match text.split_once("\\xE9") {
+        Some((before, after)) => [before.as_bytes(), b"\xE9", after.as_bytes()].concat(),
+        None => text.into_bytes(),
+    }
+}
+
+/// Everything that is told of an example, by the language and by the stage.
+fn told(scene: &'static str, budgets: Budgets) -> Vec<Diagnostic> {
+    let Setup { files: texts, set } = setup(scene);
+    let files = texts
+        .iter()
+        .fold(MemoryFiles::default(), |files, (name, text)| files.with(*name, bytes(text)));
+    let (files, registry) = (Fenced(files), registry());
+    let settings = Settings { set, budgets, ..Settings::default() };
+    let loaded = load(Path::new("example.scene"), &files, &registry, &settings);
+    let mut found = loaded.diagnostics;
+    match loaded.scene.map(|scene| stage::build(&scene, &registry, &files, None)) {
+        Some(Ok(built)) => found.extend(built.warnings),
+        Some(Err(wrong)) => found.extend(wrong),
+        None => {}
+    }
+    found
+}
+
+#[test]
+fn every_example_makes_its_mistake_and_every_mended_one_none() {
+    let mut failures = vec![];
+    for (code, _) in CATALOGUE {
+        let Some(example) = page(code).and_then(|page| page.example) else { continue };
+        let budgets =
+            if code.starts_with("E05") || *code == "E0011" { SMALL } else { Budgets::default() };
+        let [wrong, mut right] = [example.wrong, example.right].map(|scene| told(scene, budgets));
+        if !wrong.iter().any(|found| found.code == *code) {
+            failures.push(format!("{code}: the example tells {wrong:?}"));
+        }
+        // A snippet without a camera is asked for one, when nothing else is wrong with it.
+        right.retain(|found| found.code != "E0409" || *code == "E0409");
+        if !right.is_empty() {
+            failures.push(format!("{code}: the mended example tells {right:?}"));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}

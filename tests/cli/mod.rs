@@ -6,6 +6,7 @@ mod compare;
 mod denoise;
 #[cfg(test)]
 mod docs;
+#[cfg(test)]
 mod explain;
 #[cfg(test)]
 mod faulty;

@@ -10,6 +10,7 @@ mod parse;
 mod tests;
 mod tree;
 
+pub(crate) use lex::{Token, TokenKind, tokens};
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, parse, parse_expr};

@@ -33,14 +33,15 @@ impl<'a> Layout<'a> {
         let mut at = 0;
         while at < entries.len() {
             let mut run: Vec<Line<'a>> = vec![];
+            let (mut least, mut most) = (usize::MAX, 0);
             while let Some(line) = entries.get(at + run.len()).and_then(|it| self.line(it, indent))
             {
                 let joined = |first: &Line<'_>| {
                     let entry = &entries[at + run.len()];
                     first.alike == line.alike && self.pieces[entry.from].newlines < 2
                 };
-                let near = |other: &Line<'_>| other.head.abs_diff(line.head) <= FARTHEST;
-                if !run.first().is_none_or(joined) || !run.iter().all(near) {
+                (least, most) = (least.min(line.head), most.max(line.head));
+                if !run.first().is_none_or(joined) || most - least > FARTHEST {
                     break;
                 }
                 run.push(line);

@@ -162,9 +162,12 @@ impl Layout<'_> {
         match joint {
             Joint::With => false,
             Joint::Else => free && !self.is_block_before(from),
-            // Rather within brackets than before them.
             Joint::Assign if self.pieces[from].is_keyword("if") => !self.is_hard(from, to),
-            Joint::Assign => !self.has_brackets(from, to) && self.fits(from, to, cont, tail),
+            // Rather within brackets than before them, but for those of an operand.
+            Joint::Assign => {
+                let sum = matches!(self.weakest(from, to), Some(Joint::Operator(_)));
+                (sum || !self.has_brackets(from, to)) && self.fits(from, to, cont, tail)
+            }
             _ => self.fits(from, to, cont, tail),
         }
     }

@@ -9,11 +9,13 @@ pub mod prescan;
 mod budgets;
 mod catalogue;
 mod eval;
+mod fmt;
 mod sink;
 mod syntax;
 
 pub use budgets::Budgets;
 pub use catalogue::{CATALOGUE, Example, Page, Setup, page, setup};
+pub use fmt::format;
 
 use std::path::Path;
 

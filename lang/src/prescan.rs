@@ -187,8 +187,10 @@ impl Scanner<'_> {
                 let name = &self.bytes[start..self.at];
                 if CONTINUE.contains(&name) || self.in_expect && name == b"where" {
                     self.newline = false;
-                } else if self.word(start) {
-                    self.in_expect = name == b"expect";
+                } else {
+                    // The word has no other use, and may follow `@off`.
+                    let begins = self.word(start);
+                    self.in_expect = name == b"expect" || self.in_expect && !begins;
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
                 self.in_for = name == b"for" || (self.in_for && name != b"in");
@@ -390,6 +392,7 @@ mod tests {
     fn words_that_continue_begin_nothing() {
         assert_eq!(starts("let a = b\n  with { c = 1 }\nif x { y = 1 }\nelse { y = 2 }").len(), 2);
         assert_eq!(starts("expect mean = b\n  where { c = 1 }\nlet d = 1\nwhere = 2").len(), 3);
+        assert_eq!(starts("@off expect mean = b\n  where { c = 1 }").len(), 1);
     }
 
     #[test]

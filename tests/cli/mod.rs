@@ -11,6 +11,8 @@ mod explain;
 #[cfg(test)]
 mod faulty;
 mod fix;
+#[cfg(test)]
+mod fmt;
 mod grown;
 mod hostile;
 mod isolate;

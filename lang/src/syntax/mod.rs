@@ -14,6 +14,7 @@ mod weigh;
 pub(crate) use build::RESERVED;
 pub(crate) use explain::COMPARES;
 
+pub(crate) use lex::{Token, TokenKind, tokens};
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, parse, parse_expr};

@@ -1,6 +1,7 @@
 //! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
 
 mod build;
+mod cut;
 mod explain;
 mod expr;
 mod lex;

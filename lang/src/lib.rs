@@ -4,6 +4,7 @@
 //! `Files`), prints nothing, and knows no plugin: it meets them as entries of a `Registry`.
 #![forbid(unsafe_code)]
 
+pub mod editor;
 pub mod prescan;
 
 mod budgets;

@@ -15,6 +15,7 @@ mod expr;
 mod finish;
 mod given;
 mod include;
+pub(crate) mod names;
 mod object;
 mod ops;
 mod params;

@@ -2,7 +2,7 @@
 //!
 //! After this, an unknown name is poison that says nothing more.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Span, nearest};
@@ -12,18 +12,19 @@ use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
     Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Stmt, StmtNode, Tree, Ty,
+    children,
 };
 
 /// Tells every name that is unknown, used too early or defined twice.
 pub(super) fn resolve(tree: &Tree, sink: &mut Sink) {
-    let mut resolver = Resolver { sink, scopes: vec![], functions: vec![] };
+    let mut resolver = Resolver::new(sink);
     resolver.block(&tree.stmts, &[]);
 }
 
 /// Whether an expression names nothing but what every scene has, and makes no object.
 pub(super) fn is_constant(expr: &Expr) -> bool {
     let mut sink = Sink::new(usize::MAX);
-    let mut resolver = Resolver { sink: &mut sink, scopes: vec![], functions: vec![] };
+    let mut resolver = Resolver::new(&mut sink);
     resolver.scopes.push(Scope::default());
     resolver.expr(expr);
     sink.errors() == 0
@@ -31,24 +32,34 @@ pub(super) fn is_constant(expr: &Expr) -> bool {
 
 /// The names of one block.
 #[derive(Default)]
-struct Scope {
-    names: BTreeMap<Arc<str>, Span>,
+pub(super) struct Scope {
+    pub(super) names: HashMap<Arc<str>, Span>,
     /// Every name that the block defines anywhere.
-    later: BTreeMap<Arc<str>, Span>,
+    pub(super) later: HashMap<Arc<str>, Span>,
     /// What the functions of the block mention.
-    mentions: BTreeMap<Arc<str>, BTreeSet<Arc<str>>>,
-    labels: BTreeMap<Arc<str>, Span>,
+    pub(super) mentions: BTreeMap<Arc<str>, BTreeSet<Arc<str>>>,
+    pub(super) labels: HashMap<Arc<str>, Span>,
 }
 
-struct Resolver<'a> {
+pub(super) struct Resolver<'a> {
     sink: &'a mut Sink,
-    scopes: Vec<Scope>,
+    pub(super) scopes: Vec<Scope>,
     /// The functions whose bodies are being read.
     functions: Vec<Name>,
+    /// Where names that nothing defines are kept instead of being told.
+    pub(super) free: Option<BTreeSet<Arc<str>>>,
+}
+
+/// What a statement mentions, if it is a function.
+pub(super) fn mentions(stmt: &Stmt) -> Option<(Arc<str>, BTreeSet<Arc<str>>)> {
+    let StmtNode::Fn(def) = &stmt.node else { return None };
+    let mut mentions = BTreeSet::new();
+    mention_body(def, &mut mentions);
+    Some((def.name.text.clone(), mentions))
 }
 
 /// The name that a statement defines.
-fn defines(stmt: &Stmt) -> Option<&Name> {
+pub(super) fn defines(stmt: &Stmt) -> Option<&Name> {
     match &stmt.node {
         StmtNode::Let { name, .. } | StmtNode::Import { name, .. } => Some(name),
         StmtNode::Param(def) => Some(&def.name),
@@ -58,18 +69,19 @@ fn defines(stmt: &Stmt) -> Option<&Name> {
     }
 }
 
-impl Resolver<'_> {
+impl<'a> Resolver<'a> {
+    /// Nothing is defined yet.
+    pub(super) fn new(sink: &'a mut Sink) -> Self {
+        Self { sink, scopes: vec![], functions: vec![], free: None }
+    }
+
     fn block(&mut self, stmts: &[Stmt], names: &[&Name]) {
         let mut scope = Scope::default();
         for stmt in stmts.iter().filter(|stmt| !stmt.is_off()) {
             if let Some(name) = defines(stmt) {
                 scope.later.entry(name.text.clone()).or_insert(name.span);
             }
-            if let StmtNode::Fn(def) = &stmt.node {
-                let mut mentions = BTreeSet::new();
-                mention_body(def, &mut mentions);
-                scope.mentions.insert(def.name.text.clone(), mentions);
-            }
+            scope.mentions.extend(mentions(stmt));
         }
         self.scopes.push(scope);
         for name in names {
@@ -104,7 +116,8 @@ impl Resolver<'_> {
         scope.names.insert(name.text.clone(), name.span);
     }
 
-    fn stmt(&mut self, stmt: &Stmt) {
+    /// Looks at a statement of the innermost block.
+    pub(super) fn stmt(&mut self, stmt: &Stmt) {
         match &stmt.node {
             StmtNode::Let { name, ty, value } => {
                 self.expr(value);
@@ -280,6 +293,10 @@ impl Resolver<'_> {
         if builtins::value(&joined).is_some() {
             return;
         }
+        if let Some(free) = &mut self.free {
+            free.insert(first.text.clone());
+            return;
+        }
         let diagnostic = match self.later(first) {
             Some(found) => found,
             None => self.unknown(first, &joined, span),
@@ -361,55 +378,6 @@ fn circle(scope: &Scope, from: &Name, name: &Name) -> Option<Vec<String>> {
         }
     }
     None
-}
-
-/// Calls `each` on the expressions inside an expression, but not on those in objects.
-fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
-    match &expr.node {
-        ExprNode::Items { items, .. } => items.iter().for_each(each),
-        ExprNode::Paren { inner, .. } | ExprNode::Unary { inner, .. } => each(inner),
-        ExprNode::Comp(comp) => {
-            each(&comp.over);
-            comp.filter.iter().for_each(&mut *each);
-            each(&comp.value);
-        }
-        ExprNode::If { arms, otherwise } => {
-            for (cond, value) in arms {
-                each(cond);
-                each(value);
-            }
-            each(otherwise);
-        }
-        ExprNode::Record(fields) => {
-            for field in fields {
-                each(&field.value);
-            }
-        }
-        ExprNode::Chain { first, rest } => {
-            each(first);
-            for (_, _, operand) in rest {
-                each(operand);
-            }
-        }
-        ExprNode::Call { callee, args } => {
-            each(callee);
-            for arg in args {
-                each(&arg.value);
-            }
-        }
-        ExprNode::Index { of, at } => {
-            each(of);
-            each(at);
-        }
-        ExprNode::Member { of, .. } => each(of),
-        ExprNode::With { of, fields } => {
-            each(of);
-            for field in fields {
-                each(&field.value);
-            }
-        }
-        _ => {}
-    }
 }
 
 fn mention_body(def: &FnDef, out: &mut BTreeSet<Arc<str>>) {

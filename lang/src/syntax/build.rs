@@ -23,7 +23,7 @@ pub(super) struct Builder<'a> {
 }
 
 /// Names that no definition may take.
-pub(super) const RESERVED: [&str; 19] = [
+pub(crate) const RESERVED: [&str; 19] = [
     "let", "param", "fn", "for", "if", "else", "include", "import", "use", "place", "set",
     "assert", "expect", "units", "with", "as", "in", "true", "false",
 ];

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use luxel_core::diag::Diagnostic;
+
 use crate::prescan::{Fault, scan_until};
 
 /// How often reading goes on after a brace that never closes.
@@ -15,6 +17,18 @@ pub(crate) struct Cut {
     pub(crate) faulty: bool,
 }
 
+/// The statements of a text, or of a part of it.
+#[derive(Debug, Default)]
+pub(crate) struct Cuts {
+    pub(crate) pieces: Vec<Cut>,
+    /// What does not close, and what stands before a first statement.
+    pub(crate) faults: Vec<Diagnostic>,
+    /// Brackets that never close, of each region the first.
+    pub(crate) unclosed: Vec<usize>,
+    /// The start that was known, at which cutting ended.
+    pub(crate) met: Option<usize>,
+}
+
 /// The statements up to the end of the text, or up to a brace that never closes.
 #[derive(Debug)]
 pub(super) struct Region {
@@ -23,6 +37,8 @@ pub(super) struct Region {
     pub(super) pieces: Vec<Cut>,
     /// What does not close and is worth telling.
     pub(super) faults: Vec<Fault>,
+    /// The first bracket that never closes.
+    pub(super) unclosed: Option<usize>,
     /// A fault stands before the first statement.
     pub(super) junk_told: bool,
     /// Before which line a brace that never closes most likely does.
@@ -41,10 +57,12 @@ pub(super) fn region(
     is_known: &mut dyn FnMut(usize) -> bool,
 ) -> Region {
     let found = scan_until(text, from..text.len(), 0, limit, is_known);
-    let resume = found.faults.iter().find_map(|fault| match fault {
-        Fault::Unclosed { open } => likely_end(text, *open),
+    let open = |fault: &Fault| match fault {
+        Fault::Unclosed { open } => Some(*open),
         _ => None,
-    });
+    };
+    let unclosed = found.faults.iter().find_map(open);
+    let resume = found.faults.iter().filter_map(open).find_map(|open| likely_end(text, open));
     let end = resume.or(found.met).unwrap_or(text.len());
     let too_deep = found.faults.iter().any(|f| matches!(f, Fault::TooDeep { .. }));
     let first = found.starts.first().copied().unwrap_or(end);
@@ -69,7 +87,7 @@ pub(super) fn region(
         other => resume.is_none_or(|resume| other.at() < resume),
     });
     let next = resume.filter(|_| !too_deep);
-    Region { first, pieces, faults, junk_told, resume, next, met: found.met }
+    Region { first, pieces, faults, unclosed, junk_told, resume, next, met: found.met }
 }
 
 /// Where a block that never closes most likely ends: before the first line that is indented no

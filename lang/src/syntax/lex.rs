@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum TokenKind {
+pub(crate) enum TokenKind {
     Word,
     /// Digits, dots and an exponent: perhaps not a legal number.
     Number,
@@ -20,22 +20,22 @@ pub(super) enum TokenKind {
 
 /// A token with its bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Token<'a> {
-    pub(super) kind: TokenKind,
-    pub(super) start: usize,
-    pub(super) text: &'a str,
+pub(crate) struct Token<'a> {
+    pub(crate) kind: TokenKind,
+    pub(crate) start: usize,
+    pub(crate) text: &'a str,
     /// Whether a line begins between the token before and this one.
-    pub(super) first_on_line: bool,
+    pub(crate) first_on_line: bool,
 }
 
 impl Token<'_> {
     /// One past the last byte.
-    pub(super) fn end(&self) -> usize {
+    pub(crate) fn end(&self) -> usize {
         self.start + self.text.len()
     }
 
     /// Whether it could begin an operand.
-    pub(super) fn begins_operand(&self) -> bool {
+    pub(crate) fn begins_operand(&self) -> bool {
         match self.kind {
             TokenKind::Mark => matches!(self.text, "(" | "[" | "{"),
             TokenKind::Doc => false,
@@ -45,7 +45,7 @@ impl Token<'_> {
     }
 
     /// Whether it could end an operand.
-    pub(super) fn ends_operand(&self) -> bool {
+    pub(crate) fn ends_operand(&self) -> bool {
         match self.kind {
             TokenKind::Mark => matches!(self.text, ")" | "]" | "}"),
             TokenKind::Doc => false,
@@ -54,14 +54,14 @@ impl Token<'_> {
     }
 
     /// Whether it wants something after it.
-    pub(super) fn is_operator(&self) -> bool {
+    pub(crate) fn is_operator(&self) -> bool {
         self.kind == TokenKind::Mark
             && !matches!(self.text, "(" | "[" | "{" | ")" | "]" | "}" | "," | ";" | ":")
     }
 }
 
 /// Every token of `text[range]`, comments left out.
-pub(super) fn tokens(text: &str, range: Range<usize>) -> impl Iterator<Item = Token<'_>> {
+pub(crate) fn tokens(text: &str, range: Range<usize>) -> impl Iterator<Item = Token<'_>> {
     let text = &text[..range.end];
     let mut at = range.start;
     std::iter::from_fn(move || next(text, &mut at))

@@ -11,12 +11,14 @@ mod parse;
 mod tests;
 mod tree;
 
+pub(crate) use build::RESERVED;
+pub(crate) use cut::{Cut, Cuts};
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
-pub(crate) use parse::{Tree, parse, parse_expr};
+pub(crate) use parse::{Tree, cut, parse, parse_expr, read_head, read_piece};
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
-    ParamDef, Stmt, StmtNode, Ty,
+    ParamDef, Stmt, StmtNode, Ty, children,
 };
 
 pub(crate) use grammar::{Rule, SceneParser};

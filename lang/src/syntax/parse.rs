@@ -7,7 +7,7 @@ use pest::Parser;
 use pest::error::InputLocation;
 
 use super::build::Builder;
-use super::cut::{Region, region};
+use super::cut::{Cuts, RESUME_LIMIT, Region, region};
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
@@ -30,6 +30,58 @@ pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut 
     let mut reader = Reader { text, source, budgets, sink, out: Tree::default() };
     reader.file();
     reader.out
+}
+
+/// What stands before the first statement of a text: where reading goes on, if it is of use, and what
+/// is wrong so far.
+pub(crate) fn read_head(text: &str, budgets: &Budgets) -> (Option<usize>, Vec<Diagnostic>) {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let source = SourceId(0);
+    let from = Reader { text, source, budgets, sink: &mut sink, out: Tree::default() }.head();
+    (from, sink.finish())
+}
+
+/// The bytes of the statements from `from` on, up to the first start that `is_known`, and what does
+/// not close.
+pub(crate) fn cut(
+    text: &str,
+    from: usize,
+    budgets: &Budgets,
+    is_known: &mut dyn FnMut(usize) -> bool,
+) -> Cuts {
+    let mut out = Cuts::default();
+    let mut next = Some(from);
+    for _ in 0..RESUME_LIMIT {
+        let Some(from) = next else { break };
+        let found = region(text, from, budgets.brackets, is_known);
+        let mut sink = Sink::new(budgets.diagnostics);
+        let source = SourceId(0);
+        Reader { text, source, budgets, sink: &mut sink, out: Tree::default() }
+            .region_faults(from, &found);
+        out.unclosed.extend(found.unclosed);
+        out.faults.extend(sink.finish());
+        out.pieces.extend(found.pieces);
+        out.met = found.met;
+        next = found.next.filter(|next| *next > from);
+    }
+    out
+}
+
+/// Reads the statement of a piece; spans count from its first byte.
+pub(crate) fn read_piece(
+    text: &str,
+    faulty: bool,
+    source: SourceId,
+    budgets: &Budgets,
+) -> (Vec<Stmt>, Vec<Diagnostic>) {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let mut reader = Reader { text, source, budgets, sink: &mut sink, out: Tree::default() };
+    if faulty {
+        reader.broken(0..text.len());
+    } else {
+        reader.chunk(0..text.len(), true);
+    }
+    (reader.out.stmts, sink.finish())
 }
 
 /// Reads one text in one piece, without recovery: the oracle of `parse`.
@@ -80,23 +132,29 @@ impl Reader<'_> {
     }
 
     fn file(&mut self) {
+        let Some(mut from) = self.head() else { return };
+        for _ in 0..RESUME_LIMIT {
+            match self.region(from) {
+                Some(next) if next > from => from = next,
+                _ => break,
+            }
+        }
+    }
+
+    /// Reads what stands before the first statement; gives where that ends, or `None` if reading on is
+    /// of no use.
+    fn head(&mut self) -> Option<usize> {
         if let Some(at) = memchr::memchr(0, self.text.as_bytes()) {
             let message = format!("a NUL byte at offset {at}: this is not a text");
             self.sink.push(Diagnostic::error("E0004", self.span(at..at + 1), message));
-            return;
+            return None;
         }
         if self.text.starts_with('\u{FEFF}') {
             let message = "the file begins with a byte order mark, which is not needed";
             let span = self.span(0..3);
             self.sink.push(Diagnostic::warning("E0004", span, message).fix(span, ""));
         }
-        let Some(mut from) = self.header() else { return };
-        for _ in 0..super::cut::RESUME_LIMIT {
-            match self.region(from) {
-                Some(next) if next > from => from = next,
-                _ => break,
-            }
-        }
+        self.header()
     }
 
     /// Reads `scene 1`; gives where it ends, or `None` if reading on is of no use.

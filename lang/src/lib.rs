@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod editor;
+pub mod manual;
 pub mod prescan;
 
 mod budgets;

@@ -199,7 +199,7 @@ impl Scanner<'_> {
                 let name = &self.bytes[start..self.at];
                 let mut begins = false;
                 if CONTINUE.contains(&name) || self.in_expect && name == b"where" {
-                    self.newline = false;
+                    (self.newline, self.doc) = (false, None);
                 } else {
                     begins = self.word(start);
                 }

@@ -48,6 +48,12 @@ impl Piece {
         Self { start, end, faulty, is_alone, read }
     }
 
+    /// What its doc comment says.
+    pub(super) fn doc(&self) -> String {
+        let docs = self.read.stmts.first().into_iter().flat_map(|stmt| &stmt.docs);
+        docs.map(|doc| doc.text.as_str()).collect::<Vec<_>>().join("\n")
+    }
+
     /// Its names, in the order of the text.
     pub(super) fn symbols(&self) -> &[Symbol] {
         self.read.symbols.get_or_init(|| symbols(&self.read.stmts))

@@ -4,7 +4,7 @@
 //! again. Evaluation is total: functions see only what stands before them, loops run over finite
 //! lists, and budgets bound steps, lists, nodes, files and nesting.
 
-mod builtins;
+pub(crate) mod builtins;
 mod call;
 mod elsewhere;
 mod emit;
@@ -21,7 +21,7 @@ mod ops;
 mod params;
 mod require;
 mod resolve;
-mod types;
+pub(crate) mod types;
 mod value;
 
 use std::collections::BTreeMap;

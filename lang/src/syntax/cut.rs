@@ -61,7 +61,7 @@ pub(super) fn region(
         Fault::Unclosed { open } => Some(*open),
         _ => None,
     };
-    let unclosed = found.faults.iter().find_map(open);
+    let unclosed = found.faults.iter().filter_map(open).min();
     let resume = found.faults.iter().filter_map(open).find_map(|open| likely_end(text, open));
     let end = resume.or(found.met).unwrap_or(text.len());
     let too_deep = found.faults.iter().any(|f| matches!(f, Fault::TooDeep { .. }));

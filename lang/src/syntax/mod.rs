@@ -10,9 +10,11 @@ mod parse;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod walk;
 
 pub(crate) use build::RESERVED;
 pub(crate) use cut::{Cut, Cuts};
+pub(crate) use lex::{Token, TokenKind, tokens};
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, cut, parse, parse_expr, read_head, read_piece};
@@ -20,6 +22,8 @@ pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
     ParamDef, Stmt, StmtNode, Ty, children,
 };
+
+pub(crate) use walk::each_expr;
 
 pub(crate) use grammar::{Rule, SceneParser};
 

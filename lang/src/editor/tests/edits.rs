@@ -73,7 +73,7 @@ fn next(state: &mut u64, below: usize) -> usize {
 
 #[test]
 fn an_edited_document_is_the_document_of_the_edited_text() {
-    for seed in (0..150).chain([208, 2240, 12358]) {
+    for seed in [208, 2240, 12358, 41230].into_iter().chain(0..120) {
         let mut state = seed;
         let mut document = Document::new(START, &Budgets::default());
         for step in 0..25 {

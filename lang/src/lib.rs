@@ -17,7 +17,10 @@ mod syntax;
 pub use budgets::Budgets;
 pub use catalogue::CATALOGUE;
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use luxel_core::diag::{Diagnostic, SourceId, Sources, Span};
 use luxel_core::files::Files;
@@ -33,6 +36,10 @@ pub struct Settings {
     pub budgets: Budgets,
     /// Plugin libraries that are not loaded: what a scene misses may be in one of them.
     pub unloaded: Vec<Unloaded>,
+    /// Whether values are noted, for editors.
+    pub noting: bool,
+    /// Ends the load soon after it is set; what it then gives is of no use.
+    pub stop: Option<Arc<AtomicBool>>,
 }
 
 /// A plugin library that was found but not loaded.
@@ -104,6 +111,9 @@ pub struct Loaded {
     pub sources: Sources,
     /// The parameters that the root file declares.
     pub params: Vec<ParamInfo>,
+    /// If it was asked for, the first value of each `let`, `param` and field, by its name's place, as
+    /// text.
+    pub values: BTreeMap<Span, String>,
 }
 
 /// Reads and evaluates the scene at `path`: everything it names comes from `files`, every class from

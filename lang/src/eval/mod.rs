@@ -15,6 +15,7 @@ mod expr;
 mod finish;
 mod given;
 mod include;
+mod note;
 pub(crate) mod names;
 mod object;
 mod ops;
@@ -53,7 +54,7 @@ pub(crate) fn load(
         unloaded: &settings.unloaded,
         budgets: settings.budgets,
         sources: Sources::default(),
-        sink: Sink::new(settings.budgets.diagnostics),
+        sink: Sink::new(settings.budgets.diagnostics).until(settings.stop.clone()),
         scene: Scene::default(),
         open_groups: vec![],
         quiet: 0,
@@ -72,6 +73,7 @@ pub(crate) fn load(
         has_asset: false,
         damaged: false,
         params: vec![],
+        values: settings.noting.then(BTreeMap::new),
     };
     evaluator.root(path, &settings.set);
     evaluator.finish()
@@ -112,6 +114,8 @@ struct Evaluator<'a> {
     /// Some statement could not be read: what is missing may stand there.
     damaged: bool,
     params: Vec<ParamInfo>,
+    /// Values for editors, if they are wanted.
+    values: Option<BTreeMap<Span, String>>,
 }
 
 /// A group that is being filled.
@@ -142,6 +146,7 @@ impl Evaluator<'_> {
             let message = format!("evaluation takes more than {} steps", self.budgets.steps);
             self.over_budget("E0502", span, message);
         }
+        self.stopped |= self.sink.is_stopped();
         !self.stopped
     }
 

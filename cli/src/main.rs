@@ -16,6 +16,7 @@ mod isolate;
 mod libraries;
 mod list;
 mod load;
+mod lsp;
 mod measure;
 mod output;
 mod picture;
@@ -72,6 +73,7 @@ enum Command {
     List(list::Args),
     Describe(describe::Args),
     Plugin(plugin::Args),
+    Lsp(lsp::Args),
 }
 
 fn main() -> ExitCode {
@@ -99,6 +101,7 @@ fn main() -> ExitCode {
         Command::List(args) => list::run(args),
         Command::Describe(args) => describe::run(args),
         Command::Plugin(args) => plugin::run(args),
+        Command::Lsp(args) => lsp::run(args),
     });
     done.unwrap_or_else(|failure| failed(&failure)).into()
 }

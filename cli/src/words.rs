@@ -1,9 +1,9 @@
 //! The manual pages of the language's own words, as text and for programs.
 
-use luxel_lang::manual::{Field, Word};
+use luxel_lang::manual::Field;
 use serde_json::{Value, json};
 
-pub(crate) use luxel_lang::manual::{WORDS, fields_of, find};
+pub(crate) use luxel_lang::manual::{WORDS, Word, fields_of, find};
 
 /// The manual page.
 pub(crate) fn page(word: &Word) -> String {

@@ -65,6 +65,11 @@ impl Item {
         Self { label: label.into(), kind, detail, doc, insert, rank: 5 }
     }
 
+    /// A file or folder.
+    pub fn file(name: String) -> Self {
+        Self::new(name, ItemKind::File)
+    }
+
     pub(super) fn detail(self, detail: impl Into<String>) -> Self {
         Self { detail: detail.into(), ..self }
     }

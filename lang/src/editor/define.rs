@@ -139,7 +139,7 @@ fn label(project: &dyn Project, path: &Path, name: &str) -> Option<Place> {
 }
 
 /// The files that a file names, itself first, each once.
-pub(super) fn reached(project: &dyn Project, path: &Path) -> Vec<PathBuf> {
+pub fn reached(project: &dyn Project, path: &Path) -> Vec<PathBuf> {
     let mut out = vec![path.to_owned()];
     let mut next = 0;
     while let Some(path) = out.get(next).cloned() {

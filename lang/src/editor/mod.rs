@@ -19,7 +19,7 @@ mod tests;
 mod tokens;
 
 pub use complete::{Completion, Item, ItemKind, complete};
-pub use define::{Place, Project, definition, references, renamable, rename};
+pub use define::{Place, Project, definition, reached, references, renamable, rename};
 pub use document::Document;
 pub use fold::{Fold, folds};
 pub use hover::{Hover, hover};

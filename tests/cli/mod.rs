@@ -13,6 +13,7 @@ mod hostile;
 mod isolate;
 mod judged;
 mod libraries;
+mod lsp;
 mod plugin;
 #[cfg(test)]
 pub(crate) mod program;

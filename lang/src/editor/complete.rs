@@ -252,19 +252,16 @@ impl Asked<'_> {
     fn kinds(&self, kind: Kind) -> Vec<Item> {
         let one = |entry: &luxel_core::registry::Entry| {
             let class = &entry.class;
-            let required: Vec<String> = class
+            let required: Vec<&str> = class
                 .params
                 .iter()
                 .filter(|param| param.required)
-                .map(|param| format!("{} = ", param.name))
+                .map(|param| param.name)
                 .collect();
             let body = match required.split_first() {
                 None => "{ $0 }".to_owned(),
-                Some((first, rest)) => {
-                    let rest: String =
-                        rest.iter().map(|name| format!(", {}", name.trim_end())).collect();
-                    format!("{{ {first}$0{rest} }}")
-                }
+                Some((first, [])) => format!("{{ {first} = $0 }}"),
+                Some((first, rest)) => format!("{{ {first} = $0, {} = }}", rest.join(" = , ")),
             };
             let braces = self
                 .here

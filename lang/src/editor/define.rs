@@ -75,7 +75,7 @@ pub(super) fn resolve(
     match &symbol.role {
         Role::Definition(_) => Some(here(symbol.range(piece.start))),
         Role::Local(start) => Some(here(other(*start)?.symbol.range(piece.start))),
-        Role::Top => document.top(&symbol.text).map(here),
+        Role::Top => document.top_before(piece, &symbol.text).map(here),
         Role::Member(of) => {
             let module = resolve(project, path, document, &other(*of)?)?;
             let (file, of) = at_place(project, &module, |symbol| match &symbol.role {

@@ -9,6 +9,7 @@ use luxel_core::diag::{Diagnostic, Span};
 use super::lines::Lines;
 use super::piece::{Piece, placed};
 use crate::budgets::Budgets;
+use crate::eval::builtins;
 use crate::eval::names::{Placed, moved, resolve_placed};
 use crate::sink::Sink;
 use crate::syntax::{Cut, Cuts, cut, read_head};
@@ -247,6 +248,13 @@ impl Document {
             tops
         });
         tops.get(name).cloned()
+    }
+
+    /// The same for a use in a statement. What stands before it counts; of what stands later, only
+    /// what every scene does not have: then it is used too early.
+    pub(super) fn top_before(&self, piece: &Piece, name: &str) -> Option<Range<usize>> {
+        let place = self.top(name)?;
+        (place.start < piece.start || !builtins::begins(name)).then_some(place)
     }
 
     /// The statements, in order.

@@ -44,12 +44,16 @@ pub struct Entry {
 pub fn outline(document: &Document, stop: &dyn Fn() -> bool) -> Vec<Entry> {
     let pieces = document.pieces().iter().take_while(|_| !stop());
     pieces
-        .flat_map(|piece| piece.read.stmts.iter().filter_map(|stmt| entry(stmt, piece.start)))
+        .flat_map(|piece| {
+            piece.read.stmts.iter().filter_map(|stmt| entry(document.text(), stmt, piece.start))
+        })
         .collect()
 }
 
-fn entry(stmt: &Stmt, start: usize) -> Option<Entry> {
+fn entry(text: &str, stmt: &Stmt, start: usize) -> Option<Entry> {
     let range = moved(stmt.span, start).range();
+    let length = text.get(range.clone())?.trim_end().len();
+    let range = range.start..range.start + length;
     let made = |name: &str, detail: &str, kind, at, children| {
         let selection = moved(at, start).range();
         let detail = detail.to_owned();
@@ -65,7 +69,7 @@ fn entry(stmt: &Stmt, start: usize) -> Option<Entry> {
     match &stmt.node {
         StmtNode::Let { name, value, .. } => {
             let (detail, children) = match &value.node {
-                ExprNode::Object(object) => (head(object), entries(&object.body, start)),
+                ExprNode::Object(object) => (head(object), entries(text, &object.body, start)),
                 _ => (word(value).to_owned(), vec![]),
             };
             made(&name.text, &detail, EntryKind::Name, name.span, children)
@@ -85,23 +89,23 @@ fn entry(stmt: &Stmt, start: usize) -> Option<Entry> {
             let name = object.label.as_ref().map_or(shown.as_str(), |label| &label.text);
             let detail = if object.label.is_some() { shown.as_str() } else { "" };
             let name = if name.is_empty() { &shown } else { name };
-            made(name, detail, EntryKind::Object, object.head(), entries(&object.body, start))
+            made(name, detail, EntryKind::Object, object.head(), entries(text, &object.body, start))
         }
         StmtNode::For { item, body, .. } => {
             let name = format!("for {}", item.text);
-            made(&name, "", EntryKind::Block, item.span, entries(body, start))
+            made(&name, "", EntryKind::Block, item.span, entries(text, body, start))
         }
         StmtNode::If { arms, otherwise } => {
             let blocks = arms.iter().map(|(_, block)| block).chain(otherwise);
-            let children = blocks.flat_map(|block| entries(block, start)).collect();
+            let children = blocks.flat_map(|block| entries(text, block, start)).collect();
             made("if", "", EntryKind::Block, arms.first()?.0.span, children)
         }
         _ => None,
     }
 }
 
-fn entries(block: &Block, start: usize) -> Vec<Entry> {
-    block.stmts.iter().filter_map(|stmt| entry(stmt, start)).collect()
+fn entries(text: &str, block: &Block, start: usize) -> Vec<Entry> {
+    block.stmts.iter().filter_map(|stmt| entry(text, stmt, start)).collect()
 }
 
 fn head(object: &Object) -> String {

@@ -76,7 +76,7 @@ pub(super) fn param(given: Given) -> Item {
         .insert(format!("{} = $0", given.name()))
         .detail(given.facts())
         .doc(given.doc())
-        .rank(if required { 0 } else { 1 })
+        .rank(u8::from(!required))
 }
 
 /// What `units { }` may give a unit to.

@@ -65,7 +65,9 @@ impl Symbol {
 /// The names of statements with relative spans, in the order of the text.
 pub(super) fn symbols(stmts: &[Stmt]) -> Vec<Symbol> {
     let mut walk = Walk { out: vec![], scopes: vec![] };
-    stmts.iter().for_each(|stmt| walk.stmt(stmt));
+    for stmt in stmts {
+        walk.stmt(stmt);
+    }
     walk.out.sort_by_key(|symbol| symbol.start);
     walk.out
 }
@@ -106,7 +108,9 @@ impl Walk {
             }
             StmtNode::Param(def) => {
                 self.expr(&def.value);
-                def.range.iter().for_each(|range| self.expr(range));
+                if let Some(range) = &def.range {
+                    self.expr(range);
+                }
                 self.define(&def.name, Sort::Param);
             }
             StmtNode::Fn(def) => self.function(def),
@@ -122,7 +126,9 @@ impl Walk {
                     self.expr(cond);
                     self.block(block);
                 }
-                otherwise.iter().for_each(|block| self.block(block));
+                if let Some(block) = otherwise {
+                    self.block(block);
+                }
             }
             StmtNode::Include { path, with } => {
                 self.add(&path.text, path.span, Role::File);
@@ -132,10 +138,21 @@ impl Walk {
                 self.add(&path.text, path.span, Role::File);
                 self.define(name, Sort::Import(path.text.clone()));
             }
+            _ => self.content(stmt),
+        }
+    }
+
+    /// A statement that defines no name of the file.
+    fn content(&mut self, stmt: &Stmt) {
+        match &stmt.node {
             StmtNode::Place { what, label, body } => {
                 self.expr(what);
-                label.iter().for_each(|label| self.add(&label.text, label.span, Role::Label));
-                body.iter().for_each(|block| self.block(block));
+                if let Some(label) = label {
+                    self.add(&label.text, label.span, Role::Label);
+                }
+                if let Some(block) = body {
+                    self.block(block);
+                }
             }
             StmtNode::Set { path, value } => {
                 path.iter()
@@ -148,16 +165,16 @@ impl Walk {
             StmtNode::Field(field) => self.expr(&field.value),
             StmtNode::Object(object) => self.object(object),
             StmtNode::Call(call) => self.expr(call),
-            StmtNode::Broken { defines } => {
-                defines.iter().for_each(|name| self.define(name, Sort::Let));
-            }
-            StmtNode::Units(_) | StmtNode::Use { .. } => {}
+            StmtNode::Broken { defines: Some(name) } => self.define(name, Sort::Let),
+            _ => {}
         }
     }
 
     fn expectation(&mut self, said: &crate::syntax::Expect) {
         said.at.iter().flat_map(|(_, args)| args).for_each(|arg| self.expr(&arg.value));
-        said.values.iter().for_each(|value| self.expr(value));
+        for value in &said.values {
+            self.expr(value);
+        }
         match &said.path {
             Some(path) => {
                 self.add(&path.text, path.span, Role::File);
@@ -183,7 +200,9 @@ impl Walk {
         let own = def.name.span.range().start;
         self.scoped(|walk| {
             for param in &def.params {
-                param.default.iter().for_each(|value| walk.expr(value));
+                if let Some(value) = &param.default {
+                    walk.expr(value);
+                }
                 walk.define(&param.name, Sort::ArgumentOf(own));
             }
             match &def.body {
@@ -205,7 +224,9 @@ impl Walk {
     }
 
     fn object(&mut self, object: &Object) {
-        object.label.iter().for_each(|label| self.add(&label.text, label.span, Role::Label));
+        if let Some(label) = &object.label {
+            self.add(&label.text, label.span, Role::Label);
+        }
         self.block(&object.body);
     }
 
@@ -226,7 +247,9 @@ impl Walk {
             _ => {
                 let mut inner = vec![];
                 children(expr, &mut |child| inner.push(child));
-                inner.into_iter().for_each(|child| self.expr(child));
+                for child in inner {
+                    self.expr(child);
+                }
             }
         }
     }
@@ -257,7 +280,9 @@ impl Walk {
         self.expr(&comp.over);
         self.scoped(|walk| {
             comp.index.iter().chain([&comp.item]).for_each(|name| walk.define(name, Sort::Item));
-            comp.filter.iter().for_each(|filter| walk.expr(filter));
+            if let Some(filter) = &comp.filter {
+                walk.expr(filter);
+            }
             walk.expr(&comp.value);
         });
     }

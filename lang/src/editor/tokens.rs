@@ -104,25 +104,21 @@ fn of_symbol(document: &Document, piece: &Piece, symbol: &Symbol, steps: usize) 
         of_symbol(document, piece, &symbols[found], steps.checked_sub(1)?)
     };
     match &symbol.role {
-        Role::Definition(Sort::Let | Sort::Item) => Some(Colour::Variable),
+        Role::Definition(Sort::Let | Sort::Item) | Role::Labelled => Some(Colour::Variable),
         Role::Definition(Sort::Param | Sort::ArgumentOf(_))
         | Role::Argument(_)
         | Role::ParamOf(_) => Some(Colour::Parameter),
         Role::Definition(Sort::Fn) => Some(Colour::Function),
         Role::Definition(Sort::Import(_)) => Some(Colour::Namespace),
         Role::Local(start) => other(piece, *start),
-        Role::Top => match document.top(&symbol.text) {
+        Role::Top => match document.top_before(piece, &symbol.text) {
             Some(place) => {
                 let piece = document.piece_at(place.start)?;
                 other(piece, place.start - piece.start)
             }
-            None => {
-                let own = |name: &str| name.split('.').next() == Some(&symbol.text);
-                builtins::names().any(own).then_some(Colour::Function)
-            }
+            None => builtins::begins(&symbol.text).then_some(Colour::Function),
         },
         Role::Member(_) => Some(Colour::Property),
-        Role::Labelled => Some(Colour::Variable),
         Role::Label | Role::File => None,
     }
 }

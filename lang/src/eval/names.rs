@@ -34,7 +34,9 @@ impl Facts {
         let mut resolver = Resolver::new(&mut sink);
         resolver.scopes.push(Scope::default());
         resolver.free = Some(BTreeSet::new());
-        stmts.iter().for_each(|stmt| resolver.stmt(stmt));
+        for stmt in stmts {
+            resolver.stmt(stmt);
+        }
         let scope = resolver.scopes.pop().unwrap_or_default();
         let free = resolver.free.take().unwrap_or_default();
         let on = || stmts.iter().filter(|stmt| !stmt.is_off());
@@ -82,7 +84,9 @@ pub(crate) fn resolve_placed<'p>(
             let mut sink = Sink::new(usize::MAX);
             let mut resolver = Resolver::new(&mut sink);
             resolver.scopes.push(std::mem::take(&mut top));
-            stmts.iter().for_each(|stmt| resolver.stmt(stmt));
+            for stmt in stmts {
+                resolver.stmt(stmt);
+            }
             top = resolver.scopes.pop().unwrap_or_default();
             tell(start, sink);
         }
@@ -102,9 +106,14 @@ fn odd<'p>(placed: impl Iterator<Item = Placed<'p>>) -> HashSet<usize> {
     let (mut names, mut labels) = (HashSet::new(), HashSet::new());
     let mut out = HashSet::new();
     for (i, Placed { facts, .. }) in placed.enumerate() {
-        let mut fine = facts.sound && facts.free.iter().all(|name| names.contains(&**name));
-        fine &= facts.defines.iter().fold(true, |fine, name| names.insert(&*name.text) && fine);
-        fine &= facts.labels.iter().fold(true, |fine, label| labels.insert(&*label.text) && fine);
+        // Every name is put in, whatever was found of those before.
+        let twice = |seen: &mut HashSet<_>, names: &'p [Name]| {
+            names.iter().filter(|name| !seen.insert(&*name.text)).count() > 0
+        };
+        let known = facts.free.iter().all(|name| names.contains(&**name));
+        let defined = twice(&mut names, &facts.defines);
+        let labelled = twice(&mut labels, &facts.labels);
+        let fine = facts.sound && known && !defined && !labelled;
         if !fine {
             out.insert(i);
         }

@@ -17,7 +17,16 @@ impl Evaluator<'_> {
     /// Keeps the first value of a name, if values are wanted.
     pub(super) fn note(&mut self, name: &Name, value: &Value) {
         let Some(values) = &mut self.values else { return };
-        if value.is_poison() || values.len() >= KEPT {
+        // Of an object or a function, the text says more.
+        let is_plain = !matches!(
+            value,
+            Value::Poison
+                | Value::Object(_)
+                | Value::Module(_)
+                | Value::Function(_)
+                | Value::Builtin(_)
+        );
+        if !is_plain || values.len() >= KEPT {
             return;
         }
         values.entry(name.span).or_insert_with(|| match value {

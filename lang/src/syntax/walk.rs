@@ -8,7 +8,9 @@ pub(crate) fn each_expr<'s>(stmt: &'s Stmt, each: &mut dyn FnMut(&'s Expr)) {
         StmtNode::Let { value, .. } | StmtNode::Set { value, .. } => expr(value, each),
         StmtNode::Param(def) => {
             expr(&def.value, each);
-            def.range.iter().for_each(|range| expr(range, each));
+            if let Some(range) = &def.range {
+                expr(range, each);
+            }
         }
         StmtNode::Fn(def) => {
             def.params.iter().flat_map(|param| &param.default).for_each(|value| expr(value, each));
@@ -26,7 +28,9 @@ pub(crate) fn each_expr<'s>(stmt: &'s Stmt, each: &mut dyn FnMut(&'s Expr)) {
                 expr(cond, each);
                 block(inner, each);
             }
-            otherwise.iter().for_each(|inner| block(inner, each));
+            if let Some(inner) = otherwise {
+                block(inner, each);
+            }
         }
         StmtNode::Include { with, .. } => with.iter().for_each(|field| expr(&field.value, each)),
         StmtNode::Place { body, .. } => body.iter().for_each(|inner| block(inner, each)),

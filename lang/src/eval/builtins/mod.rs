@@ -124,6 +124,11 @@ pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     BUILTINS.iter().map(|b| b.name).chain(["pi", "tau"])
 }
 
+/// Whether a name that every scene has is this one or begins with it and a dot.
+pub(crate) fn begins(name: &str) -> bool {
+    names().any(|known| known.split('.').next() == Some(name))
+}
+
 /// The names of a function's arguments, if there is such a function.
 pub(crate) fn arguments(name: &str) -> Option<Vec<&'static str>> {
     let found = BUILTINS.iter().find(|b| b.name == name)?;

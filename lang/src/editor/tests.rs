@@ -1,6 +1,6 @@
 //! An edited document is the document of the edited text.
 
-use super::super::Document;
+use super::Document;
 use crate::Budgets;
 
 const START: &str = r#"//! A scene.
@@ -51,7 +51,7 @@ const PASTES: [&str; 24] = [
 fn same(edited: &Document, step: &str) {
     let fresh = Document::new(edited.text(), &Budgets::default());
     let pieces = |document: &Document| -> Vec<_> {
-        let of = |piece: &super::super::piece::Piece| {
+        let of = |piece: &super::piece::Piece| {
             (piece.start, piece.end, piece.faulty, piece.read.stmts.clone())
         };
         document.pieces().iter().map(of).collect()

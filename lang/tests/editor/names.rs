@@ -1,7 +1,7 @@
 //! Definitions, references and new names.
 
-use super::{marked, shown};
-use crate::editor::{definition, references, renamable, rename};
+use crate::{marked, shown};
+use luxel_lang::editor::{definition, references, renamable, rename};
 
 fn defined(files: &[(&str, &str)], expected: &str) {
     let (files, path, at) = marked(files);
@@ -58,13 +58,22 @@ fn references_are_told_apart_by_what_they_mean() {
     assert_eq!(all(&[("a", text)]), ["a:2:x", "a:2:x", "a:2:x", "a:3:x"]);
 }
 
+#[test]
+fn a_name_is_not_in_sight_in_its_own_value() {
+    let text = "scene 1\nlet |glass = glass(\"N-BK7\")\nlet b = glass\nlet sin = sin(1)";
+    assert_eq!(all(&[("a", text)]), ["a:2:glass", "a:3:glass"]);
+    defined(&[("a", "scene 1\nlet glass = |glass(\"N-BK7\")")], "nowhere");
+}
+
 /// The text with a name changed, or why not.
 fn renamed(text: &str, new: &str) -> Result<String, String> {
     let (files, path, at) = marked(&[("a", text)]);
     let mut places = rename(&files, &path, at, new)?;
     places.reverse();
     let mut text = text.replacen('|', "", 1);
-    places.iter().for_each(|place| text.replace_range(place.range.0..place.range.1, new));
+    for place in &places {
+        text.replace_range(place.range.0..place.range.1, new);
+    }
     Ok(text)
 }
 

@@ -1,17 +1,20 @@
-//! The services on snippets in which `|` is the cursor.
+//! The editor's services on snippets in which `|` is the cursor.
 
-mod edits;
+mod lists;
 mod names;
+#[path = "../language/registry.rs"]
+mod registry;
+mod shapes;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Document, Place, Project};
-use crate::Budgets;
+use luxel_lang::Budgets;
+use luxel_lang::editor::{Document, Place, Project};
 
 /// Files in memory.
-pub(super) struct Files(BTreeMap<PathBuf, Arc<Document>>);
+pub(crate) struct Files(BTreeMap<PathBuf, Arc<Document>>);
 
 impl Project for Files {
     fn document(&self, path: &Path) -> Option<Arc<Document>> {
@@ -24,7 +27,7 @@ impl Project for Files {
 }
 
 /// Files by name, `|` in one of them; and where it stands.
-pub(super) fn marked(files: &[(&str, &str)]) -> (Files, PathBuf, usize) {
+pub(crate) fn marked(files: &[(&str, &str)]) -> (Files, PathBuf, usize) {
     let (mut out, mut cursor) = (BTreeMap::new(), None);
     for (name, text) in files {
         let path = PathBuf::from(name);
@@ -39,7 +42,7 @@ pub(super) fn marked(files: &[(&str, &str)]) -> (Files, PathBuf, usize) {
 }
 
 /// `name:line:text` of a place.
-pub(super) fn shown(files: &Files, place: &Place) -> String {
+pub(crate) fn shown(files: &Files, place: &Place) -> String {
     let document = files.document(&place.path).expect("places are in files");
     let text = &document.text()[place.range.0..place.range.1];
     let line = document.line_of(place.range.0) + 1;

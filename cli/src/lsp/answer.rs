@@ -27,18 +27,19 @@ pub(super) fn answer(
         return Err(Refusal::new(Code::Cancelled, "the request was cancelled"));
     }
     match method {
-        "textDocument/completion" => server.completion(&server.at(params)?),
-        "textDocument/hover" => server.hover(&server.at(params)?),
-        "textDocument/definition" => server.definition(&server.at(params)?),
-        "textDocument/references" => server.references(&server.at(params)?, params),
+        "textDocument/completion" => Ok(server.completion(&server.at(params)?)),
+        "textDocument/hover" => Ok(server.hover(&server.at(params)?)),
+        "textDocument/definition" => Ok(server.definition(&server.at(params)?)),
+        "textDocument/references" => Ok(server.references(&server.at(params)?, params)),
         "textDocument/prepareRename" => server.prepare_rename(&server.at(params)?),
         "textDocument/rename" => server.rename(&server.at(params)?, params),
         "textDocument/documentSymbol" => server.symbols(params, stop),
         "textDocument/foldingRange" => server.folding(params, stop),
-        "textDocument/semanticTokens/full" => server.tokens(params, stop),
-        "textDocument/semanticTokens/range" => server.tokens(params, stop),
+        "textDocument/semanticTokens/full" | "textDocument/semanticTokens/range" => {
+            server.tokens(params, stop)
+        }
         "textDocument/documentColor" => server.colours(params, stop),
-        "textDocument/colorPresentation" => server.presentation(params),
+        "textDocument/colorPresentation" => Server::presentation(params),
         "textDocument/codeAction" => server.actions(params),
         other => Err(Refusal::new(Code::MethodNotFound, format!("there is no method `{other}`"))),
     }

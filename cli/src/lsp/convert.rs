@@ -93,16 +93,12 @@ pub(super) fn path_of(uri: &str) -> PathBuf {
     let raw = path.as_bytes();
     while at < raw.len() {
         let hex = path.get(at + 1..at + 3).filter(|_| raw[at] == b'%');
-        match hex.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
-            Some(byte) => {
-                bytes.push(byte);
-                at += 3;
-            }
-            None => {
-                bytes.push(raw[at]);
-                at += 1;
-            }
-        }
+        let (byte, length) = match hex.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
+            Some(byte) => (byte, 3),
+            None => (raw[at], 1),
+        };
+        bytes.push(byte);
+        at += length;
     }
     String::from_utf8(bytes).map_or_else(|_| PathBuf::from(uri), |path| normalise(Path::new(&path)))
 }
@@ -118,7 +114,8 @@ pub(super) fn uri_of(path: &Path) -> String {
         if byte.is_ascii_alphanumeric() || b"/-._~".contains(&byte) {
             out.push(char::from(byte));
         } else {
-            out.push_str(&format!("%{byte:02X}"));
+            let hex = |digit: u8| char::from(b"0123456789ABCDEF"[usize::from(digit)]);
+            out.extend(['%', hex(byte >> 4), hex(byte & 15)]);
         }
     }
     out

@@ -84,25 +84,6 @@ impl Opened {
         let bytes = |open: &Open| Arc::from(open.document.text().as_bytes());
         self.open.iter().map(|(path, open)| (path.clone(), bytes(open))).collect()
     }
-
-    /// Names in the folder that a path in a scene begins with; folders end in `/`.
-    pub(super) fn names_beside(&self, path: &Path, written: &str, ends: &[&str]) -> Vec<String> {
-        let folder = &written[..written.rfind('/').map_or(0, |at| at + 1)];
-        let folder = path.parent().unwrap_or(Path::new("")).join(folder);
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut names: Vec<String> = entries
-            .filter_map(|entry| {
-                let name = entry.file_name().into_string().ok()?;
-                let is_folder = entry.path().is_dir();
-                let fits = ends.is_empty() || ends.iter().any(|end| name.ends_with(end));
-                let shown = !name.starts_with('.') && (is_folder || fits);
-                shown.then(|| if is_folder { format!("{name}/") } else { name })
-            })
-            .take(MAX_FILES)
-            .collect();
-        names.sort();
-        names
-    }
 }
 
 impl Project for Opened {
@@ -122,6 +103,25 @@ impl Project for Opened {
     }
 }
 
+/// Names in the folder that a path in a scene begins with; folders end in `/`.
+pub(super) fn names_beside(path: &Path, written: &str, ends: &[&str]) -> Vec<String> {
+    let folder = &written[..written.rfind('/').map_or(0, |at| at + 1)];
+    let folder = path.parent().unwrap_or(Path::new("")).join(folder);
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            let is_folder = entry.path().is_dir();
+            let fits = ends.is_empty() || ends.iter().any(|end| name.ends_with(end));
+            let shown = !name.starts_with('.') && (is_folder || fits);
+            shown.then(|| if is_folder { format!("{name}/") } else { name })
+        })
+        .take(MAX_FILES)
+        .collect();
+    names.sort();
+    names
+}
+
 /// Adds the scene files below a folder.
 fn below(folder: &Path, depth: usize, out: &mut Vec<PathBuf>) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -134,7 +134,7 @@ fn below(folder: &Path, depth: usize, out: &mut Vec<PathBuf>) {
         }
         if path.is_dir() && !path.is_symlink() && depth > 0 {
             below(&path, depth - 1, out);
-        } else if name.ends_with(".scene") && !out.contains(&path) {
+        } else if path.extension().is_some_and(|end| end == "scene") && !out.contains(&path) {
             out.push(path);
         }
     }

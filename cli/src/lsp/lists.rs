@@ -6,21 +6,21 @@ use luxel_lang::editor::{Item, ItemKind, complete, hover};
 use serde_json::{Value, json};
 
 use super::answer::At;
+use super::files::names_beside;
 use super::server::Server;
-use super::wire::Refusal;
 
 impl Server {
-    pub(super) fn completion(&self, at: &At) -> Result<Value, Refusal> {
+    pub(super) fn completion(&self, at: &At) -> Value {
         let mut found = complete(&self.files, &at.path, at.byte, &self.plugins.registry);
         let mut range = found.range.clone();
         if let Some((written, ends)) = &found.files {
-            let names = self.files.names_beside(&at.path, written, ends);
+            let names = names_beside(&at.path, written, ends);
             range.start += written.rfind('/').map_or(0, |at| at + 1);
             found.items = names.into_iter().map(Item::file).collect();
         }
         let range = self.encoding.range(&at.document, &range);
         let items = found.items.iter().map(|item| self.item(item, &range));
-        Ok(json!({ "isIncomplete": false, "items": items.collect::<Vec<_>>() }))
+        json!({ "isIncomplete": false, "items": items.collect::<Vec<_>>() })
     }
 
     fn item(&self, item: &Item, range: &Value) -> Value {
@@ -47,22 +47,20 @@ impl Server {
         out
     }
 
-    pub(super) fn hover(&self, at: &At) -> Result<Value, Refusal> {
+    pub(super) fn hover(&self, at: &At) -> Value {
         let Some(found) = hover(&self.files, &at.path, at.byte, &self.plugins.registry) else {
-            return Ok(Value::Null);
+            return Value::Null;
         };
         let value = found.of.and_then(|place| self.value(place.path, place.range.0));
-        let mut text = format!("```scene\n{}\n```", found.code);
-        if let Some(value) = value {
-            text += &format!("\n\nvalue: {value}");
-        }
-        if !found.text.is_empty() {
-            text += &format!("\n\n{}", found.text);
-        }
-        Ok(json!({
+        let code = format!("```scene\n{}\n```", found.code);
+        let value = value.map(|value| format!("value: {value}"));
+        let words = Some(found.text).filter(|text| !text.is_empty());
+        let parts: Vec<String> = [Some(code), value, words].into_iter().flatten().collect();
+        let text = parts.join("\n\n");
+        json!({
             "contents": { "kind": "markdown", "value": text },
             "range": self.encoding.range(&at.document, &found.range),
-        }))
+        })
     }
 
     /// The value that a name had in the last evaluation.

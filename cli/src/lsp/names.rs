@@ -8,17 +8,17 @@ use super::server::Server;
 use super::wire::{Code, Refusal};
 
 impl Server {
-    pub(super) fn definition(&self, at: &At) -> Result<Value, Refusal> {
+    pub(super) fn definition(&self, at: &At) -> Value {
         let found = editor::definition(&self.files, &at.path, at.byte);
-        Ok(found.and_then(|place| self.location(&place)).unwrap_or_default())
+        found.and_then(|place| self.location(&place)).unwrap_or_default()
     }
 
-    pub(super) fn references(&self, at: &At, params: &Value) -> Result<Value, Refusal> {
+    pub(super) fn references(&self, at: &At, params: &Value) -> Value {
         let own = params["context"]["includeDeclaration"].as_bool().unwrap_or(true);
         let defined = editor::definition(&self.files, &at.path, at.byte).filter(|_| !own);
         let found = editor::references(&self.files, &at.path, at.byte);
         let found = found.iter().filter(|place| Some(*place) != defined.as_ref());
-        Ok(found.filter_map(|place| self.location(place)).collect())
+        found.filter_map(|place| self.location(place)).collect()
     }
 
     pub(super) fn prepare_rename(&self, at: &At) -> Result<Value, Refusal> {

@@ -116,7 +116,8 @@ impl Server {
 
     /// A diagnostic as the protocol writes it.
     pub(super) fn shown(&self, told: &Told, document: &Document) -> Value {
-        let help: String = told.help.iter().map(|help| format!("\nhelp: {help}")).collect();
+        let lines: Vec<&str> =
+            [&told.message].into_iter().chain(&told.help).map(String::as_str).collect();
         // A file without a camera is often one that others include.
         let severity = match told.severity {
             Severity::Error if told.code == "E0409" && !told.is_placed => 3,
@@ -128,7 +129,7 @@ impl Server {
             "severity": severity,
             "code": told.code,
             "source": "luxel",
-            "message": format!("{}{help}", told.message),
+            "message": lines.join("\nhelp: "),
         });
         let related: Vec<Value> = told.labels.iter().filter_map(|l| self.related(l)).collect();
         if !related.is_empty() {

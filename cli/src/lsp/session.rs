@@ -39,7 +39,7 @@ impl Session {
         loop {
             match self.queue.take() {
                 Event::Message(message) => {
-                    if let Some(exit) = self.message(message)? {
+                    if let Some(exit) = self.message(&message)? {
                         return Ok(exit);
                     }
                 }
@@ -55,7 +55,7 @@ impl Session {
     }
 
     /// Deals with a message; gives how to exit, if that was asked for.
-    fn message(&mut self, message: Value) -> Result<Option<Exit>, Failure> {
+    fn message(&mut self, message: &Value) -> Result<Option<Exit>, Failure> {
         let id = message.get("id").filter(|id| id.is_string() || id.is_i64() || id.is_u64());
         let shown = id.cloned().unwrap_or(Value::Null);
         let invalid = |why: &str| respond(&shown, Err(Refusal::new(Code::InvalidRequest, why)));

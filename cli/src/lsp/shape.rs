@@ -61,7 +61,9 @@ impl Server {
         }
         let mut out = vec![];
         let uri = self.uri(&path);
-        entries.iter().for_each(|entry| self.flat(entry, &document, &uri, &mut out));
+        for entry in &entries {
+            self.flat(entry, &document, &uri, &mut out);
+        }
         Ok(Value::Array(out))
     }
 
@@ -84,7 +86,9 @@ impl Server {
             "kind": kind(entry.kind),
             "location": { "uri": uri, "range": range },
         }));
-        entry.children.iter().for_each(|child| self.flat(child, document, uri, out));
+        for child in &entry.children {
+            self.flat(child, document, uri, out);
+        }
     }
 
     pub(super) fn folding(
@@ -148,7 +152,7 @@ impl Server {
         Ok(swatches(&document, stop).iter().map(one).collect())
     }
 
-    pub(super) fn presentation(&self, params: &Value) -> Result<Value, Refusal> {
+    pub(super) fn presentation(params: &Value) -> Result<Value, Refusal> {
         let channel = |name: &str| params["color"][name].as_f64();
         let (Some(r), Some(g), Some(b)) = (channel("red"), channel("green"), channel("blue"))
         else {

@@ -111,13 +111,18 @@ impl Client {
         self.told(uri)
     }
 
-    /// Replaces a range; hears what is told at once.
+    /// Replaces a range; hears what is told at once. Of older texts, something may be told before.
     pub(super) fn edit(&mut self, uri: &str, version: i64, range: Value, text: &str) -> Value {
         let change = json!([{ "range": range, "text": text }]);
         let document = json!({ "uri": uri, "version": version });
         let params = json!({ "textDocument": document, "contentChanges": change });
         self.tell("textDocument/didChange", params);
-        self.told(uri)
+        loop {
+            let told = self.told(uri);
+            if told["version"] == version {
+                return told;
+            }
+        }
     }
 
     /// The next diagnostics of a file.

@@ -31,10 +31,10 @@ fn mistakes_are_told_as_they_are_typed_and_taken_back() {
     assert_eq!((codes(&told), &told["version"]), (vec!["E0101"], &json!(2)));
     assert_eq!(told["diagnostics"][0]["range"], span(LINE, 16, 19));
     assert_eq!(told["diagnostics"][0]["severity"], 1);
-    let told = client.edit(&uri, 3, span(LINE, 12, 19), "");
+    let told = client.edit(&uri, 3, span(LINE, 13, 19), "");
     assert_eq!(codes(&told), Vec::<&str>::new());
     // What only evaluation finds is told after a pause.
-    let told = client.edit(&uri, 4, span(LINE, 0, 12), "shape sphere { radius = 5 }");
+    let told = client.edit(&uri, 4, span(LINE, 0, 13), "shape sphere { radius = 5 }");
     assert_eq!(codes(&told), Vec::<&str>::new());
     let told = client.until(&uri, &["E0201"]);
     assert_eq!(told["version"], 4);

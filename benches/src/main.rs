@@ -9,6 +9,7 @@
 
 mod boundary;
 mod document;
+mod editor;
 mod errors;
 mod features;
 #[path = "../../cli/src/verify/generated.rs"]
@@ -60,9 +61,13 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last four are not among `all`: they take long, or another program.
-const BENCHES: [Bench; 19] = [
+const BENCHES: [Bench; 20] = [
     of_crates("parse", |_| {
         parse::run();
+        Ok(())
+    }),
+    of_crates("editor", |_| {
+        editor::run();
         Ok(())
     }),
     of_program("cold", |plan| peer::cold(&plan.luxel)),

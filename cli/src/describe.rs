@@ -1,9 +1,9 @@
 //! `luxel describe`: the manual page of one plugin.
 
 use luxel_core::registry::{Entry, Registry, common_params};
-use luxel_core::scene::{number_words, range_words};
+use luxel_lang::manual::{default, facts, what};
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::{Param, Preset, Type};
+use luxel_sdk::params::Param;
 use serde_json::{Value, json};
 
 use crate::args::PluginArgs;
@@ -35,8 +35,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let plugins = load::registry(&args.plugins)?;
     plugins.notes.tell(Form::Text, Stream::Error)?;
     let page = match (words::find(&args.kind), &args.name) {
-        (Some(word), None) if args.json => format!("{}\n", word.object()),
-        (Some(word), None) => word.page(),
+        (Some(word), None) if args.json => format!("{}\n", words::object(word)),
+        (Some(word), None) => words::page(word),
         (Some(word), Some(name)) => {
             let message = format!("a `{}` has no kinds: there is no `{name}`", word.name);
             let help = format!("luxel describe {}", word.name);
@@ -93,80 +93,6 @@ fn section(page: &mut String, title: &str, params: &[Param]) {
             page.extend(["      ", line.trim(), "\n"]);
         }
     }
-}
-
-/// Type, unit, range, default and the like, each in a few words.
-pub(crate) fn facts(param: &Param) -> Vec<String> {
-    let mut facts = vec![what(param)];
-    if !param.unit.is_empty() {
-        facts.push(format!("in {}", param.unit.replace('|', " or ")));
-    }
-    facts.extend(range_words(param));
-    if !param.choices.is_empty() {
-        facts.push(format!("one of {}", param.words().collect::<Vec<_>>().join(", ")));
-    }
-    if param.textured {
-        let number = param.ty == Type::Float;
-        let what = if number {
-            "may be a texture (of a colour its luminance)"
-        } else {
-            "may be a texture"
-        };
-        facts.push(what.into());
-    }
-    if !param.group.is_empty() {
-        facts.push(format!("exactly one `{}` is given", param.group));
-    }
-    match default(param) {
-        _ if param.required => facts.push("required".into()),
-        Some(default) => facts.push(format!("default {default}")),
-        None if param.group.is_empty() => facts.push("optional".into()),
-        None => {}
-    }
-    if !param.deprecated.is_empty() {
-        facts.push(format!("old name, now `{}`", param.deprecated));
-    }
-    facts
-}
-
-fn what(param: &Param) -> String {
-    match param.ty {
-        // The spectrum itself stands in no group; its amounts do.
-        Type::Emission if param.group.is_empty() => "spectrum".into(),
-        Type::Emission | Type::Float | Type::Double | Type::MaybeFloat => "number".into(),
-        Type::Int => "whole number".into(),
-        Type::Bool => "true or false".into(),
-        Type::Vec2 => "two numbers".into(),
-        Type::Vec3 | Type::DVec3 => "three numbers".into(),
-        Type::Spectrum => "colour or spectrum".into(),
-        Type::ComplexIor => "metal, or complex index of refraction".into(),
-        Type::Choice => "word".into(),
-        Type::Text => "text".into(),
-        Type::File => "file".into(),
-        Type::Table => "list of numbers".into(),
-        Type::Look => "look_at(from, to, up)".into(),
-        Type::Object(kind) => kind.word().into(),
-        Type::Part => "shape".into(),
-    }
-}
-
-fn default(param: &Param) -> Option<String> {
-    match param.default {
-        Preset::Absent => None,
-        Preset::Numbers(numbers) => Some(numbers_of(param.ty, numbers)),
-        Preset::Index(i) => Some(param.words().nth(i as usize).unwrap_or("?").into()),
-        Preset::Text(text) => Some(format!("{text:?}")),
-    }
-}
-
-fn numbers_of(ty: Type, numbers: [f64; 4]) -> String {
-    let n = match ty {
-        Type::Vec2 => 2,
-        Type::Vec3 | Type::DVec3 => 3,
-        Type::Bool => return (numbers[0] > 0.0).to_string(),
-        _ => return number_words(numbers[0]),
-    };
-    format!("({})", numbers[..n].iter().map(|x| number_words(*x)).collect::<Vec<_>>().join(", "))
 }
 
 fn object(entry: &Entry) -> Value {

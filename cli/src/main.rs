@@ -19,6 +19,7 @@ mod isolate;
 mod libraries;
 mod list;
 mod load;
+mod lsp;
 mod measure;
 mod output;
 mod picture;
@@ -77,6 +78,7 @@ enum Command {
     Describe(describe::Args),
     Docs(docs::Args),
     Plugin(plugin::Args),
+    Lsp(lsp::Args),
 }
 
 fn main() -> ExitCode {
@@ -106,6 +108,7 @@ fn main() -> ExitCode {
         Command::Describe(args) => describe::run(args),
         Command::Docs(args) => docs::run(args),
         Command::Plugin(args) => plugin::run(args),
+        Command::Lsp(args) => lsp::run(args),
     });
     done.unwrap_or_else(|failure| failed(&failure)).into()
 }

@@ -4,6 +4,8 @@
 //! `Files`), prints nothing, and knows no plugin: it meets them as entries of a `Registry`.
 #![forbid(unsafe_code)]
 
+pub mod editor;
+pub mod manual;
 pub mod prescan;
 
 mod budgets;
@@ -17,7 +19,10 @@ pub use budgets::Budgets;
 pub use catalogue::{CATALOGUE, Example, Page, Setup, page, setup};
 pub use fmt::format;
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use luxel_core::diag::{Diagnostic, SourceId, Sources, Span};
 use luxel_core::files::Files;
@@ -33,6 +38,10 @@ pub struct Settings {
     pub budgets: Budgets,
     /// Plugin libraries that are not loaded: what a scene misses may be in one of them.
     pub unloaded: Vec<Unloaded>,
+    /// Whether values are noted, for editors.
+    pub noting: bool,
+    /// Ends the load soon after it is set; what it then gives is of no use.
+    pub stop: Option<Arc<AtomicBool>>,
 }
 
 /// A plugin library that was found but not loaded.
@@ -104,6 +113,9 @@ pub struct Loaded {
     pub sources: Sources,
     /// The parameters that the root file declares.
     pub params: Vec<ParamInfo>,
+    /// If it was asked for, the first value of each `let`, `param` and field, by its name's place, as
+    /// text.
+    pub values: BTreeMap<Span, String>,
 }
 
 /// Reads and evaluates the scene at `path`: everything it names comes from `files`, every class from

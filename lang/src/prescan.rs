@@ -69,6 +69,8 @@ pub struct Scan {
     pub starts: Vec<usize>,
     /// What does not close.
     pub faults: Vec<Fault>,
+    /// The start that was known: the scan ended there, and it is not among the others.
+    pub met: Option<usize>,
 }
 
 /// Words that continue a statement on a new line.
@@ -97,12 +99,24 @@ const STRUCTURAL: [bool; 256] = {
 /// Scans `text[range]`, noting the statements that begin inside `depth` brackets, up to `limit`
 /// nested brackets.
 pub fn scan(text: &str, range: Range<usize>, depth: usize, limit: usize) -> Scan {
+    scan_until(text, range, depth, limit, &mut |_| false)
+}
+
+/// The same up to the first statement whose start `is_known`: what follows depends on nothing before.
+pub fn scan_until(
+    text: &str,
+    range: Range<usize>,
+    depth: usize,
+    limit: usize,
+    is_known: &mut dyn FnMut(usize) -> bool,
+) -> Scan {
     let bytes = &text.as_bytes()[..range.end];
     let mut scanner = Scanner {
         bytes,
         at: range.start,
         depth,
         limit,
+        is_known,
         open: Vec::with_capacity(limit.min(256) + 1),
         operand: true,
         newline: true,
@@ -122,6 +136,7 @@ struct Scanner<'a> {
     at: usize,
     depth: usize,
     limit: usize,
+    is_known: &'a mut dyn FnMut(usize) -> bool,
     open: Vec<usize>,
     /// Whether what stands before could end an expression.
     operand: bool,
@@ -161,6 +176,9 @@ impl Scanner<'_> {
                 b')' | b']' | b'}' => self.close_bracket(byte),
                 _ => self.between(byte),
             }
+            if self.out.met.is_some() {
+                return;
+            }
         }
         let unclosed = self.open.iter().map(|&open| Fault::Unclosed { open });
         self.out.faults.extend(unclosed);
@@ -185,12 +203,16 @@ impl Scanner<'_> {
                     self.at += 1;
                 }
                 let name = &self.bytes[start..self.at];
+                let mut begins = false;
                 if CONTINUE.contains(&name) || self.in_expect && name == b"where" {
-                    self.newline = false;
+                    (self.newline, self.doc) = (false, None);
                 } else {
-                    // The word has no other use, and may follow `@off`.
-                    let begins = self.word(start);
-                    self.in_expect = name == b"expect" || self.in_expect && !begins;
+                    begins = self.word(start);
+                }
+                // The word has no other use, and may follow `@off`.
+                self.in_expect = name == b"expect" || self.in_expect && !begins;
+                if begins {
+                    self.in_for = false;
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
                 self.in_for = name == b"for" || (self.in_for && name != b"in");
@@ -211,7 +233,12 @@ impl Scanner<'_> {
         if self.open.len() == self.depth {
             begins = self.first || (self.operand && self.newline);
             if begins {
-                self.out.starts.push(self.doc.unwrap_or(start));
+                let start = self.doc.unwrap_or(start);
+                if (self.is_known)(start) {
+                    self.out.met = Some(start);
+                } else {
+                    self.out.starts.push(start);
+                }
             }
             self.first = false;
         }

@@ -1,6 +1,8 @@
 //! Where diagnostics are gathered: each once, up to a limit.
 
 use std::collections::HashSet;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use luxel_core::diag::{Diagnostic, Span};
 
@@ -23,12 +25,23 @@ pub(crate) struct Sink {
     limit: usize,
     errors: usize,
     dropped: usize,
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Sink {
     /// Keeps at most `limit` diagnostics.
     pub(crate) fn new(limit: usize) -> Self {
-        Self { list: vec![], seen: HashSet::new(), limit, errors: 0, dropped: 0 }
+        Self { list: vec![], seen: HashSet::new(), limit, errors: 0, dropped: 0, stop: None }
+    }
+
+    /// The same, full as soon as `stop` is set.
+    pub(crate) fn until(self, stop: Option<Arc<AtomicBool>>) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// Whether it was told to stop.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 
     /// Keeps a diagnostic, unless the same code was told of the same place: a loop makes each
@@ -53,7 +66,7 @@ impl Sink {
 
     /// Whether no more diagnostics are kept: going on is of no use.
     pub(crate) fn is_full(&self) -> bool {
-        self.list.len() >= self.limit
+        self.list.len() >= self.limit || self.is_stopped()
     }
 
     /// The diagnostics; the last one says how many were dropped.

@@ -18,6 +18,7 @@ mod hostile;
 mod isolate;
 mod judged;
 mod libraries;
+mod lsp;
 mod plugin;
 #[cfg(test)]
 pub(crate) mod program;

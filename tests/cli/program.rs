@@ -145,6 +145,13 @@ impl Folder {
         told(&command.output().unwrap())
     }
 
+    /// Starts the program and gives what it reads and writes.
+    pub(crate) fn talk(&self, args: &[&str]) -> Child {
+        let mut command = self.among(Command::new(program()));
+        command.args(args).stdin(Stdio::piped()).stdout(Stdio::piped());
+        command.spawn().unwrap()
+    }
+
     /// Starts the program.
     pub(crate) fn start(&self, args: &[&str]) -> Running {
         let mut command = self.among(Command::new(program()));

@@ -1,14 +1,15 @@
 //! The page of a class, of a word of the language, and of all messages.
 
 use luxel_core::registry::{Entry, common_params};
-use luxel_lang::CATALOGUE;
+use luxel_lang::manual::{Field, facts};
+use luxel_lang::{CATALOGUE, Example, page};
 use luxel_sdk::params::Param;
 
 use super::markdown::{self, escaped};
 use super::page::{GUIDE, Page};
-use crate::describe::{COMMON, facts};
+use crate::describe::COMMON;
 use crate::list::summary;
-use crate::words::{self, Field, Word};
+use crate::words::{self, Word};
 
 /// The manual of a class, with its parameters and perhaps a picture.
 pub(super) fn class(entry: &Entry, has_picture: bool) -> Page {
@@ -63,20 +64,30 @@ pub(super) fn word(word: &Word) -> Page {
 
 /// Every message, by its code.
 pub(super) fn messages() -> Page {
-    let rows = CATALOGUE.iter().map(|(code, title)| {
-        format!("<tr id=\"{code}\"><td><code>{code}</code></td><td>{}</td></tr>\n", escaped(title))
-    });
-    let rows: String = rows.collect();
     let codes = CATALOGUE.iter().map(|(code, title)| format!("{code} {title}"));
+    let sections: String = CATALOGUE.iter().map(|(code, title)| message(code, title)).collect();
     Page {
         name: "messages".to_owned(),
         title: "Messages".to_owned(),
         section: GUIDE.to_owned(),
-        summary: "What each code of a message means.".to_owned(),
+        summary: "What each code of a message means, and the mend.".to_owned(),
         words: codes.collect::<Vec<_>>().join(" "),
-        body: format!("<h1>Messages</h1>\n<table>\n{rows}</table>\n"),
+        body: format!("<h1>Messages</h1>\n{sections}"),
         picture: None,
     }
+}
+
+/// What a code means, a scene that tells it, and the mend.
+fn message(code: &str, title: &str) -> String {
+    let mut out =
+        format!("<h2 id=\"{code}\"><code>{code}</code> {}</h2>\n", markdown::inline(title));
+    let Some(page) = page(code) else { return out };
+    out += &markdown::html(page.meaning);
+    if let Some(Example { wrong, mend, right }) = page.example {
+        let block = |scene: &str| format!("<pre><code>{}</code></pre>\n", escaped(scene.trim()));
+        out.extend([block(wrong), markdown::html(mend), block(right)]);
+    }
+    out
 }
 
 /// Name, facts and manual of parameters.

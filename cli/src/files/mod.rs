@@ -93,6 +93,11 @@ impl DiskFiles {
         if allowed { Ok(place) } else { Err(FileError::Outside) }
     }
 
+    /// Whether a file is there that may not be read.
+    pub(crate) fn forbids(&self, path: &Path) -> bool {
+        self.place(path) == Err(FileError::Outside)
+    }
+
     fn fetch(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
         read_regular(&self.place(path)?).map(Arc::from)
     }

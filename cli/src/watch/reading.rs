@@ -127,7 +127,7 @@ mod tests {
         }
         let files = DiskFiles::new(path, &[]);
         let settings = luxel_lang::Settings { set, ..Default::default() };
-        let luxel_lang::Loaded { scene, diagnostics, sources, params } =
+        let luxel_lang::Loaded { scene, diagnostics, sources, params, .. } =
             luxel_lang::load(path, &files, &registry, &settings);
         Text { scene, diagnostics, sources, files, params }
     }

@@ -69,10 +69,12 @@ impl Evaluator<'_> {
                 if let Some(ty) = ty {
                     found = self.fit(ty, found, value.span, env);
                 }
+                self.note(name, &found);
                 env.define(&name.text, found);
             }
             StmtNode::Param(def) => {
                 let value = self.param(def, env);
+                self.note(&def.name, &value);
                 env.define(&def.name.text, value);
             }
             StmtNode::Fn(def) => {

@@ -91,6 +91,7 @@ impl Evaluator<'_> {
     /// The value of one pair.
     pub(super) fn field(&mut self, field: &Field, env: &Env) -> FieldValue {
         let value = self.eval(&field.value, env);
+        self.note(&field.name, &value);
         let span = field.value.span;
         FieldValue { name: field.name.clone(), value, span, file: env.file.clone() }
     }

@@ -29,7 +29,8 @@ impl Evaluator<'_> {
             let message = "the scene could not be evaluated";
             diagnostics.push(Diagnostic::unplaced("E0023", message));
         }
-        Loaded { scene, diagnostics, sources: self.sources, params: self.params }
+        let values = self.values.unwrap_or_default();
+        Loaded { scene, diagnostics, sources: self.sources, params: self.params, values }
     }
 }
 

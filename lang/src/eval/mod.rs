@@ -4,7 +4,7 @@
 //! again. Evaluation is total: functions see only what stands before them, loops run over finite
 //! lists, and budgets bound steps, lists, nodes, files and nesting.
 
-mod builtins;
+pub(crate) mod builtins;
 mod call;
 mod elsewhere;
 mod emit;
@@ -16,12 +16,14 @@ mod finish;
 mod given;
 mod include;
 mod mention;
+pub(crate) mod names;
+mod note;
 mod object;
 mod ops;
 mod params;
 mod require;
 mod resolve;
-mod types;
+pub(crate) mod types;
 mod value;
 
 use std::collections::BTreeMap;
@@ -53,7 +55,7 @@ pub(crate) fn load(
         unloaded: &settings.unloaded,
         budgets: settings.budgets,
         sources: Sources::default(),
-        sink: Sink::new(settings.budgets.diagnostics),
+        sink: Sink::new(settings.budgets.diagnostics).until(settings.stop.clone()),
         scene: Scene::default(),
         open_groups: vec![],
         quiet: 0,
@@ -73,6 +75,7 @@ pub(crate) fn load(
         has_asset: false,
         damaged: false,
         params: vec![],
+        values: settings.noting.then(BTreeMap::new),
     };
     evaluator.root(path, &settings.set);
     evaluator.finish()
@@ -115,6 +118,8 @@ struct Evaluator<'a> {
     /// Some statement could not be read: what is missing may stand there.
     damaged: bool,
     params: Vec<ParamInfo>,
+    /// Values for editors, if they are wanted.
+    values: Option<BTreeMap<Span, String>>,
 }
 
 /// A group that is being filled.
@@ -145,6 +150,7 @@ impl Evaluator<'_> {
             let message = format!("evaluation takes more than {} steps", self.budgets.steps);
             self.over_budget("E0502", span, message);
         }
+        self.stopped |= self.sink.is_stopped();
         !self.stopped
     }
 

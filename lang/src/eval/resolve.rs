@@ -2,31 +2,30 @@
 //!
 //! After this, an unknown name is poison that says nothing more.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use luxel_sdk::params::Unit;
 
-use super::mention::{children, mention_body};
+use super::mention::mention_body;
 use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
     Arg, COMPARES, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Op, RESERVED,
-    Stmt, StmtNode, Tree, Ty,
+    Stmt, StmtNode, Tree, Ty, children,
 };
 
 /// Tells every name that is unknown, used too early or defined twice.
 pub(super) fn resolve(tree: &Tree, text: &str, sink: &mut Sink) {
-    let mut resolver = Resolver { sink, text, scopes: vec![], functions: vec![], in_object: false };
+    let mut resolver = Resolver::new(text, sink);
     resolver.block(&tree.stmts, &[]);
 }
 
 /// Whether an expression names nothing but what every scene has, and makes no object.
 pub(super) fn is_constant(expr: &Expr) -> bool {
     let mut sink = Sink::new(usize::MAX);
-    let mut resolver =
-        Resolver { sink: &mut sink, text: "", scopes: vec![], functions: vec![], in_object: false };
+    let mut resolver = Resolver::new("", &mut sink);
     resolver.scopes.push(Scope::default());
     resolver.expr(expr);
     sink.errors() == 0
@@ -34,28 +33,38 @@ pub(super) fn is_constant(expr: &Expr) -> bool {
 
 /// The names of one block.
 #[derive(Default)]
-struct Scope {
-    names: BTreeMap<Arc<str>, Span>,
+pub(super) struct Scope {
+    pub(super) names: HashMap<Arc<str>, Span>,
     /// Every name that the block defines anywhere.
-    later: BTreeMap<Arc<str>, Span>,
+    pub(super) later: HashMap<Arc<str>, Span>,
     /// What the functions of the block mention.
-    mentions: BTreeMap<Arc<str>, BTreeSet<Arc<str>>>,
-    labels: BTreeMap<Arc<str>, Span>,
+    pub(super) mentions: BTreeMap<Arc<str>, BTreeSet<Arc<str>>>,
+    pub(super) labels: HashMap<Arc<str>, Span>,
 }
 
-struct Resolver<'a> {
+pub(super) struct Resolver<'a> {
     sink: &'a mut Sink,
-    scopes: Vec<Scope>,
+    pub(super) scopes: Vec<Scope>,
     /// The functions whose bodies are being read.
     functions: Vec<Name>,
     /// The file.
     text: &'a str,
     /// In the body of an object that holds no others.
     in_object: bool,
+    /// Where names that nothing defines are kept instead of being told.
+    pub(super) free: Option<BTreeSet<Arc<str>>>,
+}
+
+/// What a statement mentions, if it is a function.
+pub(super) fn mentions(stmt: &Stmt) -> Option<(Arc<str>, BTreeSet<Arc<str>>)> {
+    let StmtNode::Fn(def) = &stmt.node else { return None };
+    let mut mentions = BTreeSet::new();
+    mention_body(def, &mut mentions);
+    Some((def.name.text.clone(), mentions))
 }
 
 /// The name that a statement defines.
-fn defines(stmt: &Stmt) -> Option<&Name> {
+pub(super) fn defines(stmt: &Stmt) -> Option<&Name> {
     match &stmt.node {
         StmtNode::Let { name, .. } | StmtNode::Import { name, .. } => Some(name),
         StmtNode::Param(def) => Some(&def.name),
@@ -65,18 +74,19 @@ fn defines(stmt: &Stmt) -> Option<&Name> {
     }
 }
 
-impl Resolver<'_> {
+impl<'a> Resolver<'a> {
+    /// Nothing is defined yet.
+    pub(super) fn new(text: &'a str, sink: &'a mut Sink) -> Self {
+        Self { sink, text, scopes: vec![], functions: vec![], in_object: false, free: None }
+    }
+
     fn block(&mut self, stmts: &[Stmt], names: &[&Name]) {
         let mut scope = Scope::default();
         for stmt in stmts.iter().filter(|stmt| !stmt.is_off()) {
             if let Some(name) = defines(stmt) {
                 scope.later.entry(name.text.clone()).or_insert(name.span);
             }
-            if let StmtNode::Fn(def) = &stmt.node {
-                let mut mentions = BTreeSet::new();
-                mention_body(def, &mut mentions);
-                scope.mentions.insert(def.name.text.clone(), mentions);
-            }
+            scope.mentions.extend(mentions(stmt));
         }
         self.scopes.push(scope);
         for name in names {
@@ -115,7 +125,8 @@ impl Resolver<'_> {
         scope.names.insert(name.text.clone(), name.span);
     }
 
-    fn stmt(&mut self, stmt: &Stmt) {
+    /// Looks at a statement of the innermost block.
+    pub(super) fn stmt(&mut self, stmt: &Stmt) {
         match &stmt.node {
             StmtNode::Let { name, ty, value } => {
                 self.expr(value);
@@ -291,7 +302,7 @@ impl Resolver<'_> {
     fn no_equals(&mut self, call: &Expr, name: &Name) {
         let ExprNode::Call { args, .. } = &call.node else { return };
         let (end, name) = (name.span.end, &name.text);
-        let blanks = self.text[end as usize..].find('(').unwrap_or(0);
+        let blanks = self.text.get(end as usize..).and_then(|rest| rest.find('(')).unwrap_or(0);
         let value = Span { start: end + u32::try_from(blanks).unwrap_or(0), ..call.span };
         let message = format!("`=` is missing between `{name}` and its value");
         let gap = Span { start: end, end, ..value };
@@ -361,6 +372,10 @@ impl Resolver<'_> {
         let words: Vec<&str> = path.iter().map(|name| &*name.text).collect();
         let joined = words.join(".");
         if builtins::value(&joined).is_some() {
+            return;
+        }
+        if let Some(free) = &mut self.free {
+            free.insert(first.text.clone());
             return;
         }
         let diagnostic = match self.later(first) {

@@ -43,13 +43,13 @@ const OTHERS: [&str; 12] = [
 ];
 
 /// Every type's name.
-pub(super) fn names() -> impl Iterator<Item = &'static str> {
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.iter().map(|(_, word)| *word);
     NUMBERS.iter().map(|(name, _)| *name).chain(OTHERS).chain(kinds)
 }
 
 /// What a type of numbers measures.
-pub(super) fn dimension(name: &str) -> Option<Dimension> {
+pub(crate) fn dimension(name: &str) -> Option<Dimension> {
     NUMBERS.iter().find(|(known, _)| *known == name).map(|(_, dimension)| *dimension)
 }
 

@@ -1,6 +1,7 @@
 //! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
 
 mod build;
+mod cut;
 mod explain;
 mod expr;
 mod lex;
@@ -9,19 +10,22 @@ mod parse;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod walk;
 mod weigh;
 
 pub(crate) use build::RESERVED;
+pub(crate) use cut::{Cut, Cuts};
 pub(crate) use explain::COMPARES;
-
 pub(crate) use lex::{Token, TokenKind, tokens};
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
-pub(crate) use parse::{Tree, parse, parse_expr};
+pub(crate) use parse::{Tree, cut, parse, parse_expr, read_head, read_piece};
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
-    ParamDef, Stmt, StmtNode, Ty,
+    ParamDef, Stmt, StmtNode, Ty, children,
 };
+
+pub(crate) use walk::each_expr;
 
 pub(crate) use grammar::{Rule, SceneParser};
 

@@ -7,6 +7,7 @@ use pest::Parser;
 use pest::error::InputLocation;
 
 use super::build::Builder;
+use super::cut::{Cuts, RESUME_LIMIT, Region, region};
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
@@ -16,8 +17,6 @@ use crate::budgets::Budgets;
 use crate::prescan::{Fault, scan};
 use crate::sink::Sink;
 
-/// How often reading goes on after a brace that never closes.
-const RESUME_LIMIT: usize = 8;
 /// In how many enclosing blocks statements after a mistake are still looked at.
 const BLOCKS_LOOKED_AT: usize = 8;
 
@@ -35,6 +34,58 @@ pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut 
     let mut reader = Reader { text, source, budgets, sink, out: Tree::default() };
     reader.file();
     reader.out
+}
+
+/// What stands before the first statement of a text: where reading goes on, if it is of use, and what
+/// is wrong so far.
+pub(crate) fn read_head(text: &str, budgets: &Budgets) -> (Option<usize>, Vec<Diagnostic>) {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let source = SourceId(0);
+    let from = Reader { text, source, budgets, sink: &mut sink, out: Tree::default() }.head();
+    (from, sink.finish())
+}
+
+/// The bytes of the statements from `from` on, up to the first start that `is_known`, and what does
+/// not close.
+pub(crate) fn cut(
+    text: &str,
+    from: usize,
+    budgets: &Budgets,
+    is_known: &mut dyn FnMut(usize) -> bool,
+) -> Cuts {
+    let mut out = Cuts::default();
+    let mut next = Some(from);
+    for _ in 0..RESUME_LIMIT {
+        let Some(from) = next else { break };
+        let found = region(text, from, budgets.brackets, is_known);
+        let mut sink = Sink::new(budgets.diagnostics);
+        let source = SourceId(0);
+        Reader { text, source, budgets, sink: &mut sink, out: Tree::default() }
+            .region_faults(from, &found);
+        out.unclosed.extend(found.unclosed);
+        out.faults.extend(sink.finish());
+        out.pieces.extend(found.pieces);
+        out.met = found.met;
+        next = found.next.filter(|next| *next > from);
+    }
+    out
+}
+
+/// Reads the statement of a piece; spans count from its first byte.
+pub(crate) fn read_piece(
+    text: &str,
+    faulty: bool,
+    source: SourceId,
+    budgets: &Budgets,
+) -> (Vec<Stmt>, Vec<Diagnostic>) {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let mut reader = Reader { text, source, budgets, sink: &mut sink, out: Tree::default() };
+    if faulty {
+        reader.broken(0..text.len());
+    } else {
+        reader.chunk(0..text.len(), true);
+    }
+    (reader.out.stmts, sink.finish())
 }
 
 /// Reads one text in one piece, without recovery: the oracle of `parse`.
@@ -85,23 +136,29 @@ impl Reader<'_> {
     }
 
     fn file(&mut self) {
-        if let Some(at) = memchr::memchr(0, self.text.as_bytes()) {
-            let message = format!("a NUL byte at offset {at}: this is not a text");
-            self.sink.push(Diagnostic::error("E0004", self.span(at..at + 1), message));
-            return;
-        }
-        if self.text.starts_with('\u{FEFF}') {
-            let message = "the file begins with a byte order mark, which is not needed";
-            let span = self.span(0..3);
-            self.sink.push(Diagnostic::warning("E0004", span, message).fix(span, ""));
-        }
-        let Some(mut from) = self.header() else { return };
+        let Some(mut from) = self.head() else { return };
         for _ in 0..RESUME_LIMIT {
             match self.region(from) {
                 Some(next) if next > from => from = next,
                 _ => break,
             }
         }
+    }
+
+    /// Reads what stands before the first statement; gives where that ends, or `None` if reading on is
+    /// of no use.
+    fn head(&mut self) -> Option<usize> {
+        if let Some(at) = memchr::memchr(0, self.text.as_bytes()) {
+            let message = format!("a NUL byte at offset {at}: this is not a text");
+            self.sink.push(Diagnostic::error("E0004", self.span(at..at + 1), message));
+            return None;
+        }
+        if self.text.starts_with('\u{FEFF}') {
+            let message = "the file begins with a byte order mark, which is not needed";
+            let span = self.span(0..3);
+            self.sink.push(Diagnostic::warning("E0004", span, message).fix(span, ""));
+        }
+        self.header()
     }
 
     /// Reads `scene 1`; gives where it ends, or `None` if reading on is of no use.
@@ -141,46 +198,34 @@ impl Reader<'_> {
 
     /// Reads statements from `from` on. Gives where to go on after a brace that never closes.
     fn region(&mut self, from: usize) -> Option<usize> {
-        let found = scan(self.text, from..self.text.len(), 0, self.budgets.brackets);
-        let resume = found.faults.iter().find_map(|fault| match fault {
-            Fault::Unclosed { open } => self.likely_end(*open),
-            _ => None,
-        });
-        let too_deep = found.faults.iter().find(|f| matches!(f, Fault::TooDeep { .. }));
-        let mut told_unclosed = false;
-        for fault in &found.faults {
-            let unclosed = matches!(fault, Fault::Unclosed { .. });
-            if unclosed && !told_unclosed || !unclosed && resume.is_none_or(|r| fault.at() < r) {
-                self.tell(fault, resume);
-            }
-            told_unclosed |= unclosed;
-        }
-        let end = resume.unwrap_or(self.text.len());
-        self.before_first(from, found.starts.first().copied().unwrap_or(end), &found.faults);
-        let ends = found.starts.iter().skip(1).copied().chain([self.text.len()]);
-        for (start, stop) in found.starts.iter().copied().zip(ends) {
-            if start >= end || self.sink.is_full() {
+        let found = region(self.text, from, self.budgets.brackets, &mut |_| false);
+        self.region_faults(from, &found);
+        for piece in &found.pieces {
+            if self.sink.is_full() {
                 break;
             }
-            let chunk = start..stop.min(end);
-            if found.faults.iter().any(|fault| chunk.contains(&fault.at())) {
-                self.broken(chunk);
+            if piece.faulty {
+                self.broken(piece.range.clone());
             } else {
-                self.chunk(chunk, true);
-            }
-            if too_deep.is_some_and(|fault| fault.at() < stop) {
-                return None;
+                self.chunk(piece.range.clone(), true);
             }
         }
-        resume
+        found.next
+    }
+
+    /// Tells what is wrong with a region beside its statements.
+    fn region_faults(&mut self, from: usize, found: &Region) {
+        for fault in &found.faults {
+            self.tell(fault, found.resume);
+        }
+        if !found.junk_told {
+            self.before_first(from, found.first);
+        }
     }
 
     /// What stands before the first statement must be nothing.
-    fn before_first(&mut self, from: usize, first: usize, faults: &[Fault]) {
+    fn before_first(&mut self, from: usize, first: usize) {
         let Some(token) = tokens(self.text, from..first).next() else { return };
-        if faults.iter().any(|fault| fault.at() < first) {
-            return;
-        }
         let span = self.span(token.start..token.end());
         if token.kind == TokenKind::Doc {
             let message = "this doc comment is attached to nothing";
@@ -192,24 +237,6 @@ impl Reader<'_> {
             let message = format!("`{found}` cannot begin a statement");
             self.sink.push(Diagnostic::error("E0023", span, message));
         }
-    }
-
-    /// Where a block that never closes most likely ends: before the first line that is indented no
-    /// more than the line of its brace.
-    fn likely_end(&self, open: usize) -> Option<usize> {
-        let line_start = self.text[..open].rfind('\n').map_or(0, |at| at + 1);
-        let indent = |line: &str| line.len() - line.trim_start_matches([' ', '\t']).len();
-        let limit = indent(&self.text[line_start..open]);
-        let mut at = open + self.text[open..].find('\n')? + 1;
-        for line in self.text[at..].split_inclusive('\n') {
-            let first = line.trim_start().chars().next();
-            let begins = first.is_some_and(|c| c.is_ascii_alphabetic() || matches!(c, '@' | '/'));
-            if begins && indent(line) <= limit {
-                return Some(at);
-            }
-            at += line.len();
-        }
-        None
     }
 
     fn tell(&mut self, fault: &Fault, resume: Option<usize>) {

@@ -365,3 +365,52 @@ impl Op {
         }
     }
 }
+
+/// Calls `each` on the expressions inside an expression, but not on those in objects.
+pub(crate) fn children<'e>(expr: &'e Expr, each: &mut dyn FnMut(&'e Expr)) {
+    match &expr.node {
+        ExprNode::Items { items, .. } => items.iter().for_each(each),
+        ExprNode::Paren { inner, .. } | ExprNode::Unary { inner, .. } => each(inner),
+        ExprNode::Comp(comp) => {
+            each(&comp.over);
+            comp.filter.iter().for_each(&mut *each);
+            each(&comp.value);
+        }
+        ExprNode::If { arms, otherwise } => {
+            for (cond, value) in arms {
+                each(cond);
+                each(value);
+            }
+            each(otherwise);
+        }
+        ExprNode::Record(fields) => {
+            for field in fields {
+                each(&field.value);
+            }
+        }
+        ExprNode::Chain { first, rest } => {
+            each(first);
+            for (_, _, operand) in rest {
+                each(operand);
+            }
+        }
+        ExprNode::Call { callee, args } => {
+            each(callee);
+            for arg in args {
+                each(&arg.value);
+            }
+        }
+        ExprNode::Index { of, at } => {
+            each(of);
+            each(at);
+        }
+        ExprNode::Member { of, .. } => each(of),
+        ExprNode::With { of, fields } => {
+            each(of);
+            for field in fields {
+                each(&field.value);
+            }
+        }
+        _ => {}
+    }
+}

@@ -80,15 +80,7 @@ impl Evaluator<'_> {
         for (i, c) in c.iter_mut().enumerate() {
             *c = self.number_arg(call, i, Dimension::NONE)?;
         }
-        let v = DVec3::from_array(c);
-        let srgb = RgbSpace::LinearSrgb;
-        let rgb = match make {
-            Make::Srgb => c.map(decode),
-            Make::AcesCg => RgbSpace::AcesCg.convert_to(srgb).mul_vec3(v).to_array(),
-            Make::Rec2020 => RgbSpace::Rec2020.convert_to(srgb).mul_vec3(v).to_array(),
-            Make::Xyz => srgb.from_xyz().mul_vec3(v).to_array(),
-            _ => c,
-        };
+        let rgb = linear_srgb(make, c);
         if rgb.iter().all(|x| x.is_finite()) {
             return Some(Color::Rgb(rgb));
         }
@@ -215,6 +207,19 @@ impl Evaluator<'_> {
                 None
             }
         }
+    }
+}
+
+/// Three numbers of a space as linear sRGB.
+pub(super) fn linear_srgb(make: Make, c: [f64; 3]) -> [f64; 3] {
+    let v = DVec3::from_array(c);
+    let srgb = RgbSpace::LinearSrgb;
+    match make {
+        Make::Srgb => c.map(decode),
+        Make::AcesCg => RgbSpace::AcesCg.convert_to(srgb).mul_vec3(v).to_array(),
+        Make::Rec2020 => RgbSpace::Rec2020.convert_to(srgb).mul_vec3(v).to_array(),
+        Make::Xyz => srgb.from_xyz().mul_vec3(v).to_array(),
+        _ => c,
     }
 }
 

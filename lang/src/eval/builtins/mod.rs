@@ -130,6 +130,33 @@ pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     BUILTINS.iter().map(|b| b.name).chain(["pi", "tau"])
 }
 
+/// Whether a name that every scene has is this one or begins with it and a dot.
+pub(crate) fn begins(name: &str) -> bool {
+    names().any(|known| known.split('.').next() == Some(name))
+}
+
+/// The names of a function's arguments, if there is such a function.
+pub(crate) fn arguments(name: &str) -> Option<Vec<&'static str>> {
+    let found = BUILTINS.iter().find(|b| b.name == name)?;
+    Some(found.args.iter().map(|arg| arg.trim_end_matches('?')).collect())
+}
+
+/// What a function makes of three numbers as linear sRGB, if it makes a colour of them.
+pub(crate) fn linear_srgb(name: &str, c: [f64; 3]) -> Option<[f64; 3]> {
+    use color::Make as C;
+    match BUILTINS.iter().find(|b| b.name == name)?.run {
+        Run::Color(make @ (C::LinearSrgb | C::Srgb | C::AcesCg | C::Rec2020 | C::Xyz)) => {
+            Some(color::linear_srgb(make, c))
+        }
+        _ => None,
+    }
+}
+
+/// How a function is called: `clamp(x, low, high)`.
+pub(crate) fn usage(name: &str) -> Option<String> {
+    Some(format!("{name}({})", arguments(name)?.join(", ")))
+}
+
 impl Evaluator<'_> {
     /// Calls a builtin with evaluated arguments.
     pub(super) fn call_builtin(

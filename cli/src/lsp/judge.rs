@@ -1,0 +1,216 @@
+//! Evaluation apart from answering: after a pause, and given up for a newer text.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use luxel_core::accel::Watch;
+use luxel_core::diag::{Diagnostic, Severity, Sources, Span};
+use luxel_core::files::normalise;
+use luxel_core::stage::{self, Unbuilt};
+
+use super::files::Overlay;
+use super::queue::{Event, Queue};
+use crate::exit::blaming;
+use crate::libraries::Plugins;
+
+/// How long nothing must change before scenes are evaluated.
+const PAUSE: Duration = Duration::from_millis(200);
+/// The stack of an evaluation: several times what the budgets allow.
+const STACK: usize = 16 << 20;
+
+/// Scenes to evaluate.
+pub(super) struct Job {
+    /// Counts the edits.
+    pub(super) serial: u64,
+    pub(super) roots: Vec<PathBuf>,
+    /// The texts that are open.
+    pub(super) texts: Arc<BTreeMap<PathBuf, Arc<[u8]>>>,
+    /// Whether meshes and textures are read too.
+    pub(super) whole: bool,
+}
+
+/// What came of a job.
+pub(super) struct Verdict {
+    pub(super) serial: u64,
+    pub(super) roots: Vec<Judged>,
+}
+
+/// What came of a scene.
+#[derive(Default)]
+pub(super) struct Judged {
+    pub(super) root: PathBuf,
+    pub(super) told: Vec<Told>,
+    /// Values by file and first byte of the name.
+    pub(super) values: BTreeMap<(PathBuf, usize), String>,
+}
+
+/// Bytes of a file.
+pub(super) type Bytes = (PathBuf, Range<usize>);
+
+/// A diagnostic whose places are in files by name.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Told {
+    pub(super) code: &'static str,
+    pub(super) severity: Severity,
+    pub(super) message: String,
+    pub(super) help: Vec<String>,
+    /// Where; nowhere in particular of the root if there are no bytes.
+    pub(super) place: Bytes,
+    pub(super) is_placed: bool,
+    pub(super) labels: Vec<(Bytes, String)>,
+    pub(super) fixes: Vec<(Bytes, String)>,
+}
+
+impl Told {
+    /// A diagnostic of a load whose root is a file.
+    pub(super) fn new(found: Diagnostic, root: &Path, path_of: &dyn Fn(Span) -> PathBuf) -> Self {
+        let bytes = |span: Span| (path_of(span), span.range());
+        let is_placed = found.span().is_some();
+        let place = found.span().map_or_else(|| (root.to_owned(), 0..0), bytes);
+        let labels = found.labels.into_iter().skip(1);
+        Self {
+            code: found.code,
+            severity: found.severity,
+            message: found.message,
+            help: found.help,
+            place,
+            is_placed,
+            labels: labels.map(|label| (bytes(label.span), label.text)).collect(),
+            fixes: found.fixes.into_iter().map(|fix| (bytes(fix.span), fix.replacement)).collect(),
+        }
+    }
+}
+
+/// The thread that evaluates.
+pub(super) struct Judge(Arc<Desk>);
+
+#[derive(Default)]
+struct Desk {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    job: Option<Job>,
+    /// The scenes that are being evaluated, and whether meshes and textures are read too.
+    running: (Vec<PathBuf>, bool),
+    /// Ends what is being evaluated.
+    stop: Arc<AtomicBool>,
+    watch: Arc<Watch>,
+}
+
+impl Desk {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Judge {
+    /// Starts the thread.
+    pub(super) fn start(queue: Arc<Queue>, plugins: Arc<Plugins>, allow: Vec<PathBuf>) -> Self {
+        let desk = Arc::new(Desk::default());
+        let own = desk.clone();
+        let thread = std::thread::Builder::new().name("judge".to_owned()).stack_size(STACK);
+        // Without it, what is written and named is told all the same.
+        let _ = thread.spawn(move || {
+            loop {
+                let (job, stop, watch) = next(&own);
+                let one = |root: &PathBuf| judged(root, &job, &plugins, &allow, (&stop, &watch));
+                let roots = job.roots.iter().map(one).collect();
+                if !stop.load(Ordering::Relaxed) {
+                    queue.put(Event::Judged(Verdict { serial: job.serial, roots }));
+                    own.lock().running = Default::default();
+                }
+            }
+        });
+        Self(desk)
+    }
+
+    /// Gives up what is being evaluated for a newer job. Scenes that were given up are done too.
+    pub(super) fn put(&self, mut job: Job) {
+        let mut state = self.0.lock();
+        state.stop.store(true, Ordering::Relaxed);
+        state.watch.cancel();
+        let old = state.job.take().map(|old| (old.roots, old.whole)).unwrap_or_default();
+        for (roots, whole) in [old, std::mem::take(&mut state.running)] {
+            job.whole |= whole;
+            let more = roots.into_iter().filter(|root| !job.roots.contains(root));
+            job.roots.extend(more.collect::<Vec<_>>());
+        }
+        state.job = Some(job);
+        self.0.changed.notify_one();
+    }
+}
+
+/// Waits for a job, and until it has not changed for a while.
+fn next(desk: &Desk) -> (Job, Arc<AtomicBool>, Arc<Watch>) {
+    let mut state = desk.lock();
+    loop {
+        let Some(serial) = state.job.as_ref().map(|job| job.serial) else {
+            state = desk.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+            continue;
+        };
+        let waited = desk.changed.wait_timeout(state, PAUSE);
+        state = waited.unwrap_or_else(PoisonError::into_inner).0;
+        if let Some(job) = state.job.take_if(|job| job.serial == serial) {
+            state.running = (job.roots.clone(), job.whole);
+            state.stop = Arc::default();
+            state.watch = Arc::default();
+            return (job, state.stop.clone(), state.watch.clone());
+        }
+    }
+}
+
+fn judged(
+    root: &Path,
+    job: &Job,
+    plugins: &Plugins,
+    allow: &[PathBuf],
+    (stop, watch): (&Arc<AtomicBool>, &Watch),
+) -> Judged {
+    let run = || {
+        let files = Overlay::new(root, allow, &job.texts);
+        let settings = luxel_lang::Settings {
+            unloaded: plugins.unloaded(),
+            noting: true,
+            stop: Some(stop.clone()),
+            ..Default::default()
+        };
+        let loaded = luxel_lang::load(root, &files, &plugins.registry, &settings);
+        let mut found = loaded.diagnostics;
+        if let (Some(scene), true) = (&loaded.scene, job.whole) {
+            match stage::build_watched(scene, &plugins.registry, &files, None, watch) {
+                Ok(built) => found.extend(built.warnings),
+                Err(Unbuilt::Faulty(faults)) => found.extend(faults),
+                Err(Unbuilt::Cancelled) => {}
+            }
+        }
+        of_sources(root, found, &loaded.sources, &loaded.values)
+    };
+    blaming(&root.display().to_string(), run).unwrap_or_else(|failure| Judged {
+        root: root.to_owned(),
+        told: vec![Told::new(Diagnostic::unplaced("E0421", failure.message), root, &|_| {
+            root.into()
+        })],
+        ..Judged::default()
+    })
+}
+
+fn of_sources(
+    root: &Path,
+    found: Vec<Diagnostic>,
+    sources: &Sources,
+    values: &BTreeMap<Span, String>,
+) -> Judged {
+    let path_of = |span: Span| normalise(Path::new(sources.name(span.source)));
+    let told = found.into_iter().map(|found| Told::new(found, root, &path_of)).collect();
+    let value =
+        |(span, value): (&Span, &String)| ((path_of(*span), span.range().start), value.clone());
+    let values = values.iter().map(value).collect();
+    Judged { root: root.to_owned(), told, values }
+}

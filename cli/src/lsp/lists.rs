@@ -1,0 +1,87 @@
+//! What may be written, and what is told of what is written.
+
+use std::path::PathBuf;
+
+use luxel_lang::editor::{Item, ItemKind, complete, hover};
+use serde_json::{Value, json};
+
+use super::answer::At;
+use super::files::names_beside;
+use super::server::Server;
+
+impl Server {
+    pub(super) fn completion(&self, at: &At) -> Value {
+        let mut found = complete(&self.files, &at.path, at.byte, &self.plugins.registry);
+        let mut range = found.range.clone();
+        if let Some((written, ends)) = &found.files {
+            let names = names_beside(&at.path, written, ends);
+            range.start += written.rfind('/').map_or(0, |at| at + 1);
+            found.items = names.into_iter().map(Item::file).collect();
+        }
+        let range = self.encoding.range(&at.document, &range);
+        let items = found.items.iter().map(|item| self.item(item, &range));
+        json!({ "isIncomplete": false, "items": items.collect::<Vec<_>>() })
+    }
+
+    fn item(&self, item: &Item, range: &Value) -> Value {
+        let text = if item.insert.is_empty() { &item.label } else { &item.insert };
+        let is_snippet = self.client.snippets && text.contains("$0");
+        let text = if is_snippet {
+            text.replace('}', "\\}")
+        } else {
+            text[..text.find("$0").unwrap_or(text.len())].to_owned()
+        };
+        let mut out = json!({
+            "label": item.label,
+            "kind": kind(item.kind),
+            "sortText": format!("{}{}", item.rank, item.label),
+            "textEdit": { "range": range, "newText": text },
+            "insertTextFormat": if is_snippet { 2 } else { 1 },
+        });
+        if !item.detail.is_empty() {
+            out["detail"] = json!(item.detail);
+        }
+        if !item.doc.is_empty() {
+            out["documentation"] = json!({ "kind": "markdown", "value": item.doc });
+        }
+        out
+    }
+
+    pub(super) fn hover(&self, at: &At) -> Value {
+        let Some(found) = hover(&self.files, &at.path, at.byte, &self.plugins.registry) else {
+            return Value::Null;
+        };
+        let value = found.of.and_then(|place| self.value(place.path, place.range.0));
+        let code = format!("```scene\n{}\n```", found.code);
+        let value = value.map(|value| format!("value: {value}"));
+        let words = Some(found.text).filter(|text| !text.is_empty());
+        let parts: Vec<String> = [Some(code), value, words].into_iter().flatten().collect();
+        let text = parts.join("\n\n");
+        json!({
+            "contents": { "kind": "markdown", "value": text },
+            "range": self.encoding.range(&at.document, &found.range),
+        })
+    }
+
+    /// The value that a name had in the last evaluation.
+    fn value(&self, path: PathBuf, at: usize) -> Option<String> {
+        let place = (path, at);
+        self.judged.values().find_map(|judged| judged.values.get(&place).cloned())
+    }
+}
+
+/// The protocol's number for an item.
+fn kind(kind: ItemKind) -> u8 {
+    match kind {
+        ItemKind::Keyword => 14,
+        ItemKind::Category => 22,
+        ItemKind::Class => 7,
+        ItemKind::Param => 10,
+        ItemKind::Name => 6,
+        ItemKind::Function => 3,
+        ItemKind::Unit => 11,
+        ItemKind::Value => 12,
+        ItemKind::Type => 25,
+        ItemKind::File => 17,
+    }
+}

@@ -1,0 +1,61 @@
+//! `luxel lsp`: what the language knows, for editors, by the Language Server Protocol 3.17 over
+//! standard input and output.
+//!
+//! Three threads: one reads messages and cancels requests that wait, one answers, one evaluates.
+
+mod actions;
+mod answer;
+mod convert;
+mod files;
+mod judge;
+mod lists;
+mod names;
+mod publish;
+mod queue;
+mod server;
+mod session;
+mod shape;
+mod wire;
+
+use std::io::BufReader;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::args::PluginArgs;
+use crate::exit::{Exit, Failure};
+use crate::load;
+use crate::report::{Form, Stream};
+
+use self::queue::Queue;
+
+/// Serve editors: mistakes as you type, completion, manual, definitions, renaming
+///
+/// Speaks the Language Server Protocol over standard input and output; an editor starts it. Exit
+/// code 0 after an orderly shutdown, 1 without one.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "\
+Examples:
+  luxel lsp
+  luxel lsp --allow-path ../assets")]
+pub(crate) struct Args {
+    /// Let scenes read files below this folder too (their own folder is always allowed)
+    #[arg(long, value_name = "DIR")]
+    allow_path: Vec<PathBuf>,
+    /// Nothing: it is spoken over standard input and output anyway
+    #[arg(long, hide = true)]
+    stdio: bool,
+    #[command(flatten)]
+    plugins: PluginArgs,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let plugins = load::registry(&args.plugins)?;
+    plugins.notes.tell(Form::Text, Stream::Error)?;
+    let queue = Arc::new(Queue::default());
+    let reading = queue.clone();
+    let reader = std::thread::Builder::new().name("reader".to_owned());
+    let ours = |error| Failure::new(Exit::Ours, format!("no thread can be had: {error}"));
+    reader.spawn(move || wire::read(BufReader::new(std::io::stdin()), &reading)).map_err(ours)?;
+    let mut session = session::Session::new(queue, Arc::new(plugins), args.allow_path.clone());
+    session.run()
+}

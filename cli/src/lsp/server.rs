@@ -1,0 +1,230 @@
+//! What a client is told of, and what the server can do.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use luxel_lang::Budgets;
+use luxel_lang::editor::{Document, Project, reached};
+use serde_json::{Value, json};
+
+use super::convert::{Encoding, path_of};
+use super::files::{Open, Opened};
+use super::judge::{Job, Judge, Judged, Verdict};
+use super::queue::Queue;
+use super::shape::LEGEND;
+use crate::exit::Failure;
+use crate::libraries::Plugins;
+
+/// The state of a session.
+pub(super) struct Server {
+    pub(super) files: Opened,
+    pub(super) plugins: Arc<Plugins>,
+    pub(super) encoding: Encoding,
+    pub(super) client: Client,
+    judge: Judge,
+    /// Counts the edits.
+    serial: u64,
+    /// What came of the scenes that are open.
+    pub(super) judged: BTreeMap<PathBuf, Judged>,
+    /// Files that something was told of.
+    pub(super) published: BTreeSet<PathBuf>,
+}
+
+/// What the client can do.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Client {
+    /// It fills in places of what is inserted.
+    pub(super) snippets: bool,
+    /// It shows an outline as a tree.
+    pub(super) trees: bool,
+}
+
+impl Server {
+    pub(super) fn new(queue: Arc<Queue>, plugins: Arc<Plugins>, allow: Vec<PathBuf>) -> Self {
+        Self {
+            files: Opened::new(allow.clone()),
+            judge: Judge::start(queue, plugins.clone(), allow),
+            plugins,
+            encoding: Encoding::Utf16,
+            client: Client::default(),
+            serial: 0,
+            judged: BTreeMap::new(),
+            published: BTreeSet::new(),
+        }
+    }
+
+    /// A message is about to be dealt with.
+    pub(super) fn begin(&mut self) {
+        self.files.look_again();
+    }
+
+    pub(super) fn initialize(&mut self, params: &Value) -> Value {
+        let capable = |path: &str| params["capabilities"].pointer(path);
+        let offered = capable("/general/positionEncodings").and_then(Value::as_array);
+        if offered.is_some_and(|words| words.iter().any(|word| word == "utf-8")) {
+            self.encoding = Encoding::Utf8;
+        }
+        let is = |path: &str| capable(path).and_then(Value::as_bool).unwrap_or(false);
+        self.client = Client {
+            snippets: is("/textDocument/completion/completionItem/snippetSupport"),
+            trees: is("/textDocument/documentSymbol/hierarchicalDocumentSymbolSupport"),
+        };
+        let folders = params["workspaceFolders"].as_array().cloned().unwrap_or_default();
+        let uris = folders.iter().map(|folder| &folder["uri"]).chain([&params["rootUri"]]);
+        let mut folders: Vec<PathBuf> = uris.filter_map(Value::as_str).map(path_of).collect();
+        folders.dedup();
+        self.files.folders = folders;
+        json!({
+            "capabilities": self.capabilities(),
+            "serverInfo": { "name": "luxel", "version": env!("CARGO_PKG_VERSION") },
+        })
+    }
+
+    fn capabilities(&self) -> Value {
+        json!({
+            "positionEncoding": self.encoding.word(),
+            "textDocumentSync": { "openClose": true, "change": 2, "save": { "includeText": false } },
+            "completionProvider": { "triggerCharacters": [".", "\"", "=", " ", "(", "/", "{", ":"] },
+            "hoverProvider": true,
+            "definitionProvider": true,
+            "referencesProvider": true,
+            "renameProvider": { "prepareProvider": true },
+            "documentSymbolProvider": true,
+            "foldingRangeProvider": true,
+            "colorProvider": true,
+            "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+            "semanticTokensProvider": {
+                "legend": { "tokenTypes": LEGEND, "tokenModifiers": ["declaration", "documentation"] },
+                "full": true,
+                "range": true,
+            },
+            "workspace": { "workspaceFolders": { "supported": true } },
+        })
+    }
+
+    /// Deals with what is not answered; what it does not know it leaves.
+    ///
+    /// # Errors
+    /// If nothing can be told any more.
+    pub(super) fn notification(&mut self, method: &str, params: &Value) -> Result<(), Failure> {
+        let document = &params["textDocument"];
+        let path = document["uri"].as_str().map(path_of);
+        match (method, path) {
+            ("textDocument/didOpen", Some(path)) => {
+                let text = document["text"].as_str().unwrap_or_default();
+                let open = Open {
+                    uri: document["uri"].as_str().unwrap_or_default().to_owned(),
+                    version: document["version"].as_i64().unwrap_or_default(),
+                    document: Arc::new(Document::new(text, &Budgets::default())),
+                };
+                self.files.open.insert(path.clone(), open);
+                self.changed(&path, true)
+            }
+            ("textDocument/didChange", Some(path)) => self.change(&path, params),
+            ("textDocument/didSave", Some(path)) => self.changed(&path, true),
+            ("textDocument/didClose", Some(path)) => {
+                self.files.open.remove(&path);
+                self.judged.remove(&path);
+                self.changed(&path, false)
+            }
+            ("workspace/didChangeWatchedFiles", _) => {
+                let open: Vec<PathBuf> = self.files.open.keys().cloned().collect();
+                open.iter().try_for_each(|path| self.changed(path, true))
+            }
+            ("workspace/didChangeWorkspaceFolders", _) => {
+                self.change_folders(&params["event"]);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn change_folders(&mut self, event: &Value) {
+        let paths = |of: &str| -> Vec<PathBuf> {
+            let folders = event[of].as_array().cloned().unwrap_or_default();
+            folders.iter().filter_map(|folder| folder["uri"].as_str()).map(path_of).collect()
+        };
+        let removed = paths("removed");
+        self.files.folders.retain(|folder| !removed.contains(folder));
+        self.files.folders.extend(paths("added"));
+    }
+
+    fn change(&mut self, path: &Path, params: &Value) -> Result<(), Failure> {
+        let encoding = self.encoding;
+        let Some(open) = self.files.open.get_mut(path) else { return Ok(()) };
+        let document = Arc::make_mut(&mut open.document);
+        for change in params["contentChanges"].as_array().into_iter().flatten() {
+            let Some(text) = change["text"].as_str() else { continue };
+            let range = match change.get("range").filter(|range| !range.is_null()) {
+                Some(range) => encoding.bytes(document, range),
+                None => Some(0..document.text().len()),
+            };
+            let Some(range) = range else { continue };
+            for judged in self.judged.values_mut() {
+                judged.edit(path, &range, text.len());
+            }
+            document.edit(range, text);
+        }
+        if let Some(version) = params["textDocument"]["version"].as_i64() {
+            open.version = version;
+        }
+        self.changed(path, false)
+    }
+
+    /// Tells what is wrong with a file at once, and has the scenes that read it evaluated.
+    fn changed(&mut self, path: &Path, whole: bool) -> Result<(), Failure> {
+        self.publish(path)?;
+        self.serial += 1;
+        let roots = self.roots_of(path);
+        let texts = Arc::new(self.files.texts());
+        self.judge.put(Job { serial: self.serial, roots, texts, whole });
+        Ok(())
+    }
+
+    /// The open files to evaluate when one has changed: those that read it and that no other reads.
+    fn roots_of(&self, path: &Path) -> Vec<PathBuf> {
+        let open = || self.files.open.keys();
+        let reads: BTreeMap<&PathBuf, Vec<PathBuf>> =
+            open().map(|root| (root, reached(&self.files, root))).collect();
+        let is_read = |file: &PathBuf| {
+            reads.iter().any(|(root, files)| *root != file && files.contains(file))
+        };
+        let concerned = |root: &&PathBuf| reads[root].iter().any(|file| file == path);
+        let roots: Vec<PathBuf> =
+            open().filter(concerned).filter(|r| !is_read(r)).cloned().collect();
+        // Files that include one another in a circle: one of them tells it.
+        if roots.is_empty() { open().filter(concerned).take(1).cloned().collect() } else { roots }
+    }
+
+    /// Takes what came of an evaluation, unless it is of older texts.
+    ///
+    /// # Errors
+    /// If nothing can be told any more.
+    pub(super) fn judged(&mut self, verdict: Verdict) -> Result<(), Failure> {
+        if verdict.serial != self.serial {
+            return Ok(());
+        }
+        self.begin();
+        for judged in verdict.roots {
+            self.judged.insert(judged.root.clone(), judged);
+        }
+        // A file that another one reads now is no scene of its own any more.
+        let roots: BTreeSet<PathBuf> =
+            self.files.open.keys().flat_map(|path| self.roots_of(path)).collect();
+        self.judged.retain(|root, _| roots.contains(root));
+        self.publish_all()
+    }
+
+    /// A file by its URI.
+    pub(super) fn document(&self, uri: &Value) -> Option<(PathBuf, Arc<Document>)> {
+        let path = path_of(uri.as_str()?);
+        let document = self.files.open.get(&path)?.document.clone();
+        Some((path, document))
+    }
+
+    /// The document at a path, open or not.
+    pub(super) fn any_document(&self, path: &Path) -> Option<Arc<Document>> {
+        self.files.document(path)
+    }
+}

@@ -1,0 +1,28 @@
+//! What an editor asks of a text: pure functions over documents and a registry. Offsets are bytes; no
+//! protocol, no disk.
+
+mod complete;
+mod context;
+mod define;
+mod document;
+mod fold;
+mod hover;
+mod lines;
+mod outline;
+mod piece;
+mod schema;
+mod statements;
+mod swatch;
+mod symbols;
+#[cfg(test)]
+mod tests;
+mod tokens;
+
+pub use complete::{Completion, Item, ItemKind, complete};
+pub use define::{Place, Project, definition, reached, references, renamable, rename};
+pub use document::Document;
+pub use fold::{Fold, folds};
+pub use hover::{Hover, hover};
+pub use outline::{Entry, EntryKind, outline};
+pub use swatch::{Swatch, swatches, written};
+pub use tokens::{Colour, Coloured, coloured};

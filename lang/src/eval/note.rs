@@ -1,0 +1,122 @@
+//! Values as an editor shows them.
+
+use glam::Vec3;
+use luxel_core::scene::Color;
+use luxel_sdk::color::{
+    Curve, Outside, blackbody, emission_rgb, glass, illuminant, metal, reflectance_rgb, srgb_encode,
+};
+
+use super::Evaluator;
+use super::value::Value;
+use crate::syntax::Name;
+
+/// Values that are kept of one load, at most.
+const KEPT: usize = 100_000;
+
+impl Evaluator<'_> {
+    /// Keeps the first value of a name, if values are wanted.
+    pub(super) fn note(&mut self, name: &Name, value: &Value) {
+        let Some(values) = &mut self.values else { return };
+        // Of an object or a function, the text says more.
+        let is_plain = !matches!(
+            value,
+            Value::Poison
+                | Value::Object(_)
+                | Value::Module(_)
+                | Value::Function(_)
+                | Value::Builtin(_)
+        );
+        if !is_plain || values.len() >= KEPT {
+            return;
+        }
+        values.entry(name.span).or_insert_with(|| match value {
+            Value::Color(color, dimension) if dimension.is_none() => shown(color),
+            other => other.show(),
+        });
+    }
+}
+
+/// A colour in words: what a screen shows of it, and its spectrum from 380 to 730 nm.
+fn shown(color: &Color) -> String {
+    match color {
+        Color::Rgb(rgb) => hex(*rgb),
+        Color::Constant(x) => format!("{x} at every wavelength"),
+        Color::Curve(points) => match Curve::from_points(points, Outside::Constant) {
+            Ok(curve) => spectrum(&curve, reflectance_rgb(&curve)),
+            Err(_) => "a spectrum".to_owned(),
+        },
+        Color::Blackbody(kelvin) => of_light(blackbody(*kelvin)),
+        Color::Illuminant(name) => of_light(illuminant(name)),
+        Color::Metal(name) => metal(name).map_or_else(String::new, |metal| {
+            // The fraction of light that a polished surface reflects straight back.
+            let back = metal.eta.map(|nm, eta| {
+                let k = f64::from(metal.k.at(narrow(nm)));
+                ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k)
+            });
+            spectrum(&back, reflectance_rgb(&back))
+        }),
+        Color::Glass(name) => glass(name).map_or_else(String::new, |glass| {
+            format!("n_d = {:.4}, Abbe number {:.1}", glass.eta_d(), glass.abbe())
+        }),
+        Color::Scaled(color, factor) => format!("{factor} × {}", shown(color)),
+    }
+}
+
+fn of_light(curve: Option<Curve>) -> String {
+    curve.map_or_else(String::new, |curve| {
+        let rgb = emission_rgb(&curve);
+        spectrum(&curve, rgb / rgb.max_element().max(f32::MIN_POSITIVE))
+    })
+}
+
+fn spectrum(curve: &Curve, rgb: Vec3) -> String {
+    const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    let values: Vec<f32> = (0_u8..=14).map(|i| curve.at(380.0 + 25.0 * f32::from(i))).collect();
+    let most = values.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    let bar = |x: &f32| {
+        let level = (x / most * 7.0).round().clamp(0.0, 7.0);
+        BARS.iter().zip(0_u8..).find(|(_, i)| f32::from(*i) >= level).map_or('█', |(bar, _)| *bar)
+    };
+    let bars: String = values.iter().map(bar).collect();
+    format!("{bars} {}", hex(rgb.to_array().map(f64::from)))
+}
+
+/// `#rrggbb` of a screen.
+fn hex(linear: [f64; 3]) -> String {
+    let [r, g, b] = linear.map(|x| (srgb_encode(x).clamp(0.0, 1.0) * 255.0).round());
+    format!("#{r:02x}{g:02x}{b:02x}", r = byte(r), g = byte(g), b = byte(b))
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "it lies in [0, 255]; a NaN is shown as 0"
+)]
+fn byte(x: f64) -> u8 {
+    x as u8
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "wavelengths in nanometres fit")]
+fn narrow(nm: f64) -> f32 {
+    nm as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_shown_as_on_a_screen_with_their_spectrum() {
+        assert_eq!(shown(&Color::Rgb([1.0, 0.0, 0.0])), "#ff0000");
+        let gold = shown(&Color::Metal("Au".into()));
+        let bars: Vec<char> = gold.chars().take(15).collect();
+        assert!(bars[0] < bars[14] && bars[14] == '█', "{gold}");
+        let white = shown(&Color::Illuminant("D65".into()));
+        let [r, g, b]: [u8; 3] = std::array::from_fn(|i| {
+            let at = white.find('#').unwrap() + 1 + 2 * i;
+            u8::from_str_radix(&white[at..at + 2], 16).unwrap()
+        });
+        assert!(r > 240 && g > 240 && b > 240, "{white}");
+        assert_eq!(shown(&Color::Glass("N-BK7".into())), "n_d = 1.5168, Abbe number 64.2");
+    }
+}

@@ -1,0 +1,109 @@
+//! Where the statements of a text begin and end, as far as that can be known before they are read.
+
+use std::ops::Range;
+
+use luxel_core::diag::Diagnostic;
+
+use crate::prescan::{Fault, scan_until};
+
+/// How often reading goes on after a brace that never closes.
+pub(super) const RESUME_LIMIT: usize = 8;
+
+/// The bytes of one statement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Cut {
+    pub(crate) range: Range<usize>,
+    /// Something in it does not close.
+    pub(crate) faulty: bool,
+}
+
+/// The statements of a text, or of a part of it.
+#[derive(Debug, Default)]
+pub(crate) struct Cuts {
+    pub(crate) pieces: Vec<Cut>,
+    /// What does not close, and what stands before a first statement.
+    pub(crate) faults: Vec<Diagnostic>,
+    /// Brackets that never close, of each region the first.
+    pub(crate) unclosed: Vec<usize>,
+    /// The start that was known, at which cutting ended.
+    pub(crate) met: Option<usize>,
+}
+
+/// The statements up to the end of the text, or up to a brace that never closes.
+#[derive(Debug)]
+pub(super) struct Region {
+    /// Where the first statement begins; else where the region ends.
+    pub(super) first: usize,
+    pub(super) pieces: Vec<Cut>,
+    /// What does not close and is worth telling.
+    pub(super) faults: Vec<Fault>,
+    /// The first bracket that never closes.
+    pub(super) unclosed: Option<usize>,
+    /// A fault stands before the first statement.
+    pub(super) junk_told: bool,
+    /// Before which line a brace that never closes most likely does.
+    pub(super) resume: Option<usize>,
+    /// Where to go on.
+    pub(super) next: Option<usize>,
+    /// The start that was known, which ended the region.
+    pub(super) met: Option<usize>,
+}
+
+/// Cuts `text[from..]` up to the first start that `is_known`.
+pub(super) fn region(
+    text: &str,
+    from: usize,
+    limit: usize,
+    is_known: &mut dyn FnMut(usize) -> bool,
+) -> Region {
+    let found = scan_until(text, from..text.len(), 0, limit, is_known);
+    let open = |fault: &Fault| match fault {
+        Fault::Unclosed { open } => Some(*open),
+        _ => None,
+    };
+    let unclosed = found.faults.iter().filter_map(open).min();
+    let resume = found.faults.iter().filter_map(open).find_map(|open| likely_end(text, open));
+    let end = resume.or(found.met).unwrap_or(text.len());
+    let too_deep = found.faults.iter().any(|f| matches!(f, Fault::TooDeep { .. }));
+    let first = found.starts.first().copied().unwrap_or(end);
+    let junk_told = found.faults.iter().any(|fault| fault.at() < first);
+    let stops = found.starts.iter().skip(1).copied().chain([end]);
+    let ranges = found.starts.iter().copied().zip(stops).filter(|(start, _)| *start < end);
+    let mut places: Vec<usize> = found.faults.iter().map(Fault::at).collect();
+    places.sort_unstable();
+    let holds = |range: &Range<usize>| {
+        let next = places.partition_point(|at| *at < range.start);
+        places.get(next).is_some_and(|at| range.contains(at))
+    };
+    let pieces = ranges.map(|(start, stop)| {
+        let range = start..stop.min(end);
+        Cut { faulty: holds(&range), range }
+    });
+    let pieces: Vec<Cut> = pieces.collect();
+    let mut told_unclosed = false;
+    let mut faults = found.faults;
+    faults.retain(|fault| match fault {
+        Fault::Unclosed { .. } => !std::mem::replace(&mut told_unclosed, true),
+        other => resume.is_none_or(|resume| other.at() < resume),
+    });
+    let next = resume.filter(|_| !too_deep);
+    Region { first, pieces, faults, unclosed, junk_told, resume, next, met: found.met }
+}
+
+/// Where a block that never closes most likely ends: before the first line that is indented no
+/// more than the line of its brace.
+fn likely_end(text: &str, open: usize) -> Option<usize> {
+    let line_start = text[..open].rfind('\n').map_or(0, |at| at + 1);
+    let indent = |line: &str| line.len() - line.trim_start_matches([' ', '\t']).len();
+    let limit = indent(&text[line_start..open]);
+    let mut at = open + text[open..].find('\n')? + 1;
+    for line in text[at..].split_inclusive('\n') {
+        let first = line.trim_start().chars().next();
+        let begins = first.is_some_and(|c| c.is_ascii_alphabetic() || matches!(c, '@' | '/'));
+        if begins && indent(line) <= limit {
+            return Some(at);
+        }
+        at += line.len();
+    }
+    None
+}

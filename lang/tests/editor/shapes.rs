@@ -1,0 +1,88 @@
+//! Outlines, folds, colours and tokens.
+
+use luxel_lang::Budgets;
+use luxel_lang::editor::{Colour, Document, Entry, coloured, folds, outline, swatches, written};
+
+const TEXT: &str = "\
+//! A scene
+//! of things.
+scene 1
+let gold = material conductor { eta = metal(\"Au\") }
+param far: length = 2 m
+group \"trees\" {
+  shape sphere \"é\" { radius = far }
+  for i in 0..3 {
+    place gold
+  }
+}
+let t = #[ 1 2
+  3 ] mm
+let red = rgb.linear_srgb(1, 0, 0)
+";
+
+fn never() -> bool {
+    false
+}
+
+fn names(entries: &[Entry]) -> String {
+    let one = |entry: &Entry| {
+        let inner = names(&entry.children);
+        if inner.is_empty() { entry.name.clone() } else { format!("{}[{inner}]", entry.name) }
+    };
+    entries.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn an_outline_is_the_tree_of_what_has_names() {
+    let document = Document::new(TEXT, &Budgets::default());
+    let found = outline(&document, &never);
+    assert_eq!(
+        names(&found),
+        "gold[eta] far trees[é for i[gold]] t red".replace("[eta]", "").replace("[gold]", "")
+    );
+    for entry in &found {
+        assert!(
+            entry.range.start <= entry.selection.start && entry.selection.end <= entry.range.end
+        );
+        assert!(!TEXT[entry.range.clone()].ends_with('\n'), "{entry:?}");
+    }
+    assert!(outline(&document, &|| true).is_empty(), "it can be stopped");
+}
+
+#[test]
+fn brackets_tables_and_comments_fold() {
+    let document = Document::new(TEXT, &Budgets::default());
+    let found: Vec<_> = folds(&document, &never).iter().map(|f| (f.start, f.end)).collect();
+    assert_eq!(found, [(0, 1), (7, 8), (5, 9)]);
+}
+
+#[test]
+fn colours_of_numbers_are_found_and_written() {
+    let document = Document::new(TEXT, &Budgets::default());
+    let found = swatches(&document, &never);
+    assert_eq!(&TEXT[found[0].range.clone()], "rgb.linear_srgb(1, 0, 0)");
+    assert_eq!((found[0].srgb.map(f64::round), found.len()), ([1.0, 0.0, 0.0], 1));
+    assert_eq!(written([1.0, 0.50004, 0.0]), "rgb.srgb(1, 0.5, 0)");
+}
+
+#[test]
+fn tokens_are_what_they_mean() {
+    let document = Document::new(TEXT, &Budgets::default());
+    let found = coloured(&document, &(0..TEXT.len()), &never);
+    let of = |word: &str, nth: usize| {
+        let all: Vec<_> = found.iter().filter(|token| &TEXT[token.range.clone()] == word).collect();
+        all.get(nth).map(|token| (token.colour, token.is_definition))
+    };
+    assert_eq!(of("scene", 0), Some((Colour::Keyword, false)));
+    assert_eq!(of("gold", 0), Some((Colour::Variable, true)));
+    assert_eq!(of("material", 0), Some((Colour::Type, false)));
+    assert_eq!(of("conductor", 0), Some((Colour::Class, false)));
+    assert_eq!(of("eta", 0), Some((Colour::Property, false)));
+    assert_eq!(of("metal", 0), Some((Colour::Function, false)));
+    assert_eq!(of("far", 1), Some((Colour::Parameter, false)));
+    assert_eq!(of("mm", 0), Some((Colour::Unit, false)));
+    let sorted = found.windows(2).all(|pair| pair[0].range.end <= pair[1].range.start);
+    assert!(sorted, "tokens stand in order and apart");
+    let part = coloured(&document, &(60..90), &never);
+    assert!(!part.is_empty() && part.len() < found.len());
+}

@@ -1,0 +1,142 @@
+//! `luxel lsp` as an editor hears it.
+
+mod client;
+mod protocol;
+
+use serde_json::{Value, json};
+
+use self::client::{Client, at, codes, span, uri};
+use super::program::{Folder, SCENE};
+
+/// The scene with a named material, whose lines and columns the tests count.
+fn scene() -> String {
+    format!("{SCENE}let grey = material diffuse {{ reflectance = 0.5 }}\n")
+}
+
+/// Its last line.
+const LINE: u64 = 9;
+
+fn params(uri: &str, position: Value) -> Value {
+    json!({ "textDocument": { "uri": uri }, "position": position })
+}
+
+#[test]
+fn mistakes_are_told_as_they_are_typed_and_taken_back() {
+    let folder = Folder::new("lsp-typed");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    let told = client.open(&uri, &scene());
+    assert_eq!((codes(&told), &told["version"]), (vec![], &json!(1)));
+    // A name that nothing defines, in columns of UTF-16: `é𝄞` takes three.
+    let told = client.edit(&uri, 2, span(LINE, 0, 0), "let t = \"é𝄞\" + gld\n");
+    assert_eq!((codes(&told), &told["version"]), (vec!["E0101"], &json!(2)));
+    assert_eq!(told["diagnostics"][0]["range"], span(LINE, 16, 19));
+    assert_eq!(told["diagnostics"][0]["severity"], 1);
+    let told = client.edit(&uri, 3, span(LINE, 13, 19), "");
+    assert_eq!(codes(&told), Vec::<&str>::new());
+    // What only evaluation finds is told after a pause.
+    let told = client.edit(&uri, 4, span(LINE, 0, 13), "shape sphere { radius = 5 }");
+    assert_eq!(codes(&told), Vec::<&str>::new());
+    let told = client.until(&uri, &["E0201"]);
+    assert_eq!(told["version"], 4);
+    // An edit elsewhere moves it; one that mends it takes it back at once.
+    let told = client.edit(&uri, 5, span(0, 7, 7), "\n// a line\n");
+    assert_eq!(told["diagnostics"][0]["range"], span(LINE + 2, 24, 25));
+    let told = client.edit(&uri, 6, span(LINE + 2, 25, 25), " cm");
+    assert_eq!(codes(&told), Vec::<&str>::new());
+}
+
+#[test]
+fn mistakes_of_included_files_are_told_of_them_and_open_ones_are_read() {
+    let folder = Folder::new("lsp in 100%")
+        .with("lib a.scene", "scene 1\nshape sphere { radus = 1 m }\n")
+        .with("a.scene", "");
+    let (mut client, main, lib) =
+        (Client::new(&folder), uri(&folder, "a.scene"), uri(&folder, "lib a.scene"));
+    client.open(&main, &format!("{SCENE}include \"lib a.scene\"\n"));
+    let told = client.until(&lib, &["E0402", "E0403"]);
+    assert_eq!(told.get("version"), None, "it is not open");
+    let told = client.open(&lib, "scene 1\nshape sphere { radius = 1 m }\n");
+    assert_eq!(told["version"], 1);
+    client.until(&lib, &[]);
+    let found = client.ask("textDocument/definition", params(&main, at(9, 12))).unwrap();
+    assert_eq!(found["uri"], lib.as_str());
+}
+
+#[test]
+fn services_answer_where_they_are_asked() {
+    let folder = Folder::new("lsp-services");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    let text = format!("{}shape sphere \"b\" {{\n  radius = 1 m\n  material = grey\n}}\n", scene());
+    client.open(&uri, &text);
+    let place = params(&uri, at(LINE + 3, 14));
+    let found = client.ask("textDocument/definition", place.clone()).unwrap();
+    assert_eq!(found, json!({ "uri": uri, "range": span(LINE, 4, 8) }));
+    let hover = client.ask("textDocument/hover", params(&uri, at(LINE, 36))).unwrap();
+    let words = hover["contents"]["value"].as_str().unwrap();
+    assert!(
+        words.contains("reflectance: colour or spectrum") && hover["range"] == span(LINE, 30, 41)
+    );
+    let mut asked = place.clone();
+    asked["context"] = json!({ "includeDeclaration": false });
+    let found = client.ask("textDocument/references", asked).unwrap();
+    assert_eq!(found, json!([{ "uri": uri, "range": span(LINE + 3, 13, 17) }]));
+    let mut asked = place.clone();
+    asked["newName"] = json!("gray");
+    let edits = client.ask("textDocument/rename", asked.clone()).unwrap();
+    assert_eq!(edits["changes"][&uri].as_array().unwrap().len(), 2);
+    asked["newName"] = json!("m");
+    assert_eq!(client.ask("textDocument/rename", asked).unwrap_err().0, -32803);
+    let list = client.ask("textDocument/completion", params(&uri, at(LINE + 3, 13))).unwrap();
+    let labels: Vec<_> = list["items"].as_array().unwrap().iter().map(|i| &i["label"]).collect();
+    assert_eq!(labels, ["grey", "material"]);
+    let document = json!({ "textDocument": { "uri": uri } });
+    let symbols = client.ask("textDocument/documentSymbol", document.clone()).unwrap();
+    let names: Vec<_> = symbols.as_array().unwrap().iter().map(|s| &s["name"]).collect();
+    assert_eq!(names.last().unwrap(), &"b");
+    let folds = client.ask("textDocument/foldingRange", document.clone()).unwrap();
+    assert_eq!(folds[1], json!({ "startLine": LINE + 1, "endLine": LINE + 3 }));
+    let tokens = client.ask("textDocument/semanticTokens/full", document).unwrap();
+    let data = tokens["data"].as_array().unwrap();
+    assert_eq!(
+        (&data[..5], data.len() % 5),
+        (&[json!(0), json!(0), json!(5), json!(0), json!(0)][..], 0)
+    );
+}
+
+#[test]
+fn a_mend_is_offered_and_a_colour_is_shown() {
+    let folder = Folder::new("lsp-mends");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    client.open(&uri, "scene 1\nlet gold = rgb.srgb(1, 0.5, 0)\nlet b = gld\n");
+    let asked = json!({
+        "textDocument": { "uri": uri },
+        "range": span(2, 8, 8),
+        "context": { "diagnostics": [], "only": ["quickfix"] },
+    });
+    let found = client.ask("textDocument/codeAction", asked).unwrap();
+    assert_eq!(found[0]["title"], "replace `gld` by `gold`");
+    assert_eq!(
+        found[0]["edit"]["changes"][&uri],
+        json!([{ "range": span(2, 8, 11), "newText": "gold" }])
+    );
+    let document = json!({ "textDocument": { "uri": uri } });
+    let colours = client.ask("textDocument/documentColor", document).unwrap();
+    assert_eq!(
+        (&colours[0]["range"], &colours[0]["color"]["red"]),
+        (&span(1, 11, 30), &json!(1.0))
+    );
+    let colour = json!({ "color": { "red": 1.0, "green": 0.0, "blue": 0.25, "alpha": 1.0 } });
+    let forms = client.ask("textDocument/colorPresentation", colour).unwrap();
+    assert_eq!(forms[0]["label"], "rgb.srgb(1, 0, 0.25)");
+}
+
+#[test]
+fn files_are_offered_where_a_path_is_written() {
+    let folder = Folder::new("lsp-paths").with("sub/lib.scene", "").with("sub/x.txt", "");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    client.open(&uri, "scene 1\ninclude \"sub/l\"\n");
+    let list = client.ask("textDocument/completion", params(&uri, at(1, 14))).unwrap();
+    let items = list["items"].as_array().unwrap();
+    assert_eq!((items.len(), &items[0]["label"]), (1, &json!("lib.scene")));
+    assert_eq!(items[0]["textEdit"]["range"], span(1, 13, 14));
+}

@@ -1,12 +1,15 @@
 //! Whether every link of the reference leads somewhere in it.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use super::page::File;
 
 /// Links that lead nowhere, in words.
 pub(super) fn broken(files: &[File], pictures: &[File]) -> Vec<String> {
-    let texts = files.iter().filter(|file| file.name.ends_with(".html"));
+    let texts = files
+        .iter()
+        .filter(|file| Path::new(&file.name).extension().is_some_and(|it| it == "html"));
     let texts: BTreeMap<&str, String> = texts
         .map(|file| (&*file.name, String::from_utf8_lossy(&file.bytes).into_owned()))
         .collect();

@@ -54,8 +54,9 @@ fn target(to: &str) -> Option<String> {
         return Some(to.to_owned());
     }
     let (file, anchor) = to.split_once('#').map_or((to, None), |(file, at)| (file, Some(at)));
-    let name = file.strip_suffix(".md").or_else(|| file.strip_suffix(".html"))?;
-    let is_page = DOCUMENTS.iter().any(|(known, _)| *known == name) || file.ends_with(".html");
+    let document = file.strip_suffix(".md");
+    let is_page = document.is_none_or(|name| DOCUMENTS.iter().any(|(known, _)| *known == name));
+    let name = document.or_else(|| file.strip_suffix(".html"))?;
     let anchor = anchor.map_or(String::new(), |at| format!("#{at}"));
     is_page.then(|| format!("{name}.html{anchor}"))
 }

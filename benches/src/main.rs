@@ -7,6 +7,7 @@
 #![deny(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
 
+mod attacks;
 mod boundary;
 mod document;
 mod editor;
@@ -61,7 +62,7 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last four are not among `all`: they take long, or another program.
-const BENCHES: [Bench; 20] = [
+const BENCHES: [Bench; 21] = [
     of_crates("parse", |_| {
         parse::run();
         Ok(())
@@ -71,6 +72,7 @@ const BENCHES: [Bench; 20] = [
         Ok(())
     }),
     of_program("cold", |plan| peer::cold(&plan.luxel)),
+    of_program("attacks", |plan| attacks::run(&plan.luxel)),
     of_program("memory", |plan| peer::memory(&plan.luxel)),
     of_program("ply", |plan| ply::run(&plan.luxel, plan.python.as_deref())),
     of_program("plugins", |plan| boundary::run(&plan.luxel)),

@@ -51,10 +51,28 @@ impl Luxel {
         words.extend(more.iter().map(PathBuf::from));
         timed(&words)
     }
+
+    /// Checks a scene that may be wrong; gives what was told of it, too.
+    ///
+    /// # Errors
+    /// The program did not start.
+    pub(crate) fn check(&self, scene: &Path) -> Result<(Took, String), String> {
+        let (took, _, told) = ran(&[self.program.clone(), "check".into(), scene.into()])?;
+        Ok((took, told))
+    }
 }
 
-/// Runs a program; `words` begins with it.
+/// Runs a program that succeeds; `words` begins with it.
 fn timed(words: &[PathBuf]) -> Result<Took, String> {
+    let (took, succeeded, told) = ran(words)?;
+    if !succeeded {
+        return Err(format!("{} failed: {told}", words[0].display()));
+    }
+    Ok(took)
+}
+
+/// Runs a program: what it took, whether it succeeded, and what it told.
+fn ran(words: &[PathBuf]) -> Result<(Took, bool, String), String> {
     let with_time = Path::new(TIME).exists();
     let mut command = Command::new(if with_time { Path::new(TIME) } else { &words[0] });
     if with_time {
@@ -64,14 +82,12 @@ fn timed(words: &[PathBuf]) -> Result<Took, String> {
     let start = Instant::now();
     let output = command.output().map_err(|e| format!("{}: {e}", words[0].display()))?;
     let seconds = start.elapsed().as_secs_f64();
-    let told = String::from_utf8_lossy(&output.stderr);
-    if !output.status.success() {
-        return Err(format!("{} failed: {told}", words[0].display()));
-    }
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
     let last = told.lines().last().filter(|_| with_time).unwrap_or_default();
     let mut numbers = last.split_whitespace().map_while(|word| word.parse::<f64>().ok());
     let (kilobytes, cpu) = (numbers.next(), numbers.next().unwrap_or(f64::NAN));
-    Ok(Took { seconds, cpu, megabytes: kilobytes.map(|k| k / 1024.0) })
+    let took = Took { seconds, cpu, megabytes: kilobytes.map(|k| k / 1024.0) };
+    Ok((took, output.status.success(), told))
 }
 
 /// Whether this Python can import Mitsuba.

@@ -167,9 +167,14 @@ impl Evaluator<'_> {
             let value = self.eval(item, env);
             values.push(self.with_unit(value, unit, item.span));
         }
-        let is_large = items.len() >= LARGE;
-        if is_large && !self.hold(items.len() * size_of::<Value>(), items[0].span) {
-            return Value::Poison;
+        // Lists of lists double with every function that makes one; other small ones are as many as
+        // the text has, or are soon dropped.
+        let is_list = |value: &Value| matches!(value, Value::Numbers(_) | Value::Items(_));
+        if items.len() >= LARGE || values.iter().any(is_list) {
+            let bytes = values.len() * size_of::<Value>() + 64;
+            if !self.hold(bytes, items[0].span) {
+                return Value::Poison;
+            }
         }
         if values.iter().any(Value::is_poison) {
             return Value::Poison;
@@ -311,7 +316,7 @@ impl Evaluator<'_> {
     }
 }
 
-/// Lists of fewer elements than this are as many as statements make.
+/// Elements from which on a list is counted, whatever is in it.
 const LARGE: usize = 64;
 
 /// What a loop runs over.

@@ -378,9 +378,11 @@ impl<'a> Resolver<'a> {
             free.insert(first.text.clone());
             return;
         }
-        let diagnostic = match self.later(first) {
-            Some(found) => found,
-            None => self.unknown(first, &joined, span),
+        // What is only counted needs no advice.
+        let diagnostic = if self.sink.is_full() {
+            Diagnostic::error("E0101", span, "there is no such name")
+        } else {
+            self.later(first).unwrap_or_else(|| self.unknown(first, &joined, span))
         };
         self.sink.push(diagnostic);
     }

@@ -71,6 +71,27 @@ fn a_line_of_ten_megabytes_is_read_or_told_of() {
 }
 
 #[test]
+fn what_makes_much_of_a_short_text_is_told_soon() {
+    let check = |text: &str, code: &str| assert_eq!(codes(text)[0], code, "{}", &text[..40]);
+    // Each took gigabytes or minutes before it was bounded.
+    check(&"}".repeat(2_000_000), "E0010");
+    check(&"[)".repeat(1_000_000), "E0009");
+    check(&format!("let a = {}", "b".repeat(5_000_000)), "E0101");
+    let names = format!("let {0} = 1\nlet b = {0}c", "a".repeat(2_000_000));
+    check(&names, "E0101");
+    check(&format!("let a = b{}", ".a".repeat(1_000_000)), "E0510");
+    check(&format!("let a = [{}]", "x, ".repeat(1_000_000)), "E0510");
+    check(&"x ".repeat(1_000_000), "E0510");
+    check(&format!("let a = \"{}\"", "x".repeat(5_000_000)), "E0509");
+    check("let a = [for i in 0..10000000 => \"a\"]", "E0503");
+    let unknown: Vec<_> = (0..100_000).map(|i| format!("let a{i} = nope{i}")).collect();
+    check(&unknown.join("\n"), "E0101");
+    let records = (1..3000).map(|i| format!("let r{i} = r{} with {{ a{i} = 1 }}\n", i - 1));
+    let text = format!("let r0 = {{ a = 1 }}\n{}", records.collect::<String>());
+    check(&text, "E0503");
+}
+
+#[test]
 fn loops_lists_and_nodes_end_at_their_budgets() {
     let small = Budgets { steps: 100_000, nodes: 1000, list: 1000, ..Budgets::default() };
     let check = |text: &str, code: &str| assert_eq!(codes_within(text, small), [code], "{text}");

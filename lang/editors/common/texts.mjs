@@ -53,7 +53,7 @@ function read(path) {
   return { name: relative(root, path), text: readFileSync(path, "utf8") };
 }
 
-// What pest makes of texts: { statements, tokens } as [rule, start, end] in bytes, or { error }.
+// What pest makes of texts: { statements, tokens } as [rule, start, end, rule above] in bytes, or { error }.
 export function pairs(texts) {
   const command = ["run", "--quiet", "--package", "luxel-lang", "--example", "pairs"];
   const answer = execFileSync("cargo", command, {

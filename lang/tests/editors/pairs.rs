@@ -1,11 +1,12 @@
 //! What the grammar of record makes of texts, as JSON: the truth for the grammars of editors.
 //!
 //! `cargo run -p luxel-lang --example pairs` reads texts from standard input, each ended by a NUL
-//! byte, and answers each with a line: `statements` and `tokens` as `[rule, start, end]` in bytes,
-//! or `error`, the byte where reading ends. A text without header is read as if it had one.
+//! byte, and answers each with a line: `statements` and `tokens` as `[rule, start, end, rule above]`
+//! in bytes, or `error`, the byte where reading ends. A text without header is read as if it had one.
 
 use std::fmt::Write as _;
 use std::io::{Write, read_to_string, stdin, stdout};
+use std::ops::Range;
 
 use pest::Parser;
 use pest::error::{ErrorVariant, InputLocation};
@@ -24,14 +25,16 @@ mod grammar {
     pub(crate) struct SceneParser;
 }
 
-/// `[rule, start, end]`, one after another.
+/// `[rule, start, end, rule above]`, one after another.
 #[derive(Default)]
 struct Rows(String);
 
 impl Rows {
-    fn push(&mut self, rule: Rule, start: usize, end: usize) {
+    fn push(&mut self, rule: Rule, place: Range<usize>, above: Rule) {
         let comma = if self.0.is_empty() { "" } else { "," };
-        write!(self.0, "{comma}[\"{rule:?}\",{start},{end}]").expect("a string takes everything");
+        let Range { start, end } = place;
+        write!(self.0, "{comma}[\"{rule:?}\",{start},{end},\"{above:?}\"]")
+            .expect("a string takes everything");
     }
 }
 
@@ -43,28 +46,23 @@ struct Told {
 }
 
 impl Told {
-    /// Everything below a pair.
-    fn pair(&mut self, pair: Pair<'_, Rule>) {
+    /// A pair, which stands in one of the rule `above`, and everything below it.
+    fn pair(&mut self, pair: Pair<'_, Rule>, above: Rule) {
         let (rule, span) = (pair.as_rule(), pair.as_span());
-        let (Some(start), Some(end)) =
-            (span.start().checked_sub(self.base), span.end().checked_sub(self.base))
-        else {
-            return pair.into_inner().for_each(|part| self.pair(part));
-        };
+        let place = span.start().saturating_sub(self.base)..span.end().saturating_sub(self.base);
+        let is_own = span.start() >= self.base;
+        if is_own && above == Rule::stmt && !matches!(rule, Rule::doc | Rule::attr) {
+            self.statements.push(rule, place.clone(), above);
+        }
         let is_text = matches!(rule, Rule::string | Rule::attr);
         let mut parts = pair.into_inner().peekable();
         if is_text || parts.peek().is_none() {
-            self.tokens.push(rule, start, end);
+            if is_own {
+                self.tokens.push(rule, place, above);
+            }
             return;
         }
-        for part in parts {
-            if rule == Rule::stmt && !matches!(part.as_rule(), Rule::doc | Rule::attr) {
-                let span = part.as_span();
-                let (start, end) = (span.start() - self.base, span.end() - self.base);
-                self.statements.push(part.as_rule(), start, end);
-            }
-            self.pair(part);
-        }
+        parts.for_each(|part| self.pair(part, rule));
     }
 }
 
@@ -80,7 +78,7 @@ fn told(text: &str) -> String {
     match read {
         Ok(pairs) => {
             let mut told = Told { base, statements: Rows::default(), tokens: Rows::default() };
-            pairs.for_each(|pair| told.pair(pair));
+            pairs.for_each(|pair| told.pair(pair, Rule::EOI));
             let (statements, tokens) = (told.statements.0, told.tokens.0);
             format!("{{\"statements\":[{statements}],\"tokens\":[{tokens}]}}")
         }

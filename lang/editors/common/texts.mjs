@@ -78,3 +78,11 @@ export function random(seed) {
     return Math.floor((((t ^ (t >>> 14)) >>> 0) / 2 ** 32) * limit);
   };
 }
+
+// The words that a rule of the grammar of record lists.
+export function words(rule) {
+  const grammar = readFileSync(join(root, "lang/src/scene.pest"), "utf8");
+  const body = new RegExp(`^${rule} *= *_?@?\\{ *\\(([^)]*)\\)`, "m").exec(grammar);
+  assert.ok(body, `scene.pest has no list ${rule}`);
+  return [...body[1].matchAll(/"([^"]+)"/g)].map(([, word]) => word).sort();
+}

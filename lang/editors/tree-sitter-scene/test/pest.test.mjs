@@ -1,9 +1,11 @@
 // Against the grammar of record, on every text of the project.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
-import { cases, pairs, random, scenes, snippets } from "../../common/texts.mjs";
-import { ask, parse } from "./driver.mjs";
+import { cases, pairs, random, scenes, snippets, words } from "../../common/texts.mjs";
+import { ask, here, parse } from "./driver.mjs";
 
 // Statements: pest's name and ours.
 const STATEMENTS = {
@@ -112,6 +114,20 @@ test("numbers in literal lists are numbers", () => {
     }
   }
   assert.ok(n > 1000, `only ${n} numbers`);
+});
+
+test("the lists of words and units are pest's", () => {
+  const scanner = readFileSync(join(here, "src/scanner.c"), "utf8");
+  const list = (name) => {
+    const [, body] = new RegExp(`${name}\\[\\] = \\{([^}]*)\\}`).exec(scanner);
+    return [...body.matchAll(/"([^"]+)"/g)].map(([, word]) => word.replace("~", "µ")).sort();
+  };
+  assert.deepEqual(list("KEYWORDS"), words("keyword"));
+  assert.deepEqual(list("UNITS"), words("known_unit"));
+  const grammar = readFileSync(join(here, "grammar.js"), "utf8");
+  const [, reserved] = /words: \(\) => \[([^\]]*)\]/.exec(grammar);
+  const own = [...reserved.matchAll(/"([^"]+)"/g)].map(([, word]) => word).sort();
+  assert.deepEqual(own, [...words("reserved"), "true", "false"].sort());
 });
 
 test("after a mistake the parser goes on", () => {

@@ -1,9 +1,13 @@
 // The language server `luxel lsp`, over its standard input and output.
 
+import { execFile } from "node:child_process";
+import { promisify } from "node:util";
 import * as vscode from "vscode";
 import { LanguageClient, RevealOutputChannelOn } from "vscode-languageclient/node";
 
 import { notFound, program } from "./program";
+
+const run = promisify(execFile);
 
 /** At most one running server. */
 export class Server {
@@ -28,6 +32,12 @@ export class Server {
 
   private async start(): Promise<void> {
     const command = program();
+    try {
+      // The client's own complaint would not say which setting is to blame.
+      await run(command, ["--version"]);
+    } catch (error) {
+      return notFound(command, error);
+    }
     const client = new LanguageClient("luxel", "Luxel", { command, args: ["lsp"] }, {
       documentSelector: [
         { scheme: "file", language: "luxel-scene" },
@@ -37,12 +47,8 @@ export class Server {
       revealOutputChannelOn: RevealOutputChannelOn.Never,
     });
     this.client = client;
-    try {
-      await client.start();
-    } catch (error) {
-      this.client = undefined;
-      notFound(command, error);
-    }
+    // What goes wrong from here on the client tells.
+    await client.start().catch((error: unknown) => this.log.error(String(error)));
   }
 
   private async end(): Promise<void> {

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { pairs, scenes, snippets } from "../../common/texts.mjs";
+import { pairs, scenes, snippets, words } from "../../common/texts.mjs";
 import { tokens } from "./textmate.mjs";
 
 // What a snippet's words are, each as `text: innermost scope`, blanks left out.
@@ -85,6 +85,18 @@ test("a string that does not end costs its line alone", () => {
     "b: variable.other.property", "=: keyword.operator", "\": string.quoted.double", "\\q: invalid.illegal.escape",
     "\": string.quoted.double",
   ]);
+});
+
+test("words of the language and units are those of the grammar of record", () => {
+  for (const word of words("keyword").filter((word) => word !== "where")) {
+    const [{ scopes }] = tokens(`${word} `);
+    assert.match(scopes.at(-1), /^(keyword|storage\.type|constant\.language)/, word);
+    const after = tokens(`5 ${word} `).find((token) => token.text === word);
+    assert.ok(!after.scopes.includes("keyword.other.unit"), `5 ${word}`);
+  }
+  for (const unit of words("known_unit")) {
+    assert.equal(tokens(`5 W/${unit}^2 + a`)[2].text, `W/${unit}^2`);
+  }
 });
 
 // What a token of the grammar of record, and what it stands in, must be; null: not told apart.

@@ -30,7 +30,7 @@ scene 1
 /// How large the ball is.
 param radius: length = 45 cm in 10 cm..=60 cm
 
-let gold = material conductor { eta = metal("Au"), roughness = 0.08 }
+let gold = material conductor { eta = metal("Au"), roughness = 0.3 }
 let clay = material diffuse { reflectance = rgb.srgb(0.75, 0.36, 0.24) }
 let wall = material diffuse { reflectance = rgb.srgb(0.55, 0.6, 0.65) }
 
@@ -40,11 +40,10 @@ camera perspective {
   fov  = 42 deg
 }
 film rgb {
-  resolution = (480, 480)
-  exposure   = 8.5 EV
-  display    = "filmic"
+  resolution = (400, 400)
+  exposure   = 8.6 EV
 }
-sampler sobol { samples = 64 }
+sampler sobol { samples = 48 }
 
 shape sphere "ball" {
   center   = (0 m, radius, 0 m)
@@ -162,12 +161,25 @@ async function command(page, name) {
   await page.keyboard.press("Enter");
 }
 
+// All at once, for the manual: a mistake and a list of completions beside the picture.
+async function write(page) {
+  await page.locator(".view-line", { hasText: "sampler sobol" }).first().click();
+  await page.keyboard.press("End");
+  await page.keyboard.type("\nshape torus { radus = 5 cm }\nlight s");
+  await page.keyboard.press("Control+Space");
+  await page.locator(".suggest-widget .monaco-list-row").first().waitFor();
+  await page.locator(".squiggly-error").first().waitFor();
+  await page.screenshot({ path: join(shots, "editor.png") });
+  await page.keyboard.press("Escape");
+  await command(page, "File: Revert File");
+}
+
 const isAlive = (pid) => existsSync(`/proc/${pid}`);
 
 const steps = {
   async "words of the language have their colours"(page, port) {
     await openFile(page, port, "ball.scene");
-    const words = ["let", "conductor", "0.08", "\"Au\"", "cm"];
+    const words = ["let", "conductor", "0.3", "\"Au\"", "cm"];
     const colours = await until("colours", async () => {
       const all = await Promise.all(words.map((word) => colour(page, word)));
       return all.every((one) => one !== null) && new Set(all).size > 3 && all;
@@ -212,11 +224,14 @@ const steps = {
       }
       return null;
     }, 90000);
-    assert.equal(picture.width, 480);
+    assert.equal(picture.width, 400);
     assert.ok(await picture.frame.locator("#browse").isVisible());
     const pid = Number(readFileSync(join(folder, "watch.pid"), "utf8"));
     assert.ok(isAlive(pid));
+    const isQuiet = () => picture.frame.evaluate(() => document.getElementById("message").textContent === "");
+    await until("the finished picture", isQuiet, 120000);
     await page.screenshot({ path: join(shots, "preview.png") });
+    await write(page);
     await page.locator(".tab", { hasText: "Preview ball.scene" }).click({ button: "middle" });
     await until("the end of luxel watch", () => !isAlive(pid));
   },

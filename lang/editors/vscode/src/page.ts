@@ -33,9 +33,8 @@ export function page(source: string): string {
     if (data.picture) {
       picture.src = data.picture;
       picture.hidden = false;
-      message.textContent = "";
     }
-    if (data.message) message.textContent = data.message;
+    if (data.message !== undefined) message.textContent = data.message;
     if (data.address) browse.hidden = false;
   });
 </script>

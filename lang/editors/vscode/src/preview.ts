@@ -66,7 +66,7 @@ class Preview implements vscode.Disposable {
       address: (url) => this.show({ address: (this.address = url) }),
       picture: (png) => this.show({ picture: this.picture(png) }),
       message: (text) => {
-        log.info(text);
+        if (text) log.info(text);
         this.show({ message: text });
       },
       ended: (how) => this.ended(how, start.program),

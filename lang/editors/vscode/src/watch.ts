@@ -1,6 +1,7 @@
 // One run of `luxel watch --preview`: what it tells, and how it ends. Knows nothing of the editor.
 
 import { spawn, type ChildProcess } from "node:child_process";
+import { existsSync, watch, type FSWatcher } from "node:fs";
 import { basename, dirname, join } from "node:path";
 import { createInterface } from "node:readline";
 
@@ -8,9 +9,9 @@ import { createInterface } from "node:readline";
 export interface Listener {
   /** The page that shows the picture as it grows. */
   address(url: string): void;
-  /** A picture that is finished. */
+  /** A picture is there: at once one of the first sample, then the finished one. */
   picture(png: string): void;
-  /** A mistake of the scene, or what the program says of itself. */
+  /** A mistake of the scene, or what the program says of itself; empty when a picture is finished. */
   message(text: string): void;
   /** It has ended: by itself with an exit code, or because it could not be started. */
   ended(how: number | Error | null): void;
@@ -36,6 +37,7 @@ export interface Start {
 /** A running watch. */
 export class Watch {
   private readonly child: ChildProcess;
+  private readonly files: FSWatcher;
   private isOver = false;
 
   constructor(start: Start, private readonly listener: Listener) {
@@ -45,6 +47,11 @@ export class Watch {
     this.child = spawn(start.program, [...given, ...start.more], {
       cwd: dirname(start.scene),
       stdio: ["ignore", "pipe", "pipe"],
+    });
+    // Of the first sample no line is printed: the picture appears.
+    this.files = watch(start.folder, (_, name) => {
+      const png = `${output}.png`;
+      if (name === basename(png) && existsSync(png)) this.listener.picture(png);
     });
     this.child.on("error", (error) => this.end(error));
     this.child.on("close", (code) => this.end(code));
@@ -67,7 +74,9 @@ export class Watch {
 
   private summary(line: string): void {
     const told = object(line);
-    if (typeof told?.png === "string") this.listener.picture(told.png);
+    if (typeof told?.png !== "string") return;
+    this.listener.picture(told.png);
+    this.listener.message("");
   }
 
   private remark(line: string): void {
@@ -83,6 +92,7 @@ export class Watch {
   private end(how: number | Error | null): void {
     if (this.isOver) return;
     this.isOver = true;
+    this.files.close();
     this.listener.ended(how);
   }
 }

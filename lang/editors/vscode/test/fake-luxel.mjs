@@ -12,10 +12,11 @@ if (mood === "refuses") {
   console.error("error: no such scene");
   process.exit(1);
 }
+if (mood === "slow") writeFileSync(`${output}.png`, "");
 console.error("preview: http://127.0.0.1:4711/?token=abc");
 console.error(JSON.stringify({ severity: "error", message: "unknown kind", file: "a.scene", line: 2, column: 7 }));
 console.error(JSON.stringify({ severity: "warning", message: "not told" }));
-console.log(JSON.stringify({ png: `${output}.png`, complete: true }));
+if (mood !== "slow") console.log(JSON.stringify({ png: `${output}.png`, complete: true }));
 console.log("no summary");
 process.on("SIGINT", () => {
   if (mood === "stubborn") return;

@@ -21,7 +21,7 @@ const code = join(here, "node_modules/code-server");
 
 const folder = mkdtempSync(join(tmpdir(), "luxel-session-"));
 const scenes = join(folder, "scenes");
-// The process of each language server, one a line.
+// The process of each language server and what it was given, one a line.
 const log = join(folder, "servers");
 
 const SCENE = `//! A ball of gold among seven of clay.
@@ -97,7 +97,7 @@ function program() {
   const fake = join(extension, "test/fake-lsp.mjs");
   const lsp = hasServer ? `exec "${luxel}" "$@"` : `exec node "${fake}"`;
   const watch = `echo $$ > "${folder}/watch.pid"; exec "${luxel}" "$@"`;
-  writeFileSync(path, `#!/bin/sh\ncase "$1" in\n  lsp) echo $$ >> "${log}"; ${lsp} ;;\n  *) ${watch} ;;\nesac\n`, { mode: 0o755 });
+  writeFileSync(path, `#!/bin/sh\ncase "$1" in\n  lsp) echo $$ "$@" >> "${log}"; ${lsp} ;;\n  *) ${watch} ;;\nesac\n`, { mode: 0o755 });
   console.log(hasServer ? "server: luxel lsp" : "server: a stand-in, since this luxel has no `lsp`");
   return path;
 }
@@ -120,7 +120,8 @@ function startServer(port) {
     mkdirSync(join(data, whose), { recursive: true });
     writeFileSync(join(data, whose, "settings.json"), JSON.stringify(values));
   };
-  settings("Machine", { "luxel.path": program(), "luxel.preview.arguments": ["--threads", "1"] });
+  settings("Machine", { "luxel.path": program(), "luxel.preview.arguments": ["--threads", "1"],
+    "luxel.server.arguments": ["--allow-path", folder] });
   settings("User", {
     "workbench.colorTheme": process.env.THEME ?? "Default Dark Modern",
     "workbench.startupEditor": "none",
@@ -239,7 +240,9 @@ const steps = {
   async "the server is started anew on request"(page, port) {
     await openFile(page, port, "wrong.scene");
     await page.locator(".squiggly-error").first().waitFor({ timeout: 60000 });
-    const servers = () => readFileSync(log, "utf8").trim().split("\n").map(Number);
+    const servers = () => readFileSync(log, "utf8").trim().split("\n").map((line) => Number(line.split(" ")[0]));
+    const given = readFileSync(log, "utf8").trim().split("\n").at(-1).split(" ").slice(1);
+    assert.deepEqual(given, ["lsp", "--allow-path", folder]);
     const before = servers().at(-1);
     assert.ok(isAlive(before));
     await command(page, "Luxel: Restart Server");

@@ -15,7 +15,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     vscode.commands.registerCommand("luxel.openPreview", () => openPreview(context, log)),
     vscode.commands.registerCommand("luxel.restartServer", () => own.restart()),
     vscode.workspace.onDidChangeConfiguration((change) => {
-      if (change.affectsConfiguration("luxel.path")) void own.restart();
+      const matters = ["luxel.path", "luxel.server"].some((name) => change.affectsConfiguration(name));
+      if (matters) void own.restart();
     }),
     vscode.workspace.onDidGrantWorkspaceTrust(() => own.restart()),
   );

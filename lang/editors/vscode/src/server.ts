@@ -38,7 +38,8 @@ export class Server {
     } catch (error) {
       return notFound(command, error);
     }
-    const client = new LanguageClient("luxel", "Luxel", { command, args: ["lsp"] }, {
+    const more = vscode.workspace.getConfiguration("luxel").get<string[]>("server.arguments", []);
+    const client = new LanguageClient("luxel", "Luxel", { command, args: ["lsp", ...more] }, {
       documentSelector: [
         { scheme: "file", language: "luxel-scene" },
         { scheme: "untitled", language: "luxel-scene" },

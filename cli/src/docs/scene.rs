@@ -33,12 +33,12 @@ camera perspective {{ look = look_at(from = (0, 1.6, 5) m, to = (0, 0.95, 0) m, 
 /// The name that a snippet gives last to something of a category, as in `let gold = material …`, or to a
 /// copy of one.
 fn named<'s>(snippet: &'s str, category: &str) -> Option<&'s str> {
-    let names = snippet.lines().filter_map(|line| {
+    let mut names = snippet.lines().filter_map(|line| {
         let (name, value) = line.strip_prefix("let ")?.split_once('=')?;
         let value = value.trim_start();
         (value.starts_with(category) || value.contains(" with {")).then(|| name.trim())
     });
-    names.last()
+    names.next_back()
 }
 
 /// The scene around a snippet; a camera for the shapes of which only the snippet knows where they are is

@@ -1,0 +1,11 @@
+[
+  (block)
+  (record)
+  (list)
+  (tuple)
+  (arguments)
+  (comprehension)
+  (table)
+  (if_expression)
+  (comment)
+] @fold

@@ -10,6 +10,8 @@ const AROUND: usize = 200;
 const LINES: usize = 6;
 /// Lines between two places that are still shown together.
 const TOGETHER: usize = 20;
+/// How far from a place the ends of its line are looked for, bytes.
+const FAR: usize = 1 << 16;
 /// Stands where something was cut.
 const CUT: &str = "…";
 
@@ -84,8 +86,8 @@ impl Window {
 
 fn clip(text: &str, span: &Range<usize>) -> Range<usize> {
     let start = boundary(text, span.start);
-    let end = boundary(text, span.end).max(start);
-    let most = text[start..].match_indices('\n').nth(LINES - 1);
+    let end = boundary(text, span.end.min(start + FAR)).max(start);
+    let most = text[start..end].match_indices('\n').nth(LINES - 1);
     start..most.map_or(end, |(at, _)| end.min(start + at))
 }
 
@@ -99,11 +101,13 @@ fn boundary(text: &str, byte: usize) -> usize {
 }
 
 fn line_start(text: &str, at: usize) -> usize {
-    text[..at].rfind('\n').map_or(0, |before| before + 1)
+    let far = boundary(text, at.saturating_sub(FAR));
+    text[far..at].rfind('\n').map_or(far, |before| far + before + 1)
 }
 
 fn line_end(text: &str, at: usize) -> usize {
-    text[at..].find('\n').map_or(text.len(), |after| at + after)
+    let far = boundary(text, at + FAR);
+    text[at..far].find('\n').map_or(far, |after| at + after)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod checkpoint;
 mod compare;
 mod denoise;
 mod describe;
+mod diff;
 mod exit;
 mod explain;
 mod files;
@@ -68,6 +69,7 @@ enum Command {
     Denoise(denoise::Args),
     Check(check::Args),
     Fmt(fmt::Args),
+    Diff(diff::Args),
     Explain(explain::Args),
     Verify(verify::Args),
     Study(study::Args),
@@ -96,6 +98,7 @@ fn main() -> ExitCode {
         Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
         Command::Fmt(args) => fmt::run(args),
+        Command::Diff(args) => diff::run(args),
         Command::Explain(args) => explain::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Study(args) => study::run(args),

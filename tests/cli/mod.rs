@@ -5,6 +5,8 @@ mod compare;
 #[cfg(test)]
 mod denoise;
 #[cfg(test)]
+mod diff;
+#[cfg(test)]
 mod explain;
 #[cfg(test)]
 mod faulty;

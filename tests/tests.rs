@@ -53,3 +53,5 @@ mod solids;
 mod truths;
 #[cfg(test)]
 mod turns;
+#[cfg(test)]
+mod tutorial;

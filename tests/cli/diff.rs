@@ -28,7 +28,8 @@ fn scenes_that_come_to_the_same_are_the_same_however_they_are_written() {
 fn objects_and_parameters_are_told_with_places_and_values() {
     let other = SCENE
         .replace("fov = 40 deg", "fov = 41 deg")
-        .replace("reflectance = 0.5", "roughness = 20 deg")
+        .replace("{ reflectance = 0.5 }", "{}")
+        .replace("(32, 32)", "(32, 32), exposure = 1 EV")
         .replace("light constant", "shape disk \"floor\" { radius = 9 m }\nlight constant")
         .replace("sampler sobol { samples = 4 }\n", "");
     let folder = Folder::new("diff").with("a.scene", SCENE).with("b.scene", &other);
@@ -36,10 +37,11 @@ fn objects_and_parameters_are_told_with_places_and_values() {
     let told = "\
 camera perspective  a.scene:2 b.scene:2
   fov: 40 deg → 41 deg
+film rgb  a.scene:6 b.scene:6
+  exposure: default → 1 EV
 sampler sobol removed  a.scene:7
 material diffuse  a.scene:9 b.scene:9
   reflectance: 0.5 → default
-  roughness: default → 20 deg
 disk \"floor\" added  b.scene:7
 ";
     assert_eq!((done.code, &*done.out, &*done.err), (1, told, ""));

@@ -60,3 +60,5 @@ mod solids;
 mod truths;
 #[cfg(test)]
 mod turns;
+#[cfg(test)]
+mod tutorial;

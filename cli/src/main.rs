@@ -8,6 +8,7 @@ mod codes;
 mod compare;
 mod denoise;
 mod describe;
+mod diff;
 mod docs;
 mod exit;
 mod explain;
@@ -71,6 +72,7 @@ enum Command {
     Denoise(denoise::Args),
     Check(check::Args),
     Fmt(fmt::Args),
+    Diff(diff::Args),
     Explain(explain::Args),
     Verify(verify::Args),
     Study(study::Args),
@@ -101,6 +103,7 @@ fn main() -> ExitCode {
         Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
         Command::Fmt(args) => fmt::run(args),
+        Command::Diff(args) => diff::run(args),
         Command::Explain(args) => explain::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Study(args) => study::run(args),

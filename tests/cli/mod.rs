@@ -5,6 +5,8 @@ mod compare;
 #[cfg(test)]
 mod denoise;
 #[cfg(test)]
+mod diff;
+#[cfg(test)]
 mod docs;
 #[cfg(test)]
 mod explain;

@@ -14,8 +14,24 @@ pub struct Difference {
     pub what: String,
     /// How.
     pub how: How,
-    /// Where it is written: in the second scene, or in the first if it is only there.
-    pub span: Option<Span>,
+    /// Where it is written in the first scene and in the second; none where it is not.
+    pub spans: [Option<Span>; 2],
+}
+
+/// A parameter that differs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// Its name; `place` is where something stands.
+    pub name: String,
+    /// Its values in the first scene and in the second; none where it is not given.
+    pub spans: [Option<Span>; 2],
+}
+
+impl Change {
+    /// Of what has no value of its own.
+    fn named(name: impl Into<String>) -> Self {
+        Self { name: name.into(), spans: [None; 2] }
+    }
 }
 
 /// How something differs.
@@ -25,8 +41,8 @@ pub enum How {
     Added,
     /// Only the first scene has it.
     Removed,
-    /// Both have it, with other values of these parameters; `place` is where it stands.
-    Changed(Vec<String>),
+    /// Both have it, with other values of these parameters.
+    Changed(Vec<Change>),
 }
 
 impl fmt::Display for Difference {
@@ -34,7 +50,10 @@ impl fmt::Display for Difference {
         match &self.how {
             How::Added => write!(f, "{} added", self.what),
             How::Removed => write!(f, "{} removed", self.what),
-            How::Changed(names) => write!(f, "{}: {}", self.what, names.join(", ")),
+            How::Changed(changes) => {
+                let names: Vec<_> = changes.iter().map(|change| &*change.name).collect();
+                write!(f, "{}: {}", self.what, names.join(", "))
+            }
         }
     }
 }
@@ -65,9 +84,9 @@ impl Differ<'_> {
     fn settings(&mut self) {
         let [a, b] = self.scenes;
         if a.camera_pose != b.camera_pose
-            && let (Some(_), Some(id)) = (a.camera, b.camera)
+            && let (Some(x), Some(y)) = (a.camera, b.camera)
         {
-            self.changed(b.node(id), vec!["place".to_owned()]);
+            self.changed([a.node(x), b.node(y)], vec![Change::named("place")]);
         }
         let slots = |scene: &Scene| {
             let Scene { camera, film, integrator, sampler, filter, medium, .. } = *scene;
@@ -76,8 +95,8 @@ impl Differ<'_> {
         for pair in slots(a).into_iter().zip(slots(b)) {
             match pair {
                 (Some(a), Some(b)) => self.nodes(a, b),
-                (Some(id), None) => self.lone(a.node(id), How::Removed),
-                (None, Some(id)) => self.lone(b.node(id), How::Added),
+                (Some(id), None) => self.removed(a.node(id)),
+                (None, Some(id)) => self.added(b.node(id)),
                 (None, None) => {}
             }
         }
@@ -98,22 +117,25 @@ impl Differ<'_> {
         for (i, how) in [(0, How::Removed), (1, How::Added)] {
             for item in &left[i] {
                 let what = self.called(i, item.target);
-                self.found.push(Difference { what, how: how.clone(), span: Some(item.span) });
+                let mut spans = [None; 2];
+                spans[i] = Some(item.span);
+                self.found.push(Difference { what, how: how.clone(), spans });
             }
         }
     }
 
     /// Two placements of what is taken for the same.
     fn placed(&mut self, a: &Placed, b: &Placed) {
-        if a.pose != b.pose {
-            let (what, how) = (self.called(1, b.target), How::Changed(vec!["place".to_owned()]));
-            self.found.push(Difference { what, how, span: Some(b.span) });
-        }
+        let changed = |name: &str| Difference {
+            what: self.called(1, b.target),
+            how: How::Changed(vec![Change::named(name)]),
+            spans: [Some(a.span), Some(b.span)],
+        };
+        let place = (a.pose != b.pose).then(|| changed("place"));
+        let paint = (a.material.is_some() != b.material.is_some()).then(|| changed("material"));
+        self.found.extend(place.into_iter().chain(paint));
         if let (Some(a), Some(b)) = (a.material, b.material) {
             self.nodes(a, b);
-        } else if a.material != b.material {
-            let (what, how) = (self.called(1, b.target), How::Changed(vec!["material".to_owned()]));
-            self.found.push(Difference { what, how, span: Some(b.span) });
         }
         match (a.target, b.target) {
             (Target::Node(a), Target::Node(b)) => self.nodes(a, b),
@@ -133,43 +155,52 @@ impl Differ<'_> {
             return;
         }
         if x.class != y.class {
-            self.lone(x, How::Removed);
-            self.lone(y, How::Added);
+            self.removed(x);
+            self.added(y);
             return;
         }
         let names: BTreeSet<_> = x.params.iter().chain(&y.params).map(|it| it.name).collect();
         let mut changed = vec![];
         for name in names {
+            let spans = [x, y].map(|node| node.get(name).map(|it| it.span));
+            let change = || Change { name: name.to_owned(), spans };
             match (x.get(name).map(|it| &it.value), y.get(name).map(|it| &it.value)) {
                 (Some(Value::Node(a)), Some(Value::Node(b))) => self.nodes(*a, *b),
                 (Some(Value::Moved(a, from)), Some(Value::Moved(b, to))) => {
                     self.nodes(*a, *b);
-                    changed.extend((from != to).then(|| name.to_owned()));
+                    changed.extend((from != to).then(change));
                 }
                 (a, b) if a == b => {}
-                _ => changed.push(name.to_owned()),
+                _ => changed.push(change()),
             }
         }
         let own: BTreeMap<_, _> = x.overrides.iter().map(|(name, id)| (name, *id)).collect();
         for (name, b) in &y.overrides {
             match own.get(name) {
                 Some(a) => self.nodes(*a, *b),
-                None => changed.push(format!("material of {name}")),
+                None => changed.push(Change::named(format!("material of {name}"))),
             }
         }
         let gone = own.keys().filter(|name| !y.overrides.iter().any(|(it, _)| it == **name));
-        changed.extend(gone.map(|name| format!("material of {name}")));
+        changed.extend(gone.map(|name| Change::named(format!("material of {name}"))));
         if !changed.is_empty() {
-            self.changed(y, changed);
+            self.changed([x, y], changed);
         }
     }
 
-    fn changed(&mut self, node: &Node, names: Vec<String>) {
-        self.lone(node, How::Changed(names));
+    fn changed(&mut self, nodes: [&Node; 2], changes: Vec<Change>) {
+        let spans = nodes.map(|node| Some(node.span));
+        self.found.push(Difference { what: told(nodes[1]), how: How::Changed(changes), spans });
     }
 
-    fn lone(&mut self, node: &Node, how: How) {
-        self.found.push(Difference { what: told(node), how, span: Some(node.span) });
+    fn removed(&mut self, node: &Node) {
+        let spans = [Some(node.span), None];
+        self.found.push(Difference { what: told(node), how: How::Removed, spans });
+    }
+
+    fn added(&mut self, node: &Node) {
+        let spans = [None, Some(node.span)];
+        self.found.push(Difference { what: told(node), how: How::Added, spans });
     }
 
     /// What people call something; empty where they gave no name.

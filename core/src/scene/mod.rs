@@ -26,7 +26,7 @@ pub use color::Color;
 pub use conform::{
     DefaultUnits, Given, Misfit, conform, describe, number_words, range_words, wanted,
 };
-pub use diff::{Difference, How, called, diff};
+pub use diff::{Change, Difference, How, called, diff};
 pub use expect::{Area, Claim, Expectation, Expected};
 pub use feature::Feature;
 pub use pose::{Key, Pose, Step};

@@ -1,0 +1,69 @@
+//! What differs between two scenes, as a person asks for it.
+
+use super::program::{Folder, SCENE};
+
+/// The same scene, written otherwise.
+const REWRITTEN: &str = r"//! A ball.
+scene 1
+let grey = material diffuse { reflectance = 0.25 * 2 }
+shape sphere { radius = 100 cm, material = grey }
+light constant { scale = 1 }
+film rgb { resolution = (32, 32) }
+sampler sobol { samples = 4 }
+camera perspective {
+  look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg
+}
+";
+
+#[test]
+fn scenes_that_come_to_the_same_are_the_same_however_they_are_written() {
+    let folder = Folder::new("diff-same").with("a.scene", SCENE).with("b.scene", REWRITTEN);
+    let done = folder.luxel(&["diff", "a.scene", "b.scene"]);
+    assert_eq!((done.code, &*done.out, &*done.err), (0, "same\n", ""));
+    let done = folder.luxel(&["diff", "a.scene", "b.scene", "--json"]);
+    assert_eq!((done.code, &*done.out), (0, "{\"differences\":[],\"same\":true}\n"));
+}
+
+#[test]
+fn objects_and_parameters_are_told_with_places_and_values() {
+    let other = SCENE
+        .replace("fov = 40 deg", "fov = 41 deg")
+        .replace("{ reflectance = 0.5 }", "{}")
+        .replace("(32, 32)", "(32, 32), exposure = 1 EV")
+        .replace("light constant", "shape disk \"floor\" { radius = 9 m }\nlight constant")
+        .replace("sampler sobol { samples = 4 }\n", "");
+    let folder = Folder::new("diff").with("a.scene", SCENE).with("b.scene", &other);
+    let done = folder.luxel(&["diff", "a.scene", "b.scene"]);
+    let told = "\
+camera perspective  a.scene:2 b.scene:2
+  fov: 40 deg → 41 deg
+film rgb  a.scene:6 b.scene:6
+  exposure: default → 1 EV
+sampler sobol removed  a.scene:7
+material diffuse  a.scene:9 b.scene:9
+  reflectance: 0.5 → default
+disk \"floor\" added  b.scene:7
+";
+    assert_eq!((done.code, &*done.out, &*done.err), (1, told, ""));
+    let done = folder.luxel(&["diff", "a.scene", "b.scene", "--json"]);
+    let part = concat!(
+        r#"{"a":"a.scene:2","b":"b.scene:2","how":"changed","#,
+        r#""parameters":[{"a":"40 deg","b":"41 deg","name":"fov"}],"what":"camera perspective"}"#,
+    );
+    assert!(done.code == 1 && done.out.contains(part), "{done:?}");
+    assert!(done.out.contains(r#""same":false"#), "{done:?}");
+}
+
+#[test]
+fn params_are_set_in_both_and_mistakes_are_told() {
+    let scene = |n: &str| SCENE.replace("camera", &format!("param n: int = {n}\ncamera"));
+    let scene = |n: &str| scene(n).replace("samples = 4", "samples = n");
+    let folder = Folder::new("diff-set").with("a.scene", &scene("1")).with("b.scene", &scene("2"));
+    let done = folder.luxel(&["diff", "a.scene", "b.scene"]);
+    // Both say `n`: what it stands for differs.
+    assert_eq!((done.code, &*done.out), (1, "sampler sobol  a.scene:8 b.scene:8\n  samples\n"));
+    assert_eq!(folder.luxel(&["diff", "a.scene", "b.scene", "--set", "n=3"]).code, 0);
+    folder.write("wrong.scene", "scene 1\nlet a = 5 +\n");
+    let done = folder.luxel(&["diff", "a.scene", "wrong.scene"]);
+    assert!(done.code == 1 && done.out.is_empty() && done.err.contains("E0015"), "{done:?}");
+}

@@ -207,6 +207,7 @@ impl Server {
         }
         self.begin();
         for judged in verdict.roots {
+            let judged = self.without_own(judged);
             self.judged.insert(judged.root.clone(), judged);
         }
         // A file that another one reads now is no scene of its own any more.

@@ -10,6 +10,7 @@ mod describe;
 mod exit;
 mod explain;
 mod files;
+mod fmt;
 mod goal;
 mod interrupt;
 mod isolate;
@@ -67,6 +68,7 @@ enum Command {
     Compare(compare::Args),
     Denoise(denoise::Args),
     Check(check::Args),
+    Fmt(fmt::Args),
     Explain(explain::Args),
     Verify(verify::Args),
     Study(study::Args),
@@ -95,6 +97,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Denoise(args) => denoise::run(args),
         Command::Check(args) => check::run(args),
+        Command::Fmt(args) => fmt::run(args),
         Command::Explain(args) => explain::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Study(args) => study::run(args),

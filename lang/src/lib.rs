@@ -11,11 +11,13 @@ pub mod prescan;
 mod budgets;
 mod catalogue;
 mod eval;
+mod fmt;
 mod sink;
 mod syntax;
 
 pub use budgets::Budgets;
 pub use catalogue::CATALOGUE;
+pub use fmt::format;
 
 use std::collections::BTreeMap;
 use std::path::Path;

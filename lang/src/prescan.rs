@@ -197,14 +197,13 @@ impl Scanner<'_> {
                     self.at += 1;
                 }
                 let name = &self.bytes[start..self.at];
-                let mut begins = false;
                 if CONTINUE.contains(&name) || self.in_expect && name == b"where" {
                     (self.newline, self.doc) = (false, None);
                 } else {
-                    begins = self.word(start);
-                }
-                if begins {
-                    (self.in_expect, self.in_for) = (name == b"expect", false);
+                    let begins = self.word(start);
+                    // The word has no other use, and may follow `@off`.
+                    self.in_expect = name == b"expect" || self.in_expect && !begins;
+                    self.in_for &= !begins;
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
                 self.in_for = name == b"for" || (self.in_for && name != b"in");
@@ -385,6 +384,7 @@ mod tests {
     fn words_that_continue_begin_nothing() {
         assert_eq!(starts("let a = b\n  with { c = 1 }\nif x { y = 1 }\nelse { y = 2 }").len(), 2);
         assert_eq!(starts("expect mean = b\n  where { c = 1 }\nlet d = 1\nwhere = 2").len(), 3);
+        assert_eq!(starts("@off expect mean = b\n  where { c = 1 }").len(), 1);
     }
 
     #[test]

@@ -8,6 +8,8 @@ mod denoise;
 mod explain;
 #[cfg(test)]
 mod faulty;
+#[cfg(test)]
+mod fmt;
 mod grown;
 mod hostile;
 mod isolate;

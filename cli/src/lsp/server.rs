@@ -92,6 +92,7 @@ impl Server {
             "renameProvider": { "prepareProvider": true },
             "documentSymbolProvider": true,
             "foldingRangeProvider": true,
+            "documentFormattingProvider": true,
             "colorProvider": true,
             "codeActionProvider": { "codeActionKinds": ["quickfix"] },
             "semanticTokensProvider": {

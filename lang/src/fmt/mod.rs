@@ -1,0 +1,50 @@
+//! A scene's text, laid out: the same tree, the same comments, one way to write them.
+//!
+//! The text is read first, and refused with its mistakes if any of it cannot be; then its tokens and
+//! comments are written anew. What is on one line stays there while it fits, what is on several stays
+//! on several. Everything takes time in proportion to the text.
+
+mod align;
+mod block;
+mod bracket;
+mod layout;
+mod marks;
+mod measure;
+mod out;
+mod piece;
+mod sequence;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use luxel_core::diag::{Diagnostic, SourceId};
+
+use crate::budgets::Budgets;
+use crate::sink::Sink;
+use crate::syntax;
+use layout::Layout;
+use marks::Marks;
+
+/// Columns of a line.
+const WIDTH: usize = 100;
+/// Columns of a step of indentation.
+const STEP: usize = 2;
+
+/// The text as the formatter writes it.
+///
+/// Lines end in `\n`, the last one too; a byte order mark is left out. Strings, numbers and units are
+/// kept to the letter. Formatting again changes nothing.
+///
+/// # Errors
+/// What is wrong with a text that cannot be read, warnings among it; places are bytes of `text`.
+pub fn format(text: &str, budgets: &Budgets) -> Result<String, Vec<Diagnostic>> {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let tree = syntax::parse(text, SourceId(0), budgets, &mut sink);
+    // Reading ends early where no more can be told.
+    if sink.errors() > 0 || sink.is_full() {
+        return Err(sink.finish());
+    }
+    let mut pieces = piece::pieces(text, &Marks::of(&tree));
+    measure::measure(&mut pieces);
+    Ok(Layout::new(pieces, text.len()).file())
+}

@@ -203,16 +203,13 @@ impl Scanner<'_> {
                     self.at += 1;
                 }
                 let name = &self.bytes[start..self.at];
-                let mut begins = false;
                 if CONTINUE.contains(&name) || self.in_expect && name == b"where" {
                     (self.newline, self.doc) = (false, None);
                 } else {
-                    begins = self.word(start);
-                }
-                // The word has no other use, and may follow `@off`.
-                self.in_expect = name == b"expect" || self.in_expect && !begins;
-                if begins {
-                    self.in_for = false;
+                    let begins = self.word(start);
+                    // The word has no other use, and may follow `@off`.
+                    self.in_expect = name == b"expect" || self.in_expect && !begins;
+                    self.in_for &= !begins;
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
                 self.in_for = name == b"for" || (self.in_for && name != b"in");

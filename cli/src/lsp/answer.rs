@@ -40,6 +40,7 @@ pub(super) fn answer(
         }
         "textDocument/documentColor" => server.colours(params, stop),
         "textDocument/colorPresentation" => Server::presentation(params),
+        "textDocument/formatting" => server.formatting(params),
         "textDocument/codeAction" => server.actions(params),
         other => Err(Refusal::new(Code::MethodNotFound, format!("there is no method `{other}`"))),
     }

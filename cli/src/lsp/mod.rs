@@ -7,6 +7,7 @@ mod actions;
 mod answer;
 mod convert;
 mod files;
+mod format;
 mod judge;
 mod lists;
 mod names;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use luxel_core::diag::Severity;
+use luxel_core::diag::{Diagnostic, Severity};
 use luxel_lang::editor::Document;
 use serde_json::{Value, json};
 
@@ -58,18 +58,28 @@ impl Server {
             .into_iter()
             .map(|found| Told::new(found, path, &|_| path.to_owned()))
             .collect();
-        let open = self.files.open.contains_key(path);
-        for told in self.judged.values().flat_map(|judged| &judged.told) {
-            // Of what one file tells by itself, only what stands there now counts.
-            let is_new = !out.iter().any(|own| own.code == told.code && own.place == told.place);
-            let is_own = open && ["E00", "E01"].iter().any(|part| told.code.starts_with(part));
-            let is_own = is_own
-                && !["E0106", "E0107", "E0108", "E0109", "E0111", "E0114"].contains(&told.code);
-            if told.place.0 == path && is_new && !is_own {
+        let others = self.judged.values().flat_map(|judged| &judged.told);
+        for told in others.filter(|told| told.place.0 == path) {
+            if !out.iter().any(|own| own.code == told.code && own.place == told.place) {
                 out.push(told.clone());
             }
         }
         out
+    }
+
+    /// Of what came of a scene, leaves what open files do not tell by themselves at any time.
+    pub(super) fn without_own(&self, mut judged: Judged) -> Judged {
+        for (path, open) in &self.files.open {
+            let own = open.document.diagnostics();
+            judged.told.retain(|told| {
+                let is_it = |own: &Diagnostic| {
+                    let same = own.span().is_some_and(|span| span.range() == told.place.1);
+                    own.code == told.code && same && told.is_placed
+                };
+                told.place.0 != *path || !own.iter().any(is_it)
+            });
+        }
+        judged
     }
 
     /// Tells what is wrong with one file.

@@ -92,6 +92,7 @@ impl Server {
             "renameProvider": { "prepareProvider": true },
             "documentSymbolProvider": true,
             "foldingRangeProvider": true,
+            "documentFormattingProvider": true,
             "colorProvider": true,
             "codeActionProvider": { "codeActionKinds": ["quickfix"] },
             "semanticTokensProvider": {
@@ -207,6 +208,7 @@ impl Server {
         }
         self.begin();
         for judged in verdict.roots {
+            let judged = self.without_own(judged);
             self.judged.insert(judged.root.clone(), judged);
         }
         // A file that another one reads now is no scene of its own any more.

@@ -140,3 +140,18 @@ fn files_are_offered_where_a_path_is_written() {
     assert_eq!((items.len(), &items[0]["label"]), (1, &json!("lib.scene")));
     assert_eq!(items[0]["textEdit"]["range"], span(1, 13, 14));
 }
+
+#[test]
+fn a_file_is_laid_out_by_the_lines_that_change() {
+    let folder = Folder::new("lsp-format");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    client.open(&uri, "scene 1\nlet a = 1\nlet   b=2\nlet c = 3\n");
+    let document = json!({ "textDocument": { "uri": uri }, "options": {} });
+    let edits = client.ask("textDocument/formatting", document.clone()).unwrap();
+    let range = json!({ "start": at(2, 0), "end": at(3, 0) });
+    assert_eq!(edits, json!([{ "range": range, "newText": "let b = 2\n" }]));
+    client.edit(&uri, 2, range, "let b = 2\n");
+    assert_eq!(client.ask("textDocument/formatting", document.clone()), Ok(json!([])));
+    client.edit(&uri, 3, span(2, 8, 9), "");
+    assert_eq!(client.ask("textDocument/formatting", document).unwrap_err().0, -32803);
+}

@@ -53,14 +53,18 @@ impl Client {
 
     /// Tells something.
     pub(super) fn tell(&mut self, method: &str, params: Value) {
-        self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
+        let mut message = json!({ "jsonrpc": "2.0", "method": method });
+        message["params"] = params;
+        self.send(&message);
     }
 
     /// Sends a request without waiting; gives its number.
     pub(super) fn begin(&mut self, method: &str, params: Value) -> i64 {
         self.next += 1;
         let id = self.next;
-        self.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }));
+        let mut message = json!({ "jsonrpc": "2.0", "id": id, "method": method });
+        message["params"] = params;
+        self.send(&message);
         id
     }
 
@@ -113,7 +117,8 @@ impl Client {
 
     /// Replaces a range; hears what is told at once. Of older texts, something may be told before.
     pub(super) fn edit(&mut self, uri: &str, version: i64, range: Value, text: &str) -> Value {
-        let change = json!([{ "range": range, "text": text }]);
+        let mut change = json!([{ "text": text }]);
+        change[0]["range"] = range;
         let document = json!({ "uri": uri, "version": version });
         let params = json!({ "textDocument": document, "contentChanges": change });
         self.tell("textDocument/didChange", params);

@@ -17,7 +17,9 @@ fn scene() -> String {
 const LINE: u64 = 9;
 
 fn params(uri: &str, position: Value) -> Value {
-    json!({ "textDocument": { "uri": uri }, "position": position })
+    let mut out = json!({ "textDocument": { "uri": uri } });
+    out["position"] = position;
+    out
 }
 
 #[test]

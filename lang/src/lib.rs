@@ -12,6 +12,7 @@ mod budgets;
 mod catalogue;
 mod eval;
 mod fmt;
+mod shares;
 mod sink;
 mod syntax;
 

@@ -59,6 +59,19 @@ impl Sink {
         }
     }
 
+    /// An empty one of the same kind, for a part of the text.
+    pub(crate) fn like(&self) -> Self {
+        Self::new(self.limit).until(self.stop.clone())
+    }
+
+    /// Takes in what was told of a part.
+    pub(crate) fn absorb(&mut self, part: Self) {
+        let kept = part.list.iter().filter(|found| found.is_error()).count();
+        self.errors += part.errors - kept;
+        self.dropped += part.dropped;
+        part.list.into_iter().for_each(|found| self.push(found));
+    }
+
     /// How many errors there were, dropped ones included.
     pub(crate) fn errors(&self) -> usize {
         self.errors

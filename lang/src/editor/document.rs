@@ -11,6 +11,7 @@ use super::piece::{Piece, placed};
 use crate::budgets::Budgets;
 use crate::eval::builtins;
 use crate::eval::names::{Placed, moved, resolve_placed};
+use crate::shares;
 use crate::sink::Sink;
 use crate::syntax::{Cut, Cuts, cut, read_head};
 
@@ -117,7 +118,9 @@ impl Document {
             let range = &cut.range;
             Piece::new(&self.text, range.start, range.end, cut.faulty, &self.budgets)
         };
-        self.pieces = found.pieces.iter().map(read).collect();
+        let all = |cuts: &[Cut]| cuts.iter().map(read).collect::<Vec<_>>();
+        let shares = shares::map(&found.pieces, |cut| cut.range.len(), all);
+        self.pieces = shares.into_iter().flatten().collect();
         self.resolve();
     }
 

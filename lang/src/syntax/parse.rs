@@ -7,7 +7,7 @@ use pest::Parser;
 use pest::error::InputLocation;
 
 use super::build::Builder;
-use super::cut::{Cuts, RESUME_LIMIT, Region, region};
+use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
@@ -15,6 +15,7 @@ use super::weigh::weigh;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
 use crate::prescan::{Fault, scan};
+use crate::shares;
 use crate::sink::Sink;
 
 /// In how many enclosing blocks statements after a mistake are still looked at.
@@ -200,9 +201,34 @@ impl Reader<'_> {
     fn region(&mut self, from: usize) -> Option<usize> {
         let found = region(self.text, from, self.budgets.brackets, &mut |_| false);
         self.region_faults(from, &found);
-        for piece in &found.pieces {
+        let (text, source, budgets) = (self.text, self.source, self.budgets);
+        let empty = self.sink.like();
+        let shares = shares::map(
+            &found.pieces,
+            |piece| piece.range.len(),
+            |pieces| {
+                let mut sink = empty.like();
+                let out = Tree::default();
+                let mut reader = Reader { text, source, budgets, sink: &mut sink, out };
+                reader.pieces(pieces);
+                (reader.out.stmts, sink)
+            },
+        );
+        for (stmts, sink) in shares {
             if self.sink.is_full() {
                 break;
+            }
+            self.out.stmts.extend(stmts);
+            self.sink.absorb(sink);
+        }
+        found.next
+    }
+
+    /// Reads the statements of some pieces.
+    fn pieces(&mut self, pieces: &[Cut]) {
+        for piece in pieces {
+            if self.sink.is_full() {
+                return;
             }
             if piece.faulty {
                 self.broken(piece.range.clone());
@@ -210,7 +236,6 @@ impl Reader<'_> {
                 self.chunk(piece.range.clone(), true);
             }
         }
-        found.next
     }
 
     /// Tells what is wrong with a region beside its statements.

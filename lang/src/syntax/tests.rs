@@ -67,3 +67,22 @@ fn operators_bind_as_in_mathematics_and_chains_are_flat() {
     let ExprNode::Unary { inner, .. } = &first.node else { panic!("a sign") };
     assert!(matches!(&inner.node, ExprNode::Chain { rest, .. } if rest[0].0 == Op::Pow));
 }
+
+#[test]
+fn a_large_file_is_the_same_whoever_reads_its_parts() {
+    let object = |i: usize| format!("shape sphere \"s{i}\" {{ radius = {i} cm }}\n");
+    let valid: String =
+        std::iter::once("scene 1\n".to_owned()).chain((0..9000).map(object)).collect();
+    let budgets = Budgets::default();
+    let mut sink = Sink::new(100);
+    let tree = parse(&valid, SourceId(0), &budgets, &mut sink);
+    assert_eq!(Some(tree), parse_whole(&valid, SourceId(0), &budgets, &mut sink));
+    assert_eq!(sink.finish(), vec![]);
+    // Mistakes are told in the order of the text, up to the limit.
+    let faulty = valid.replace("7 cm", "7 = cm");
+    let mut sink = Sink::new(5);
+    parse(&faulty, SourceId(0), &budgets, &mut sink);
+    let starts: Vec<usize> =
+        sink.finish().iter().filter_map(|found| Some(found.span()?.range().start)).collect();
+    assert!(starts.len() == 5 && starts.is_sorted(), "{starts:?}");
+}

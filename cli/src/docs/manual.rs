@@ -5,7 +5,7 @@ use luxel_lang::manual::{Field, facts};
 use luxel_lang::{CATALOGUE, Example, page};
 use luxel_sdk::params::Param;
 
-use super::markdown::{self, escaped};
+use super::markdown::{self, Part, escaped};
 use super::page::{GUIDE, Page};
 use crate::describe::COMMON;
 use crate::list::summary;
@@ -38,6 +38,7 @@ pub(super) fn class(entry: &Entry, has_picture: bool) -> Page {
         title,
         body,
         picture,
+        parts: vec![],
     }
 }
 
@@ -59,21 +60,26 @@ pub(super) fn word(word: &Word) -> Page {
         words: text.to_owned(),
         body,
         picture: None,
+        parts: vec![],
     }
 }
 
 /// Every message, by its code.
 pub(super) fn messages() -> Page {
-    let codes = CATALOGUE.iter().map(|(code, title)| format!("{code} {title}"));
+    let part = |(code, title): &(&str, &str)| Part {
+        anchor: (*code).to_owned(),
+        title: format!("{code} {title}"),
+    };
     let sections: String = CATALOGUE.iter().map(|(code, title)| message(code, title)).collect();
     Page {
         name: "messages".to_owned(),
         title: "Messages".to_owned(),
         section: GUIDE.to_owned(),
         summary: "What each code of a message means, and the mend.".to_owned(),
-        words: codes.collect::<Vec<_>>().join(" "),
+        words: String::new(),
         body: format!("<h1>Messages</h1>\n{sections}"),
         picture: None,
+        parts: CATALOGUE.iter().map(part).collect(),
     }
 }
 

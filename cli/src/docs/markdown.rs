@@ -4,6 +4,12 @@ use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html as render
 
 use super::DOCUMENTS;
 
+/// A heading of a page.
+pub(super) struct Part {
+    pub(super) anchor: String,
+    pub(super) title: String,
+}
+
 /// The HTML of a text: headings can be linked to, links lead to pages of this reference or are left out,
 /// and HTML within it is text.
 pub(super) fn html(text: &str) -> String {
@@ -36,11 +42,12 @@ pub(super) fn inline(text: &str) -> String {
 }
 
 /// The headings of a text.
-pub(super) fn headings(text: &str) -> Vec<String> {
+pub(super) fn headings(text: &str) -> Vec<Part> {
     let events: Vec<Event<'_>> = Parser::new(text).collect();
+    let part = |title: String| Part { anchor: anchor(&title), title };
     let starts =
         (0..events.len()).filter(|i| matches!(events[*i], Event::Start(Tag::Heading { .. })));
-    starts.map(|i| heading(&events[i + 1..])).collect()
+    starts.map(|i| part(heading(&events[i + 1..]))).collect()
 }
 
 /// Text as it stands in HTML.
@@ -67,13 +74,18 @@ fn name_headings(events: &mut [Event<'_>]) {
         if !matches!(events[i], Event::Start(Tag::Heading { .. })) {
             continue;
         }
-        let text = heading(&events[i + 1..]).to_lowercase();
-        let kept = text.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
-        let name: String = kept.map(|c| if c == ' ' { '-' } else { c }).collect();
+        let name = anchor(&heading(&events[i + 1..]));
         if let Event::Start(Tag::Heading { id, .. }) = &mut events[i] {
             *id = Some(CowStr::from(name));
         }
     }
+}
+
+/// What links call a heading by.
+fn anchor(title: &str) -> String {
+    let title = title.to_lowercase();
+    let kept = title.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
 /// The words of the heading that has just begun.
@@ -100,7 +112,9 @@ mod tests {
             "<h2 id=\"what-is-it\">What <code>is</code> it?</h2>\n\
              <p><a href=\"language.html#units\">a</a> b &lt;b&gt;x&lt;/b&gt;</p>\n"
         );
-        assert_eq!(headings("# One\ntext\n## Two `b`\n"), ["One", "Two b"]);
+        let found = headings("# One\ntext\n## Two `b`\n");
+        let found: Vec<_> = found.iter().map(|part| (&*part.anchor, &*part.title)).collect();
+        assert_eq!(found, [("one", "One"), ("two-b", "Two b")]);
         assert_eq!(inline("a *b* < c"), "a <em>b</em> &lt; c");
     }
 }

@@ -54,7 +54,8 @@ pub(crate) struct Args {
 }
 
 /// Documents that have a page of their own.
-const DOCUMENTS: [(&str, &str); 2] = [
+const DOCUMENTS: [(&str, &str); 3] = [
+    ("tutorial", include_str!("../../../docs/tutorial.md")),
     ("language", include_str!("../../../docs/language.md")),
     ("plugins", include_str!("../../../docs/plugins.md")),
 ];

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::markdown::{self, escaped};
+use super::markdown::{self, Part, escaped};
 
 /// A page of the reference.
 pub(super) struct Page {
@@ -19,6 +19,8 @@ pub(super) struct Page {
     pub(super) words: String,
     /// The picture that the list shows.
     pub(super) picture: Option<String>,
+    /// What in it is found by itself.
+    pub(super) parts: Vec<Part>,
 }
 
 /// A file of the folder.
@@ -38,7 +40,8 @@ pub(super) fn document(name: &str, text: &str) -> Page {
         summary: String::new(),
         section: GUIDE.to_owned(),
         body: markdown::html(text),
-        words: markdown::headings(text).join(" "),
+        words: text.to_owned(),
+        parts: markdown::headings(text).into_iter().skip(1).collect(),
         title,
         picture: None,
     }
@@ -127,7 +130,7 @@ fn front(pages: &[Page]) -> String {
 
 /// What is typed is looked for in titles first, then in everything else.
 fn search(pages: &[Page]) -> String {
-    let entries = pages.iter().map(|page| {
+    let whole = pages.iter().map(|page| {
         json!({
             "page": format!("{}.html", page.name),
             "title": page.title,
@@ -135,6 +138,15 @@ fn search(pages: &[Page]) -> String {
             "words": page.words,
         })
     });
-    let entries: serde_json::Value = entries.collect();
+    let parts = pages.iter().flat_map(|page| page.parts.iter().map(move |part| (page, part)));
+    let parts = parts.map(|(page, Part { anchor, title })| {
+        json!({
+            "page": format!("{}.html#{anchor}", page.name),
+            "title": title,
+            "summary": page.title,
+            "words": "",
+        })
+    });
+    let entries: serde_json::Value = whole.chain(parts).collect();
     format!("const PAGES = {entries};\n{}", include_str!("search.js"))
 }

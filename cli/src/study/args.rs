@@ -27,7 +27,7 @@ const USUAL: &str = "spp,depth,rr,sampler,integrator,precision,color";
 /// `--drop FEATURE` measures what leaving a feature out adds to the error and saves of the time.
 ///
 /// Begins by measuring two scenes whose variance and bias are known exactly. Ctrl-C keeps what has been
-/// measured (exit code 3); a target that is not met within 10 % also ends with 3.
+/// measured (exit code 3); an error more than 10 % above its target also ends with 3.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -40,6 +40,11 @@ impl Verified {
     pub(super) fn is_near(&self, target: f64) -> bool {
         (self.rmse.value / target - 1.0).abs() <= NEAR
     }
+
+    /// Near, or better than was asked.
+    pub(super) fn is_met(&self, target: f64) -> bool {
+        self.rmse.value <= target || self.is_near(target)
+    }
 }
 
 /// The fastest of those that reach the error at all; another than the scene as it is only where it is

@@ -51,7 +51,7 @@ impl Found {
     /// Whether the recommended settings were shown to keep what they promise.
     pub(super) fn is_met(&self) -> bool {
         let verified = self.advice.as_ref().and_then(|advice| advice.verified);
-        verified.is_some_and(|verified| verified.is_near(self.target))
+        verified.is_some_and(|verified| verified.is_met(self.target))
     }
 
     pub(super) fn text(&self) -> String {

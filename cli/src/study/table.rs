@@ -96,7 +96,11 @@ pub(super) fn percent(share: f64) -> String {
 pub(super) fn verdict(verified: &Verified, target: f64) -> String {
     let Verified { choice, rmse, seconds } = verified;
     let off = (rmse.value / target - 1.0) * 100.0;
-    let word = if verified.is_near(target) { "within 10 %" } else { "MISSED" };
+    let word = match verified.is_near(target) {
+        true => "within 10 %",
+        false if verified.is_met(target) => "better than asked",
+        false => "MISSED",
+    };
     format!(
         "verified by a render with fresh random numbers: {} at {} spp in {}, {off:+.1} % off the target \
          of {}: {word}",
@@ -125,6 +129,7 @@ mod tests {
              off the target of 2.00 %: within 10 %"
         );
         assert!(told(0.0225).ends_with("+12.5 % off the target of 2.00 %: MISSED"));
+        assert!(told(0.0158).ends_with("-21.0 % off the target of 2.00 %: better than asked"));
     }
 
     #[test]

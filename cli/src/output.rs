@@ -2,7 +2,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Component, Path, PathBuf};
 
 use crate::exit::{Exit, Failure};
@@ -105,6 +105,17 @@ pub(crate) struct Draft {
     place: PathBuf,
     /// Where the bytes go.
     pub(crate) file: fs::File,
+}
+
+/// Puts a text in the place of a file: all of it or nothing, and with the file's permissions.
+///
+/// # Errors
+/// What the disk says.
+pub(crate) fn replace(file: &Path, text: &str) -> io::Result<()> {
+    let mut draft = Draft::begin(file)?;
+    draft.file.set_permissions(fs::metadata(file)?.permissions())?;
+    draft.file.write_all(text.as_bytes())?;
+    draft.finish()
 }
 
 /// So many drafts of one file may there be at a time, of this process or left by one of its number.

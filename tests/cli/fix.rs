@@ -42,17 +42,33 @@ fn what_is_guessed_set_or_outside_is_left_and_told() {
     let done = folder.luxel(&["check", "in/a.scene", "--fix"]);
     assert!(done.code == 1 && done.err.contains("E0108"), "{done:?}");
     assert_eq!(text(&folder, "b.scene"), "scene 1\nx = 3");
+    folder.write("b.scene", "scene 1\nlet x = (0, 1 0)");
     let done = folder.luxel(&["check", "in/a.scene", "--fix", "--allow-path", ".", "--json"]);
     assert_eq!(done.code, 0, "{done:?}");
-    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
-    assert_eq!((&told["fixed"], &told["after"]), (&"E0113".into(), &"let ".into()));
+    let told: serde_json::Value = serde_json::from_str(done.out.lines().next().unwrap()).unwrap();
+    assert_eq!((&told["fixed"], &told["after"]), (&"E0014".into(), &", ".into()));
     assert_eq!((&told["line"], &told["before"]), (&2.into(), &"".into()));
-    assert_eq!(text(&folder, "b.scene"), "scene 1\nlet x = 3");
+    assert_eq!(text(&folder, "b.scene"), "scene 1\nlet x = (0, 1, 0)");
+}
+
+#[test]
+fn what_is_no_scene_is_never_changed() {
+    let mesh = "# a mesh\nv 0.1 0.2 0.3\nv 1 2 3\n";
+    let scene = format!("{SCENE}include \"m.obj\"\n");
+    let folder = Folder::new("fix-foreign").with("a.scene", &scene).with("m.obj", mesh);
+    for file in ["a.scene", "m.obj"] {
+        let done = folder.luxel(&["check", file, "--fix"]);
+        assert!(done.code == 1 && done.err.contains("E0001"), "{done:?}");
+        assert_eq!(
+            (text(&folder, "m.obj"), text(&folder, "a.scene")),
+            (mesh.to_owned(), scene.clone())
+        );
+    }
 }
 
 #[test]
 fn what_a_mend_uncovers_is_mended_too() {
-    let wrong = SCENE.replace("scene 1\n", "").replace("{ radius = 1 m,", "{ radus: 1 m,");
+    let wrong = SCENE.replace("{ radius = 1 m,", "{ radus: 1 m,");
     let folder = Folder::new("fix-again").with("a.scene", &wrong);
     let done = folder.luxel(&["check", "a.scene", "--fix"]);
     assert_eq!((done.code, text(&folder, "a.scene")), (0, SCENE.to_owned()));

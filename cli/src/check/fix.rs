@@ -1,18 +1,19 @@
 //! `luxel check --fix`: mends that are sure, written into the files that they stand in.
 
-use std::io::{self, Write as _};
 use std::path::Path;
 
-use luxel_core::diag::{Fix, Mended, Sources, mend};
+use luxel_core::diag::{Diagnostic, Fix, Mended, SourceId, Sources, mend};
 use luxel_core::files::Files as _;
+use luxel_lang::Budgets;
 use serde_json::json;
 
 use crate::args::LoadArgs;
 use crate::exit::Failure;
 use crate::files::DiskFiles;
+use crate::interrupt::Guard;
 use crate::libraries::Plugins;
 use crate::load::{self, Course, Text};
-use crate::output::{Draft, unwritable};
+use crate::output::{replace, unwritable};
 use crate::report::{self, Form};
 
 /// How often a scene is read again: what one mend uncovers the next may mend.
@@ -28,17 +29,21 @@ pub(super) fn mended(
     plugins: &Plugins,
     form: Form,
 ) -> Result<(), Failure> {
+    let guard = Guard::of_files()?;
     for _ in 0..ROUNDS {
         let text = load::read(scene, args, None, plugins, &Course::default())?;
         let Text { diagnostics, sources, files, .. } = &text;
-        let found =
-            mend(diagnostics, sources, |id| is_file(files, sources.name(id), sources.text(id)));
+        let may =
+            |id| is_scene(diagnostics, id) && is_file(files, sources.name(id), sources.text(id));
+        let mut found = mend(diagnostics, sources, may);
+        found.retain(|mended| is_better(mended, sources));
         if found.is_empty() {
             break;
         }
         for mended in &found {
             let path = Path::new(sources.name(mended.source));
-            write(path, &mended.text).map_err(|error| unwritable(path, &error))?;
+            let _whole = guard.saving();
+            replace(path, &mended.text).map_err(|error| unwritable(path, &error))?;
             tell(mended, sources, form)?;
         }
     }
@@ -51,10 +56,25 @@ fn is_file(files: &DiskFiles, name: &str, text: &str) -> bool {
     files.read(Path::new(name)).is_ok_and(|bytes| *bytes == *text.as_bytes())
 }
 
-fn write(path: &Path, text: &str) -> io::Result<()> {
-    let mut draft = Draft::begin(path)?;
-    draft.file.write_all(text.as_bytes())?;
-    draft.finish()
+/// Whether a text begins as a scene does: another kind of file is not for us to change.
+fn is_scene(diagnostics: &[Diagnostic], id: SourceId) -> bool {
+    let of_file = |found: &&Diagnostic| found.span().is_some_and(|span| span.source == id);
+    !diagnostics.iter().filter(of_file).any(|found| found.code == "E0001")
+}
+
+/// Whether mends of what is written wrongly leave less of it, or the same mistake further on: of several
+/// missing commas the first is told.
+fn is_better(mended: &Mended, sources: &Sources) -> bool {
+    let faults = |text: &str| -> Vec<(&'static str, usize)> {
+        let (_, found) = luxel_lang::parse_only(text, &Budgets::default());
+        let errors = found.iter().filter(|found| found.is_error());
+        errors.map(|it| (it.code, it.span().map_or(0, |span| span.range().start))).collect()
+    };
+    let (before, after) = (faults(sources.text(mended.source)), faults(&mended.text));
+    let codes = |faults: &[(&'static str, usize)]| faults.iter().map(|it| it.0).collect::<Vec<_>>();
+    let is_further =
+        || codes(&before) == codes(&after) && before.iter().zip(&after).all(|(b, a)| b.1 < a.1);
+    after.is_empty() || after.len() < before.len() || is_further()
 }
 
 fn tell(mended: &Mended, sources: &Sources, form: Form) -> Result<(), Failure> {

@@ -15,10 +15,18 @@ pub(super) struct Part {
 pub(super) fn html(text: &str) -> String {
     let mut events: Vec<Event<'_>> = Parser::new_ext(text, Options::ENABLE_TABLES).collect();
     name_headings(&mut events);
-    let mut kept_links = vec![];
+    let (mut kept_links, mut in_comment) = (vec![], false);
     let events = events.into_iter().filter_map(|event| match event {
-        Event::Html(raw) if raw.trim_start().starts_with("<!--") => None,
-        Event::Html(raw) | Event::InlineHtml(raw) => Some(Event::Text(raw)),
+        Event::Html(raw) => {
+            in_comment |= raw.trim_start().starts_with("<!--");
+            let is_left_out = in_comment;
+            in_comment &= !raw.contains("-->");
+            (!is_left_out).then(|| quoted(&raw))
+        }
+        Event::InlineHtml(raw) | Event::Text(raw) => Some(quoted(&raw)),
+        Event::Code(code) => {
+            Some(Event::InlineHtml(format!("<code>{}</code>", escaped(&code)).into()))
+        }
         Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
             let to = target(&dest_url);
             kept_links.push(to.is_some());
@@ -32,6 +40,11 @@ pub(super) fn html(text: &str) -> String {
     let mut out = String::new();
     render::push_html(&mut out, events);
     out
+}
+
+/// Text whose quotes are escaped too, so that none is taken for that of an attribute.
+fn quoted(text: &str) -> Event<'static> {
+    Event::InlineHtml(escaped(text).into())
 }
 
 /// The HTML of one paragraph, without the paragraph.
@@ -116,5 +129,7 @@ mod tests {
         let found: Vec<_> = found.iter().map(|part| (&*part.anchor, &*part.title)).collect();
         assert_eq!(found, [("one", "One"), ("two-b", "Two b")]);
         assert_eq!(inline("a *b* < c"), "a <em>b</em> &lt; c");
+        assert_eq!(inline("`id=\"b\"`"), "<code>id=&quot;b&quot;</code>");
+        assert_eq!(html("<!--\nto do\n-->\n\nb\n"), "<p>b</p>\n");
     }
 }

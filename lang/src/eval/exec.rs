@@ -149,7 +149,7 @@ impl Evaluator<'_> {
         self.tell(if env.get(&name.text).is_some() {
             found.help("a name keeps its value: give the new one a name of its own")
         } else {
-            found.help("a name is defined with `let`").fix(start, "let ")
+            found.help("a name is defined with `let`").guess(start, "let ")
         });
     }
 

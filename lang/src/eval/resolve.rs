@@ -422,6 +422,8 @@ impl<'a> Resolver<'a> {
         let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
         let mut known: Vec<&str> = builtins::names().collect();
         known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
+        // Which are looked at must not depend on the order in which a table holds them.
+        known.sort_unstable();
         // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
         let ending = builtins::names()
             .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));

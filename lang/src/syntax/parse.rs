@@ -168,7 +168,7 @@ impl Reader<'_> {
         let Some(first) = tokens.next() else {
             let message = "the file is empty: a scene begins with `scene 1`";
             let span = self.span(0..0);
-            self.sink.push(Diagnostic::error("E0001", span, message).fix(span, "scene 1\n"));
+            self.sink.push(Diagnostic::error("E0001", span, message).guess(span, "scene 1\n"));
             return None;
         };
         let span = self.span(first.start..first.end());
@@ -176,7 +176,7 @@ impl Reader<'_> {
             if !super::explain::is_pbrt(first.text) {
                 let start = self.span(first.start..first.start);
                 let message = "a scene begins with `scene 1`";
-                let found = Diagnostic::error("E0001", span, message).fix(start, "scene 1\n");
+                let found = Diagnostic::error("E0001", span, message).guess(start, "scene 1\n");
                 self.sink.push(found);
             }
             return Some(first.start);
@@ -185,7 +185,7 @@ impl Reader<'_> {
         let Some(version) = version else {
             let message = "`scene` wants the version of the language";
             let end = self.span(first.end()..first.end());
-            self.sink.push(Diagnostic::error("E0001", span, message).fix(end, " 1"));
+            self.sink.push(Diagnostic::error("E0001", span, message).guess(end, " 1"));
             return Some(first.end());
         };
         if version.text != "1" {

@@ -20,6 +20,15 @@ pub(super) fn weigh(text: &str, limit: usize) -> Weight {
         at += 1;
         match byte {
             b' ' | b'\t' | b'\n' | b'\r' => continue,
+            b'/' if bytes.get(at) == Some(&b'/') => {
+                at += memchr::memchr(b'\n', &bytes[at..]).unwrap_or(bytes.len() - at);
+                continue;
+            }
+            b'/' if bytes.get(at) == Some(&b'*') => {
+                let end = memchr::memmem::find(&bytes[at + 1..], b"*/");
+                at = end.map_or(bytes.len(), |end| at + 1 + end + 2);
+                continue;
+            }
             b'#' if bytes.get(at) == Some(&b'[') => {
                 at += memchr::memchr(b']', &bytes[at..]).unwrap_or(bytes.len() - at);
             }
@@ -77,6 +86,7 @@ mod tests {
         assert_eq!(pieces("let a = [1, -2.5, 1e-3, 4]"), 5);
         assert_eq!(pieces("let a = #[ 1 2 x y z ] m"), 5);
         assert_eq!(pieces("x.a.a + b"), 7);
+        assert_eq!(pieces("a /* #[ \" */ = b // 5\" wide\n + c /**/ /* "), 5);
         assert_eq!(weigh("a = \"0123456789\"", 10).text, None);
         assert_eq!(weigh("a = \"01234\\\"6789a\"", 10).text, Some(4..18));
     }

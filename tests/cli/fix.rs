@@ -46,7 +46,7 @@ fn what_is_guessed_set_or_outside_is_left_and_told() {
     let done = folder.luxel(&["check", "in/a.scene", "--fix", "--allow-path", ".", "--json"]);
     assert_eq!(done.code, 0, "{done:?}");
     let told: serde_json::Value = serde_json::from_str(done.out.lines().next().unwrap()).unwrap();
-    assert_eq!((&told["fixed"], &told["after"]), (&"E0014".into(), &", ".into()));
+    assert_eq!((&told["fixed"], &told["after"]), (&"E0014".into(), &",".into()));
     assert_eq!((&told["line"], &told["before"]), (&2.into(), &"".into()));
     assert_eq!(text(&folder, "b.scene"), "scene 1\nlet x = (0, 1, 0)");
 }

@@ -1,9 +1,11 @@
 //! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
 
+mod around;
 mod build;
 mod cut;
 mod explain;
 mod expr;
+mod head;
 mod lex;
 mod number;
 mod parse;

@@ -1,6 +1,7 @@
 //! Types that a scene file writes, and whether values fit them.
 
 use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::scene;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Dimension;
 
@@ -165,9 +166,8 @@ impl Evaluator<'_> {
         }
         let message = format!("{} is wanted, the number has no unit", wanted.name());
         let end = Span { start: span.end, ..span };
-        let mut diagnostic = Diagnostic::error("E0201", span, message).help(
-            "give the number a unit, or state the file's units once: `units { length = mm }`",
-        );
+        let mut diagnostic =
+            Diagnostic::error("E0201", span, message).help(scene::bare_help(wanted));
         for unit in likely_units(wanted) {
             diagnostic = diagnostic.guess(end, format!(" {unit}"));
         }

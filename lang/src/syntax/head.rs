@@ -11,7 +11,32 @@ const BRACES: &str = "an object has its parameters between `{` and `}`";
 
 /// Why the first words of a statement or object near the place cannot be read.
 pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
-    foreign(around).or_else(|| misspelt(around)).or_else(|| object(around))
+    foreign(around)
+        .or_else(|| misspelt(around))
+        .or_else(|| block(around))
+        .or_else(|| object(around))
+}
+
+/// `for i in 0..3` and `if x > 1` that go on without `{`.
+fn block(around: &Around<'_>) -> Option<Diagnostic> {
+    let start = (0..around.at).rev().find(|i| around.begins(*i) && opens_block(around.word(*i)))?;
+    let last = around.before(1)?;
+    // The head is whole if a value ends it, and nothing opened a block.
+    let head = &around.tokens[start..around.at];
+    let whole = head.len() > 1 && last.ends_operand() && head.iter().all(|t| t.text != "{");
+    let named = head[0].text == "if" || head.iter().any(|t| t.text == "in");
+    let goes_on = around.current().is_some_and(|t| !t.first_on_line && t.kind == TokenKind::Mark);
+    let is_open = around.open.iter().any(|open| *open > start);
+    if !whole || !named || last.text == "in" || goes_on || is_open {
+        return None;
+    }
+    let message = format!("the `{{` of this `{}` is missing", head[0].text);
+    Some(around.error("E0023", last, message).help("a block stands between `{` and `}`"))
+}
+
+/// Whether a block follows what the word begins.
+pub(super) fn opens_block(word: &str) -> bool {
+    matches!(word, "for" | "if")
 }
 
 /// `'a'` and `# comment`

@@ -12,6 +12,7 @@ mod parse;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod unopened;
 mod walk;
 mod weigh;
 

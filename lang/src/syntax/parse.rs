@@ -12,6 +12,7 @@ use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
+use super::unopened::unopened;
 use super::weigh::weigh;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
@@ -200,7 +201,8 @@ impl Reader<'_> {
 
     /// Reads statements from `from` on. Gives where to go on after a brace that never closes.
     fn region(&mut self, from: usize) -> Option<usize> {
-        let found = region(self.text, from, self.budgets.brackets, &mut |_| false);
+        let mut found = region(self.text, from, self.budgets.brackets, &mut |_| false);
+        unopened(self.text, &mut found);
         self.region_faults(from, &found);
         let (text, source, budgets) = (self.text, self.source, self.budgets);
         let empty = self.sink.like();

@@ -49,6 +49,11 @@ pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     NUMBERS.iter().map(|(name, _)| *name).chain(OTHERS).chain(kinds)
 }
 
+/// The types of numbers that have a unit.
+pub(super) fn measured() -> impl Iterator<Item = &'static str> {
+    NUMBERS.iter().filter(|(_, dimension)| !dimension.is_none()).map(|(name, _)| *name)
+}
+
 /// What a type of numbers measures.
 pub(crate) fn dimension(name: &str) -> Option<Dimension> {
     NUMBERS.iter().find(|(known, _)| *known == name).map(|(_, dimension)| *dimension)

@@ -318,7 +318,11 @@ impl<'a> Around<'a> {
             return head::begins_nothing(self, first, near);
         }
         let message = format!("`{}` is not expected here", short(current.text));
-        self.error("E0023", current, message)
+        let found = self.error("E0023", current, message);
+        match head::pattern(self) {
+            Some(pattern) => found.help(pattern),
+            None => found,
+        }
     }
 }
 

@@ -13,6 +13,7 @@ const BRACES: &str = "an object has its parameters between `{` and `}`";
 pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
     foreign(around)
         .or_else(|| misspelt(around))
+        .or_else(|| plugin(around))
         .or_else(|| block(around))
         .or_else(|| object(around))
 }
@@ -32,6 +33,39 @@ fn block(around: &Around<'_>) -> Option<Diagnostic> {
     }
     let message = format!("the `{{` of this `{}` is missing", head[0].text);
     Some(around.error("E0023", last, message).help("a block stands between `{` and `}`"))
+}
+
+/// `use plugn "a"` and `use "a"`
+fn plugin(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(2);
+    let start = (first..around.at).find(|i| around.begins(*i) && around.word(*i) == "use")?;
+    let (word, next) = (&around.tokens[start], around.tokens.get(start + 1)?);
+    let found =
+        |token| around.error("E0023", token, "a plugin is asked for by `use plugin \"name\"`");
+    match next.kind {
+        TokenKind::Text => {
+            let gap = Span::new(around.source, word.end(), word.end());
+            Some(found(next).guess(gap, " plugin"))
+        }
+        TokenKind::Word if next.text != "plugin" && !next.first_on_line => {
+            let near = near(next.text, ["plugin"]);
+            Some(found(next).meant(around.span(next), near))
+        }
+        _ => None,
+    }
+}
+
+/// How the statement is written whose head cannot be read further.
+pub(super) fn pattern(around: &Around<'_>) -> Option<&'static str> {
+    let start = (0..around.at).rev().find(|i| around.begins(*i) && around.is_word(*i))?;
+    if around.tokens[start..around.at].iter().any(|t| t.text == "{") {
+        return None;
+    }
+    match around.word(start) {
+        "for" => Some("a loop is written `for i in 0..9 { … }`"),
+        "if" => Some("a choice is written `if x > 1 { … } else { … }`, and `==` compares"),
+        _ => None,
+    }
 }
 
 /// Whether a block follows what the word begins.

@@ -214,11 +214,26 @@ fn unit_of(
 }
 
 fn bare(param: &Param) -> Misfit {
-    let units = param.unit.split('|').flat_map(likely_units).collect();
-    let message =
-        format!("`{}` wants a unit, as in {}", param.name, param.unit.replace('|', " or "));
-    let help = "give the number a unit, or state the file's units once: `units { length = mm }`";
+    let units: Vec<&str> = param.unit.split('|').flat_map(likely_units).collect();
+    let written = match param.unit {
+        "rad" => "deg or rad".to_owned(),
+        unit => unit.replace('|', " or "),
+    };
+    let message = format!("`{}` wants a unit, as in {written}", param.name);
+    let help = bare_help(dimensions(param).next().unwrap_or_default());
     Misfit { units, ..Misfit::new("E0201", message).help(help) }
+}
+
+/// What to do about a number that lacks a unit of a dimension.
+pub fn bare_help(wanted: Dimension) -> String {
+    let give = "give the number a unit";
+    let units = match wanted {
+        Dimension::LENGTH => "length = mm",
+        Dimension::ANGLE => "angle = deg",
+        Dimension::TIME => "time = s",
+        _ => return give.to_owned(),
+    };
+    format!("{give}, or state the file's units once: `units {{ {units} }}`")
 }
 
 /// The units that people use for the dimension of a schema's unit.

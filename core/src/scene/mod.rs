@@ -24,7 +24,7 @@ use crate::registry::common_params;
 
 pub use color::Color;
 pub use conform::{
-    DefaultUnits, Given, Misfit, conform, describe, number_words, range_words, wanted,
+    DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, wanted,
 };
 pub use diff::{Change, Difference, How, called, diff};
 pub use expect::{Area, Claim, Expectation, Expected};

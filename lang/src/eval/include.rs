@@ -100,7 +100,11 @@ impl Evaluator<'_> {
             let Some(wanted) = super::types::dimension(&field.name.text).filter(|d| !d.is_none())
             else {
                 let message = format!("`{}` is not something that has a unit", field.name.text);
-                self.poison("E0215", field.name.span, message);
+                let known: Vec<_> = super::types::measured().collect();
+                let found = Diagnostic::error("E0215", field.name.span, message)
+                    .meant(field.name.span, near(&field.name.text, known.iter().copied()))
+                    .help(format!("known are {}", known.join(", ")));
+                self.tell(found);
                 continue;
             };
             let unit = match &field.value.node {

@@ -1,6 +1,7 @@
 //! Types that a scene file writes, and whether values fit them.
 
 use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::scene;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Dimension;
 
@@ -46,6 +47,11 @@ const OTHERS: [&str; 12] = [
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.iter().map(|(_, word)| *word);
     NUMBERS.iter().map(|(name, _)| *name).chain(OTHERS).chain(kinds)
+}
+
+/// The types of numbers that have a unit.
+pub(super) fn measured() -> impl Iterator<Item = &'static str> {
+    NUMBERS.iter().filter(|(_, dimension)| !dimension.is_none()).map(|(name, _)| *name)
 }
 
 /// What a type of numbers measures.
@@ -165,9 +171,8 @@ impl Evaluator<'_> {
         }
         let message = format!("{} is wanted, the number has no unit", wanted.name());
         let end = Span { start: span.end, ..span };
-        let mut diagnostic = Diagnostic::error("E0201", span, message).help(
-            "give the number a unit, or state the file's units once: `units { length = mm }`",
-        );
+        let mut diagnostic =
+            Diagnostic::error("E0201", span, message).help(scene::bare_help(wanted));
         for unit in likely_units(wanted) {
             diagnostic = diagnostic.guess(end, format!(" {unit}"));
         }

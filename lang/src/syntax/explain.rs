@@ -2,9 +2,12 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, Grade, Near, SourceId, Span, near};
+use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, near};
+use luxel_sdk::params::Unit;
 
+use super::around::{Around, Place, is_category};
 use super::build::RESERVED;
+use super::head;
 use super::lex::{Token, TokenKind, tokens};
 use super::number;
 
@@ -13,8 +16,8 @@ pub(super) struct Explained {
     pub(super) diagnostic: Diagnostic,
     /// The byte at which reading stopped.
     pub(super) at: usize,
-    /// The braces that are open there, outermost first.
-    pub(super) blocks: Vec<usize>,
+    /// The braces that are open there, outermost first, and what stands in them.
+    pub(super) blocks: Vec<(usize, Place)>,
     /// Where a statement begins that the mistake swallowed.
     pub(super) resume: Option<usize>,
 }
@@ -63,19 +66,14 @@ pub(super) fn is_pbrt(word: &str) -> bool {
     WORDS.contains(&word)
 }
 
-/// What stands around the place of a mistake.
-struct Around<'a> {
-    tokens: Vec<Token<'a>>,
-    /// The token at which reading stopped; the number of tokens at the end.
-    at: usize,
-    /// Brackets that are open there, by token, outermost first.
-    open: Vec<usize>,
-    source: SourceId,
-    end: usize,
-}
-
 /// Explains why `text[chunk]` cannot be read as a statement; pest stopped at byte `at`.
-pub(super) fn explain(text: &str, chunk: Range<usize>, at: usize, source: SourceId) -> Explained {
+pub(super) fn explain(
+    text: &str,
+    chunk: Range<usize>,
+    at: usize,
+    source: SourceId,
+    place: Place,
+) -> Explained {
     let tokens: Vec<Token<'_>> = tokens(text, chunk.clone()).collect();
     let index = tokens.iter().position(|t| t.end() > at).unwrap_or(tokens.len());
     let mut open = vec![];
@@ -88,13 +86,13 @@ pub(super) fn explain(text: &str, chunk: Range<usize>, at: usize, source: Source
             _ => {}
         }
     }
-    let around = Around { tokens, at: index, open, source, end: chunk.end };
+    let around = Around { text, tokens, at: index, open, source, end: chunk.end, place };
     let diagnostic = around.diagnose();
     let blocks = around
         .open
         .iter()
         .filter(|i| around.tokens[**i].text == "{")
-        .map(|i| around.tokens[*i].start);
+        .map(|i| (around.tokens[*i].start, around.within(*i)));
     let swallowed = around.swallowed().and_then(|back| around.before(back));
     let resume = swallowed.or_else(|| around.next_keyword());
     Explained {
@@ -106,30 +104,15 @@ pub(super) fn explain(text: &str, chunk: Range<usize>, at: usize, source: Source
 }
 
 impl<'a> Around<'a> {
-    fn current(&self) -> Option<&Token<'a>> {
-        self.tokens.get(self.at)
-    }
-
-    /// The token `back` places before the current one.
-    fn before(&self, back: usize) -> Option<&Token<'a>> {
-        self.at.checked_sub(back).and_then(|i| self.tokens.get(i))
-    }
-
-    fn span(&self, token: &Token<'_>) -> Span {
-        Span::new(self.source, token.start, token.end())
-    }
-
-    fn error(&self, code: &'static str, token: &Token<'_>, message: String) -> Diagnostic {
-        Diagnostic::error(code, self.span(token), message)
-    }
-
     fn diagnose(&self) -> Diagnostic {
         self.number()
+            .or_else(|| head::head(self))
             .or_else(|| self.statement_head())
             .or_else(|| self.reserved())
             .or_else(|| self.equals())
             .or_else(|| self.missing_operand())
             .or_else(|| self.missing_comma())
+            .or_else(|| self.missing_field_comma())
             .or_else(|| self.missing_equals())
             .or_else(|| self.untyped())
             .unwrap_or_else(|| self.unexpected())
@@ -166,9 +149,15 @@ impl<'a> Around<'a> {
         }
         let before = self.before(1)?;
         if current.text == ":" && before.kind == TokenKind::Word {
-            let message = "a value is given with `=`, not with `:`".to_owned();
-            let span = self.span(current);
-            return Some(self.error("E0017", current, message).fix(span, " ="));
+            let message = "a value is given with `=`, not with `:`";
+            let found = self.error("E0017", current, message);
+            // `y: int = 3` says a type.
+            if self.is_word(self.at + 1) && self.word(self.at + 2) == "=" {
+                let start = Span::new(self.source, before.start, before.start);
+                let help = "a name with a type is defined with `let` or `param`";
+                return Some(found.help(help).guess(start, "let "));
+            }
+            return Some(found.fix(self.span(current), " ="));
         }
         None
     }
@@ -246,6 +235,22 @@ impl<'a> Around<'a> {
         Some(self.error("E0014", current, message).fix(gap, ","))
     }
 
+    /// `roughness = 0 metallic = 1`: the word was read as the unit of what stands before it.
+    fn missing_field_comma(&self) -> Option<Diagnostic> {
+        let (current, word, value) = (self.current()?, self.before(1)?, self.before(2)?);
+        let is_field = current.text == "=" && word.kind == TokenKind::Word && !word.first_on_line;
+        if !is_field || self.open.is_empty() || value.text == "}" || !value.ends_operand() {
+            return None;
+        }
+        if !matches!(value.kind, TokenKind::Number | TokenKind::Table | TokenKind::Mark) {
+            return None;
+        }
+        let gap = Span::new(self.source, value.end(), value.end());
+        let grade = if Unit::named(word.text).is_some() { Grade::Guess } else { Grade::Sure };
+        let message = format!("a comma is missing before `{}`", short(word.text));
+        Some(self.error("E0014", word, message).mend(gap, ",", grade))
+    }
+
     /// `radius 5 cm`
     fn missing_equals(&self) -> Option<Diagnostic> {
         // The word may stand one or two tokens before the place: `material gold }`.
@@ -273,7 +278,12 @@ impl<'a> Around<'a> {
             }
             let gap = Span::new(self.source, word.end(), word.end());
             let message = format!("`=` is missing between `{}` and its value", word.text);
-            return Some(self.error("E0012", value, message).fix(gap, " ="));
+            // Elsewhere a statement may be meant, and after a category an object.
+            let is_field = self.inner() == Place::Fields
+                || matches!(self.before(word_at + 1).map_or("", |t| t.text), "let" | "set");
+            let sure = is_field && !is_category(word.text);
+            let grade = if sure { Grade::Sure } else { Grade::Guess };
+            return Some(self.error("E0012", value, message).mend(gap, " =", grade));
         }
         None
     }
@@ -302,14 +312,17 @@ impl<'a> Around<'a> {
             };
             return Diagnostic::error("E0023", span, "the statement ends too soon");
         };
-        let first = self.tokens.iter().find(|t| t.kind != TokenKind::Doc).unwrap_or(current);
-        if let Some(near) = near(first.text, RESERVED).filter(|near| near.name != first.text) {
-            let message = format!("`{}` begins no statement", short(first.text));
-            let near = Near { grade: Grade::Guess, ..near };
-            return self.error("E0023", first, message).meant(self.span(first), Some(near));
+        let first = self.tokens.iter().position(|t| t.kind != TokenKind::Doc).unwrap_or(self.at);
+        let word = self.word(first);
+        if let Some(near) = near(word, RESERVED).filter(|near| near.name != word) {
+            return head::begins_nothing(self, first, near);
         }
         let message = format!("`{}` is not expected here", short(current.text));
-        self.error("E0023", current, message)
+        let found = self.error("E0023", current, message);
+        match head::pattern(self) {
+            Some(pattern) => found.help(pattern),
+            None => found,
+        }
     }
 }
 

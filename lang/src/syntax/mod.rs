@@ -1,15 +1,18 @@
 //! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
 
+mod around;
 mod build;
 mod cut;
 mod explain;
 mod expr;
+mod head;
 mod lex;
 mod number;
 mod parse;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod unopened;
 mod walk;
 mod weigh;
 

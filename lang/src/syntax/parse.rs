@@ -6,11 +6,13 @@ use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
 use pest::Parser;
 use pest::error::InputLocation;
 
+use super::around::Place;
 use super::build::Builder;
 use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
+use super::unopened::unopened;
 use super::weigh::weigh;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
@@ -84,7 +86,7 @@ pub(crate) fn read_piece(
     if faulty {
         reader.broken(0..text.len());
     } else {
-        reader.chunk(0..text.len(), true);
+        reader.chunk(0..text.len(), Place::File);
     }
     (reader.out.stmts, sink.finish())
 }
@@ -199,7 +201,8 @@ impl Reader<'_> {
 
     /// Reads statements from `from` on. Gives where to go on after a brace that never closes.
     fn region(&mut self, from: usize) -> Option<usize> {
-        let found = region(self.text, from, self.budgets.brackets, &mut |_| false);
+        let mut found = region(self.text, from, self.budgets.brackets, &mut |_| false);
+        unopened(self.text, &mut found);
         self.region_faults(from, &found);
         let (text, source, budgets) = (self.text, self.source, self.budgets);
         let empty = self.sink.like();
@@ -233,7 +236,7 @@ impl Reader<'_> {
             if piece.faulty {
                 self.broken(piece.range.clone());
             } else {
-                self.chunk(piece.range.clone(), true);
+                self.chunk(piece.range.clone(), Place::File);
             }
         }
     }
@@ -308,8 +311,9 @@ impl Reader<'_> {
         self.sink.push(diagnostic);
     }
 
-    /// Reads one statement. `keep` says whether it becomes part of the tree.
-    fn chunk(&mut self, chunk: Range<usize>, keep: bool) {
+    /// Reads one statement. Only one of the file itself becomes part of the tree.
+    fn chunk(&mut self, chunk: Range<usize>, place: Place) {
+        let keep = place == Place::File;
         let text = &self.text[chunk.clone()];
         if self.is_too_large(&chunk) {
             if keep {
@@ -338,7 +342,7 @@ impl Reader<'_> {
                 if keep {
                     self.broken(chunk.clone());
                 }
-                self.recover(chunk.start + at, chunk, keep);
+                self.recover(chunk.start + at, chunk, place);
             }
         }
     }
@@ -367,8 +371,8 @@ impl Reader<'_> {
 
     /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those
     /// around it.
-    fn recover(&mut self, at: usize, chunk: Range<usize>, keep: bool) {
-        let found = explain(self.text, chunk.clone(), at, self.source);
+    fn recover(&mut self, at: usize, chunk: Range<usize>, place: Place) {
+        let found = explain(self.text, chunk.clone(), at, self.source, place);
         let here = found.at;
         self.sink.push(found.diagnostic);
         if self.sink.is_full() {
@@ -378,14 +382,14 @@ impl Reader<'_> {
         blocks.reverse();
         blocks.truncate(BLOCKS_LOOKED_AT);
         let mut after = here;
-        for open in blocks {
+        for (open, within) in blocks {
             let scan = scan(self.text, open..chunk.end, 1, self.budgets.brackets);
             let close = self.matching(open, chunk.end);
             let inner: Vec<usize> =
                 scan.starts.into_iter().filter(|s| *s > after && *s < close).collect();
             let ends = inner.iter().skip(1).copied().chain([close]);
             for (start, stop) in inner.iter().copied().zip(ends) {
-                self.chunk(start..stop, false);
+                self.chunk(start..stop, within);
             }
             after = after.max(close);
         }
@@ -394,7 +398,7 @@ impl Reader<'_> {
             let starts = scan(self.text, start..chunk.end, 0, self.budgets.brackets).starts;
             let ends = starts.iter().skip(1).copied().chain([chunk.end]);
             for (start, stop) in starts.iter().copied().zip(ends) {
-                self.chunk(start..stop, keep);
+                self.chunk(start..stop, place);
             }
         }
     }

@@ -1,0 +1,101 @@
+//! The tokens around the place of a mistake, and what encloses it.
+
+use luxel_core::diag::{Diagnostic, SourceId, Span};
+use luxel_sdk::kind::Kind;
+
+use super::lex::{Token, TokenKind};
+
+/// What statements stand in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    File,
+    /// A block of statements.
+    Block,
+    /// The parameters of an object, the fields of a record or arguments.
+    Fields,
+}
+
+/// What stands around the place of a mistake.
+pub(super) struct Around<'a> {
+    pub(super) text: &'a str,
+    pub(super) tokens: Vec<Token<'a>>,
+    /// The token at which reading stopped; the number of tokens at the end.
+    pub(super) at: usize,
+    /// Brackets that are open there, by token, outermost first.
+    pub(super) open: Vec<usize>,
+    pub(super) source: SourceId,
+    pub(super) end: usize,
+    /// What the statement stands in.
+    pub(super) place: Place,
+}
+
+impl<'a> Around<'a> {
+    pub(super) fn current(&self) -> Option<&Token<'a>> {
+        self.tokens.get(self.at)
+    }
+
+    /// The token `back` places before the current one.
+    pub(super) fn before(&self, back: usize) -> Option<&Token<'a>> {
+        self.at.checked_sub(back).and_then(|i| self.tokens.get(i))
+    }
+
+    /// The text of a token; empty if there is none.
+    pub(super) fn word(&self, i: usize) -> &'a str {
+        self.tokens.get(i).map_or("", |t| t.text)
+    }
+
+    pub(super) fn is_word(&self, i: usize) -> bool {
+        self.tokens.get(i).is_some_and(|t| t.kind == TokenKind::Word)
+    }
+
+    pub(super) fn span(&self, token: &Token<'_>) -> Span {
+        Span::new(self.source, token.start, token.end())
+    }
+
+    pub(super) fn error(
+        &self,
+        code: &'static str,
+        token: &Token<'_>,
+        message: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic::error(code, self.span(token), message)
+    }
+
+    /// Whether a statement or a field may begin with token `i`.
+    pub(super) fn begins(&self, i: usize) -> bool {
+        let Some(before) = i.checked_sub(1) else { return true };
+        matches!(self.word(before), "{" | "}" | "," | ";")
+            || self.tokens.get(i).is_some_and(|t| t.first_on_line)
+    }
+
+    /// What the place of the mistake is in.
+    pub(super) fn inner(&self) -> Place {
+        self.open.last().map_or(self.place, |open| self.within(*open))
+    }
+
+    /// What stands in the bracket that token `open` is.
+    pub(super) fn within(&self, open: usize) -> Place {
+        let is_fields = self.word(open) != "{" || self.holds_fields(open);
+        if is_fields { Place::Fields } else { Place::Block }
+    }
+
+    /// Whether the brace that token `open` is belongs to an object or a record.
+    fn holds_fields(&self, open: usize) -> bool {
+        let Some(mut last) = open.checked_sub(1) else { return false };
+        if self.tokens[last].kind == TokenKind::Text && last > 0 {
+            last -= 1;
+        }
+        // The name of a class may have parts.
+        while last > 1 && self.word(last - 1) == "." {
+            last -= 2;
+        }
+        let is_object = is_category(self.word(last))
+            || last > 0 && self.is_word(last) && is_category(self.word(last - 1));
+        is_object || matches!(self.word(last), "=" | "with" | "where" | "units")
+    }
+}
+
+/// Whether an object may begin with the word.
+pub(super) fn is_category(word: &str) -> bool {
+    Kind::of_word(word).is_some()
+}

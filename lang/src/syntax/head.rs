@@ -1,0 +1,185 @@
+//! Mistakes in the first words of a statement or object: misspelt, or as other languages write them.
+
+use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
+
+use super::around::{Around, Place, is_category};
+use super::build::RESERVED;
+use super::lex::TokenKind;
+
+/// What is said of an object whose parameters do not stand in braces.
+const BRACES: &str = "an object has its parameters between `{` and `}`";
+
+/// Why the first words of a statement or object near the place cannot be read.
+pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
+    foreign(around)
+        .or_else(|| misspelt(around))
+        .or_else(|| plugin(around))
+        .or_else(|| block(around))
+        .or_else(|| object(around))
+}
+
+/// `for i in 0..3` and `if x > 1` that go on without `{`.
+fn block(around: &Around<'_>) -> Option<Diagnostic> {
+    let start = (0..around.at).rev().find(|i| around.begins(*i) && opens_block(around.word(*i)))?;
+    let last = around.before(1)?;
+    // The head is whole if a value ends it, and nothing opened a block.
+    let head = &around.tokens[start..around.at];
+    let whole = head.len() > 1 && last.ends_operand() && head.iter().all(|t| t.text != "{");
+    let named = head[0].text == "if" || head.iter().any(|t| t.text == "in");
+    let goes_on = around.current().is_some_and(|t| !t.first_on_line && t.kind == TokenKind::Mark);
+    let is_open = around.open.iter().any(|open| *open > start);
+    if !whole || !named || last.text == "in" || goes_on || is_open {
+        return None;
+    }
+    let message = format!("the `{{` of this `{}` is missing", head[0].text);
+    Some(around.error("E0023", last, message).help("a block stands between `{` and `}`"))
+}
+
+/// `use plugn "a"` and `use "a"`
+fn plugin(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(2);
+    let start = (first..around.at).find(|i| around.begins(*i) && around.word(*i) == "use")?;
+    let (word, next) = (&around.tokens[start], around.tokens.get(start + 1)?);
+    let found =
+        |token| around.error("E0023", token, "a plugin is asked for by `use plugin \"name\"`");
+    match next.kind {
+        TokenKind::Text => {
+            let gap = Span::new(around.source, word.end(), word.end());
+            Some(found(next).guess(gap, " plugin"))
+        }
+        TokenKind::Word if next.text != "plugin" && !next.first_on_line => {
+            let near = near(next.text, ["plugin"]);
+            Some(found(next).meant(around.span(next), near))
+        }
+        _ => None,
+    }
+}
+
+/// How the statement is written whose head cannot be read further.
+pub(super) fn pattern(around: &Around<'_>) -> Option<&'static str> {
+    let start = (0..around.at).rev().find(|i| around.begins(*i) && around.is_word(*i))?;
+    if around.tokens[start..around.at].iter().any(|t| t.text == "{") {
+        return None;
+    }
+    match around.word(start) {
+        "for" => Some("a loop is written `for i in 0..9 { … }`"),
+        "if" => Some("a choice is written `if x > 1 { … } else { … }`, and `==` compares"),
+        _ => None,
+    }
+}
+
+/// Whether a block follows what the word begins.
+pub(super) fn opens_block(word: &str) -> bool {
+    matches!(word, "for" | "if")
+}
+
+/// `'a'` and `# comment`
+fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
+    let mark = around.current()?;
+    match mark.text {
+        "'" => {
+            let found = around.error("E0023", mark, "a string stands between `\"`");
+            let mut after = around.tokens[around.at + 1..].iter().take_while(|t| !t.first_on_line);
+            let Some(end) = after.find(|t| t.text == "'") else { return Some(found) };
+            let inside = &around.text[mark.end()..end.start];
+            let all = Span::new(around.source, mark.start, end.end());
+            Some(found.guess(all, format!("\"{inside}\"")))
+        }
+        "#" => {
+            let found = around.error("E0023", mark, "a comment begins with `//`");
+            Some(found.guess(around.span(mark), "//"))
+        }
+        _ => None,
+    }
+}
+
+/// `plcae ball`, `includ "a.scene"`, `const x = 3`: by what follows the word.
+fn misspelt(around: &Around<'_>) -> Option<Diagnostic> {
+    // Reading stops at the word after it, or one later.
+    let first = around.at.saturating_sub(2);
+    for i in first..around.at {
+        let word = &around.tokens[i];
+        let is_name = word.kind == TokenKind::Word && !RESERVED.contains(&word.text);
+        if !is_name || !around.begins(i) || is_category(word.text) {
+            continue;
+        }
+        let near = match word.text {
+            "const" | "var" if fits("let", around, i + 1) => {
+                Some(Near { name: "let", grade: Grade::Guess })
+            }
+            _ => near(word.text, RESERVED.into_iter().filter(|known| fits(known, around, i + 1))),
+        };
+        if let Some(near) = near {
+            return Some(begins_nothing(around, i, near));
+        }
+    }
+    None
+}
+
+/// A word that is none of the language, and the one that may be meant.
+pub(super) fn begins_nothing(around: &Around<'_>, i: usize, near: Near<'_>) -> Diagnostic {
+    let word = &around.tokens[i];
+    let short: String = word.text.chars().take(32).collect();
+    let found = around.error("E0023", word, format!("`{short}` begins no statement"));
+    found.meant(around.span(word), Some(Near { grade: Grade::Guess, ..near }))
+}
+
+/// Whether token `i` and those after it may follow a word of the language.
+fn fits(known: &str, around: &Around<'_>, i: usize) -> bool {
+    let Some(next) = around.tokens.get(i).filter(|t| !t.first_on_line) else { return false };
+    let (is_word, after) = (next.kind == TokenKind::Word, around.word(i + 1));
+    match known {
+        "let" | "param" => is_word && matches!(after, "=" | ":"),
+        "set" => is_word && matches!(after, "=" | "."),
+        "for" => is_word && (after == "in" || after == "," && around.word(i + 3) == "in"),
+        "fn" => is_word && after == "(",
+        "include" | "import" => next.kind == TokenKind::Text,
+        "use" => next.text == "plugin",
+        "place" | "expect" => is_word && after != "=",
+        _ => false,
+    }
+}
+
+/// `shape sphere (radius = 1 m)`, `camera thin_lens`, `shape /* c */ sphere { }`
+fn object(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(4);
+    let is_head = |i: &usize| {
+        let may_begin = around.begins(*i) || around.word(i - 1) == "=";
+        may_begin && is_category(around.word(*i)) && around.is_word(i + 1)
+    };
+    let start = (first..=around.at).rev().find(is_head)?;
+    // After the category stands the name of the class, perhaps in parts, and perhaps a label.
+    let mut end = start + 2;
+    while around.word(end) == "." {
+        end += 2;
+    }
+    let label = around.tokens.get(end).filter(|t| t.kind == TokenKind::Text && !t.first_on_line);
+    end += usize::from(label.is_some());
+    let (head, next) = (around.tokens.get(start..end)?, around.tokens.get(end));
+    if next.is_some_and(|t| t.text == "{") {
+        return comment(around, start, end);
+    }
+    // Among parameters `material gold` wants its `=` more likely.
+    if around.at > end || around.begins(start) && around.inner() == Place::Fields {
+        return None;
+    }
+    let on_line = next.filter(|t| !t.first_on_line && t.text != "}");
+    if let Some(next) = on_line {
+        return Some(around.error("E0023", next, BRACES));
+    }
+    let last = head.last()?;
+    let gap = Span::new(around.source, last.end(), last.end());
+    Some(around.error("E0023", last, BRACES).guess(gap, " {}"))
+}
+
+/// A comment between the words of an object's head, which ends before token `end`.
+fn comment(around: &Around<'_>, start: usize, end: usize) -> Option<Diagnostic> {
+    (start..end).find_map(|i| {
+        let (from, to) = (around.tokens[i].end(), around.tokens[i + 1].start);
+        let at = from + around.text[from..to].find('/')?;
+        let length = around.text[at..to].trim_end().len();
+        let message = "no comment stands between the words of an object's head";
+        let span = Span::new(around.source, at, at + length);
+        Some(Diagnostic::error("E0023", span, message).help("write it before the object or in it"))
+    })
+}

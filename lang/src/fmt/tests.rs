@@ -149,6 +149,19 @@ fn warnings_alone_refuse_nothing() {
 }
 
 #[test]
+fn long_sequences_take_time_in_proportion_to_them() {
+    let members = format!("scene 1\nlet a = x{}\n", ".a".repeat(50_000));
+    let notes = format!("scene 1\n{}let a = 3\n", "@off ".repeat(50_000));
+    let list = format!("scene 1\nlet a = f({}1)\n", "/* c */ ".repeat(50_000));
+    let block = format!("scene 1\nshape a {{{}}}\n", "/* c */ ".repeat(50_000));
+    // With a look at all that follows, at each piece, these would take a minute or more.
+    for (text, word) in [(members, ".a"), (notes, "@off"), (list, "c"), (block, "c")] {
+        let once = format(&text, &Budgets::default()).unwrap();
+        assert!(once.matches(word).count() >= 50_000, "{word}");
+    }
+}
+
+#[test]
 fn brackets_as_deep_as_they_may_be_need_little_stack() {
     let lists = format!("scene 1\nlet a = {}1{}\n", "[".repeat(128), "]".repeat(128));
     let calls = format!("scene 1\nlet a = {}1{}\n", "f(b + [".repeat(64), "])".repeat(64));

@@ -5,10 +5,12 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use luxel_core::diag::{Diagnostic, Sources, Span};
+use luxel_core::files::FileError;
 use luxel_lang::Budgets;
 use serde_json::json;
 
 use crate::exit::{Exit, Failure};
+use crate::files::read_limited;
 use crate::interrupt::Guard;
 use crate::output::{Draft, unwritable};
 use crate::report::{self, Form, Stream};
@@ -51,6 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let guard = Guard::of_files()?;
     let mut exit = Exit::Fine;
     for file in &args.files {
+        guard.next_file()?;
         match one(file, args, &guard) {
             Ok(Exit::Fine) => {}
             Ok(other) => exit = other,
@@ -88,7 +91,7 @@ fn one(file: &Path, args: &Args, guard: &Guard) -> Result<Exit, Failure> {
 /// A file's text before and after; none if it has a mistake, which is told.
 fn laid_out(file: &Path, json: bool) -> Result<Option<Pair>, Failure> {
     let budgets = Budgets::default();
-    let bytes = read(file, budgets.file_bytes).map_err(|error| {
+    let bytes = read(file, budgets.file_bytes as u64).map_err(|error| {
         Failure::new(Exit::Input, format!("cannot read `{}`: {error}", name(file)))
     })?;
     let mut sources = Sources::default();
@@ -122,19 +125,14 @@ fn name(file: &Path) -> String {
 }
 
 /// The bytes of a file, or of standard input, of which there may be so many.
-#[expect(clippy::disallowed_methods, reason = "the command line names the file")]
-fn read(file: &Path, limit: usize) -> io::Result<Vec<u8>> {
+fn read(file: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
+    if !is_stream(file) {
+        return read_limited(file, limit);
+    }
     let mut bytes = vec![];
-    let most = limit as u64 + 1;
-    if is_stream(file) {
-        io::stdin().lock().take(most).read_to_end(&mut bytes)?;
-    } else {
-        fs::File::open(file)?.take(most).read_to_end(&mut bytes)?;
-    }
-    if bytes.len() > limit {
-        return Err(io::Error::other(format!("it has more than {limit} bytes")));
-    }
-    Ok(bytes)
+    let read = io::stdin().lock().take(limit + 1).read_to_end(&mut bytes);
+    read.map_err(|error| FileError::Unreadable(error.to_string()))?;
+    if bytes.len() as u64 > limit { Err(FileError::TooLarge(limit)) } else { Ok(bytes) }
 }
 
 /// Puts a text in the place of a file: all of it or nothing, and with the file's permissions.

@@ -21,8 +21,30 @@ const LEAVE: Duration = Duration::from_millis(200);
 pub(crate) const CANCELLED: &str =
     "interrupted before anything was measured: no picture was written";
 
-/// What is told while files are being written.
-const ONE_MOMENT: &str = "the picture is being written: one moment";
+/// What interrupts are answered with.
+#[derive(Debug)]
+struct Words {
+    /// Before there is anything to be saved.
+    left: &'static str,
+    /// While it is being written.
+    moment: &'static str,
+    /// After it was.
+    saved: &'static str,
+}
+
+/// Of a command that measures a picture.
+const OF_PICTURE: Words = Words {
+    left: CANCELLED,
+    moment: "the picture is being written: one moment",
+    saved: "interrupted again: the picture has been written",
+};
+
+/// Of a command that only writes files.
+const OF_FILES: Words = Words {
+    left: "interrupted: files not yet written are as they were",
+    moment: "files are being written: one moment",
+    saved: "interrupted again: the files have been written",
+};
 
 /// What an interrupt runs.
 pub(crate) type Interrupt = Arc<dyn Fn() + Send + Sync>;
@@ -69,8 +91,9 @@ enum Answer {
     GiveUp(&'static str),
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct State {
+    words: &'static Words,
     phase: Phase,
     /// Pictures on their way to the disk. The next one may be measured meanwhile.
     writing: usize,
@@ -80,6 +103,10 @@ struct State {
 }
 
 impl State {
+    fn new(words: &'static Words) -> Self {
+        Self { words, phase: Phase::default(), writing: 0, loading: Arc::default(), first: None }
+    }
+
     fn answer(&mut self, now: Instant) -> Answer {
         if self.phase == Phase::Loading && self.writing == 0 {
             return Answer::Leave;
@@ -94,19 +121,29 @@ impl State {
             Phase::Measuring | Phase::Loading => Answer::GiveUp(
                 "interrupted again: what was measured is lost, the files are as they were",
             ),
-            Phase::Saved => Answer::GiveUp("interrupted again: the picture has been written"),
+            Phase::Saved => Answer::GiveUp(self.words.saved),
         }
     }
 }
 
 /// Knows whether a picture is being written, so that no interrupt cuts it in half.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Guard(Arc<Mutex<State>>);
+
+impl Default for Guard {
+    fn default() -> Self {
+        Self::with(&OF_PICTURE)
+    }
+}
 
 /// While it lives, files are being written; afterwards they are whole.
 pub(crate) struct Saving<'a>(&'a Guard);
 
 impl Guard {
+    fn with(words: &'static Words) -> Self {
+        Self(Arc::new(Mutex::new(State::new(words))))
+    }
+
     fn state(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -117,10 +154,24 @@ impl Guard {
     /// # Errors
     /// If the system refuses the handler.
     pub(crate) fn of_files() -> Result<Self, Failure> {
-        let guard = Self::default();
+        let guard = Self::with(&OF_FILES);
         guard.loading(&Arc::default());
-        guard.on_ctrl_c(|| report::note(ONE_MOMENT))?;
+        guard.on_ctrl_c(|| report::note(OF_FILES.moment))?;
         Ok(guard)
+    }
+
+    /// Another file is about to be read: an interrupt leaves at once again, and one that came while the
+    /// file before was written has waited for this.
+    ///
+    /// # Errors
+    /// If there was such an interrupt.
+    pub(crate) fn next_file(&self) -> Result<(), Failure> {
+        let mut state = self.state();
+        state.phase = Phase::Loading;
+        match state.first {
+            Some(_) => Err(Failure::new(Exit::Incomplete, state.words.left)),
+            None => Ok(()),
+        }
     }
 
     /// The picture is about to be written.
@@ -168,9 +219,9 @@ impl Guard {
                     state.loading.cancel();
                     // Whatever is not reached by it, a plugin perhaps, is left where it is.
                     std::thread::sleep(LEAVE);
-                    leave(CANCELLED);
+                    leave(state.words.left);
                 }
-                Answer::Wait => report::note(ONE_MOMENT),
+                Answer::Wait => report::note(state.words.moment),
                 Answer::GiveUp(word) => leave(word),
             }
         });
@@ -227,6 +278,25 @@ mod tests {
         let _whole = guard.saving();
         assert_eq!(guard.state().answer(now), Answer::First);
         assert_eq!(guard.state().answer(now + SAME), Answer::Wait);
+    }
+
+    #[test]
+    fn between_two_files_a_command_is_left_at_once_and_for_what_came_while_it_wrote() {
+        let (guard, now) = (Guard::with(&OF_FILES), Instant::now());
+        for _ in 0..2 {
+            assert!(guard.next_file().is_ok());
+            assert_eq!(guard.state().answer(now), Answer::Leave);
+            drop(guard.saving());
+        }
+        let whole = guard.saving();
+        assert_eq!(guard.state().answer(now), Answer::First);
+        drop(whole);
+        let saved = Answer::GiveUp("interrupted again: the files have been written");
+        assert_eq!(guard.state().answer(now + SAME), saved);
+        let left = guard.next_file().expect_err("it was interrupted");
+        let words = "interrupted: files not yet written are as they were";
+        assert_eq!((left.exit, &*left.message), (Exit::Incomplete, words));
+        assert_eq!(OF_FILES.moment, "files are being written: one moment");
     }
 
     #[test]

@@ -83,3 +83,40 @@ fn standard_input_comes_out_laid_out() {
     let done = folder.luxel_under("exec < a.scene", &["fmt", "-", "-"]);
     assert!(done.code == 2 && done.err.contains("laid out once"), "{done:?}");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupt_between_two_files_leaves_the_second_as_it_was() {
+    let folder = Folder::new("fmt-left").with("a.scene", CROOKED).with("b.scene", CROOKED);
+    let mut child = folder.talk(&["fmt", "a.scene", "-", "b.scene"]);
+    let input = child.stdin.take();
+    let moment = || std::thread::sleep(std::time::Duration::from_millis(10));
+    // Once the first is written it waits for its input.
+    while folder.read("a.scene") != STRAIGHT.as_bytes() {
+        moment();
+    }
+    let id = child.id().to_string();
+    let kill = std::process::Command::new("kill").args(["-INT", &id]).status();
+    assert!(kill.unwrap().success());
+    // Ten seconds, where it takes a fifth of one.
+    let left = (0..1000).any(|_| {
+        moment();
+        child.try_wait().unwrap().is_some()
+    });
+    drop(input);
+    assert_eq!((left, child.wait().unwrap().code()), (true, Some(3)));
+    assert_eq!(folder.read("b.scene"), CROOKED.as_bytes());
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_folders_are_no_scenes() {
+    let folder = Folder::new("fmt-pipe").with("sub/a.scene", STRAIGHT);
+    let done = folder.luxel_under("mkfifo pipe.scene", &["fmt", "pipe.scene", "sub"]);
+    for part in [
+        "`pipe.scene`: it cannot be read: it is not a regular",
+        "`sub`: it cannot be read: it is a",
+    ] {
+        assert!(done.code == 1 && done.err.contains(part), "{done:?}");
+    }
+}

@@ -21,7 +21,7 @@ use luxel_core::diag::{Diagnostic, SourceId};
 
 use crate::budgets::Budgets;
 use crate::sink::Sink;
-use crate::syntax;
+use crate::syntax::{self, Tree};
 use layout::Layout;
 use marks::Marks;
 
@@ -36,15 +36,32 @@ const STEP: usize = 2;
 /// kept to the letter. Formatting again changes nothing.
 ///
 /// # Errors
-/// What is wrong with a text that cannot be read, warnings among it; places are bytes of `text`.
+/// What is wrong with a text that cannot be read, warnings among it unless they are too many; places
+/// are bytes of `text`.
 pub fn format(text: &str, budgets: &Budgets) -> Result<String, Vec<Diagnostic>> {
-    let mut sink = Sink::new(budgets.diagnostics);
-    let tree = syntax::parse(text, SourceId(0), budgets, &mut sink);
-    // Reading ends early where no more can be told.
-    if sink.errors() > 0 || sink.is_full() {
-        return Err(sink.finish());
+    let (tree, sink) = read(text, budgets);
+    if sink.errors() > 0 {
+        let mut found = sink.finish();
+        if found.len() > budgets.diagnostics {
+            found.retain(Diagnostic::is_error);
+        }
+        return Err(found);
     }
     let mut pieces = piece::pieces(text, &Marks::of(&tree));
     measure::measure(&mut pieces);
     Ok(Layout::new(pieces, text.len()).file())
+}
+
+/// The tree of a text, and what is wrong with it.
+fn read(text: &str, budgets: &Budgets) -> (Tree, Sink) {
+    let mut limit = budgets.diagnostics.max(1);
+    loop {
+        let mut sink = Sink::new(limit);
+        let tree = syntax::parse(text, SourceId(0), budgets, &mut sink);
+        // Reading ends where no more can be told; for warnings alone it is not to.
+        if sink.errors() > 0 || !sink.is_full() {
+            return (tree, sink);
+        }
+        limit = limit.saturating_mul(16);
+    }
 }

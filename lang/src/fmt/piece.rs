@@ -100,7 +100,11 @@ const KEYWORDS: [&str; 18] = [
 /// The pieces of a text that can be read.
 pub(super) fn pieces<'a>(text: &'a str, marks: &Marks) -> Vec<Piece<'a>> {
     let mut cutter = Cutter { text, marks, next_start: 0, at: 0, last: None, out: vec![] };
-    let mut tokens = tokens(text, 0..text.len()).peekable();
+    // Where a statement begins, a token does: `m^2e = 3` is a unit and a field.
+    let starts = marks.starts.iter().map(|at| *at as usize);
+    let ends = starts.clone().chain([text.len()]);
+    let parts = std::iter::once(0).chain(starts).zip(ends);
+    let mut tokens = parts.flat_map(|(from, to)| tokens(text, from..to)).peekable();
     while let Some(token) = tokens.next() {
         cutter.token(token, &mut tokens);
     }

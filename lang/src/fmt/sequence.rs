@@ -1,8 +1,8 @@
 //! Expressions and the heads of statements: where a line may end, and where it does.
 
-use super::STEP;
 use super::layout::Layout;
 use super::piece::Kind;
+use super::{STEP, WIDTH};
 
 /// Where a sequence may be divided into lines: what holds it together least first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -209,10 +209,11 @@ impl Layout<'_> {
         }
     }
 
-    /// Columns up to where the line may end next.
+    /// Columns up to where the line may end next, or more than a line has.
     fn tail(&self, from: usize, to: usize, after: usize) -> usize {
         let mut at = from;
-        while at < to {
+        // What is beyond a line is not looked at: each piece looks ahead anew.
+        while at < to && self.width(from, at) <= WIDTH {
             let piece = &self.pieces[at];
             if piece.kind == Kind::Open {
                 return usize::from(self.pieces[from].gap) + self.width(from, at + 1);

@@ -14,7 +14,7 @@ use crate::{Budgets, format};
 
 /// The tree of a text without its places; `None` if it cannot be read.
 fn tree(text: &str) -> Option<String> {
-    let mut sink = Sink::new(100);
+    let mut sink = Sink::new(usize::MAX);
     let tree = parse(text, SourceId(0), &Budgets::default(), &mut sink);
     let told = format!("{:?}", tree.stmts);
     let mut bare = String::with_capacity(told.len());
@@ -127,9 +127,38 @@ fn what_cannot_be_read_is_refused_with_its_mistakes() {
     assert_eq!(codes("scene 1\nlet a = (1\n"), ["E0008"]);
     assert_eq!(codes(""), ["E0001"]);
     assert_eq!(codes("scene 1\nlet a = 5 meters"), ["E0204"]);
-    // So many warnings that reading ends before the text does.
-    let docs = format!("scene 1\nshape x {{{}}}\n", "\n/// a\n// b\n".repeat(120));
-    assert!(codes(&docs).iter().all(|code| matches!(*code, "E0022" | "E0508")));
+    // Where warnings would take all the room, the mistakes are told alone.
+    assert_eq!(
+        codes(&format!("{}let a = = 2\n", lone_docs(3))),
+        ["E0022", "E0022", "E0022", "E0013"]
+    );
+    assert_eq!(codes(&format!("{}let a = = 2\n", lone_docs(5000))), ["E0013"]);
+}
+
+/// A scene with doc comments that document nothing, of which reading warns.
+fn lone_docs(n: usize) -> String {
+    format!("scene 1\nshape x {{{}}}\n", "\n  /// a\n  // b\n".repeat(n))
+}
+
+#[test]
+fn warnings_alone_refuse_nothing() {
+    for n in [1, 99, 100, 101, 5000] {
+        let text = formatted(&lone_docs(n)).unwrap();
+        assert_eq!(text.matches("/// a").count(), n);
+    }
+}
+
+#[test]
+fn long_sequences_take_time_in_proportion_to_them() {
+    let members = format!("scene 1\nlet a = x{}\n", ".a".repeat(50_000));
+    let notes = format!("scene 1\n{}let a = 3\n", "@off ".repeat(50_000));
+    let list = format!("scene 1\nlet a = f({}1)\n", "/* c */ ".repeat(50_000));
+    let block = format!("scene 1\nshape a {{{}}}\n", "/* c */ ".repeat(50_000));
+    // With a look at all that follows, at each piece, these would take a minute or more.
+    for (text, word) in [(members, ".a"), (notes, "@off"), (list, "c"), (block, "c")] {
+        let once = format(&text, &Budgets::default()).unwrap();
+        assert!(once.matches(word).count() >= 50_000, "{word}");
+    }
 }
 
 #[test]

@@ -82,7 +82,7 @@ const PREFIX: [&[u8]; 18] = [
 ];
 
 /// Faults that are noted: with more a text is no scene, and nothing after the last is scanned.
-const FAULTS: usize = 1000;
+pub(crate) const FAULTS: usize = 1000;
 
 /// Bytes that matter inside brackets: quotes, slashes, hashes and brackets.
 const STRUCTURAL: [bool; 256] = {

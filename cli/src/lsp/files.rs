@@ -14,6 +14,8 @@ use crate::files::DiskFiles;
 
 /// Scene files that are looked for below the folders of a workspace, at most.
 const MAX_FILES: usize = 1000;
+/// Files and folders that are looked at for it, at most.
+const MAX_ENTRIES: usize = 20_000;
 /// How deep below them.
 const MAX_DEPTH: usize = 8;
 
@@ -96,8 +98,9 @@ impl Project for Opened {
 
     fn files(&self) -> Vec<PathBuf> {
         let mut out: Vec<PathBuf> = self.open.keys().cloned().collect();
+        let mut left = MAX_ENTRIES;
         for folder in &self.folders {
-            below(folder, MAX_DEPTH, &mut out);
+            below(folder, MAX_DEPTH, &mut left, &mut out);
         }
         out
     }
@@ -109,6 +112,7 @@ pub(super) fn names_beside(path: &Path, written: &str, ends: &[&str]) -> Vec<Str
     let folder = path.parent().unwrap_or(Path::new("")).join(folder);
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names: Vec<String> = entries
+        .take(MAX_ENTRIES)
         .filter_map(|entry| {
             let name = entry.file_name().into_string().ok()?;
             let is_folder = entry.path().is_dir();
@@ -122,10 +126,11 @@ pub(super) fn names_beside(path: &Path, written: &str, ends: &[&str]) -> Vec<Str
     names
 }
 
-/// Adds the scene files below a folder.
-fn below(folder: &Path, depth: usize, out: &mut Vec<PathBuf>) {
+/// Adds the scene files below a folder, among as many entries as are `left` to be looked at.
+fn below(folder: &Path, depth: usize, left: &mut usize, out: &mut Vec<PathBuf>) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    let mut paths: Vec<PathBuf> = entries.take(*left).map(|entry| entry.path()).collect();
+    *left -= paths.len();
     paths.sort();
     for path in paths {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or(".");
@@ -133,7 +138,7 @@ fn below(folder: &Path, depth: usize, out: &mut Vec<PathBuf>) {
             continue;
         }
         if path.is_dir() && !path.is_symlink() && depth > 0 {
-            below(&path, depth - 1, out);
+            below(&path, depth - 1, left, out);
         } else if path.extension().is_some_and(|end| end == "scene") && !out.contains(&path) {
             out.push(path);
         }

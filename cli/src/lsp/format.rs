@@ -20,17 +20,11 @@ impl Server {
             return Ok(json!([]));
         }
         // What is the same before and behind stays, by whole lines.
-        let lines =
-            |text: &'_ str| -> Vec<usize> { text.split_inclusive('\n').map(str::len).collect() };
         let pairs = old.split_inclusive('\n').zip(new.split_inclusive('\n'));
         let start: usize = pairs.take_while(|(a, b)| a == b).map(|(line, _)| line.len()).sum();
         let (rest, made) = (&old[start..], &new[start..]);
-        let back = lines(rest).into_iter().rev().scan(0, |length, line| {
-            *length += line;
-            Some(*length)
-        });
-        let is_same = |length: &usize| made.ends_with(&rest[rest.len() - length..]);
-        let end = back.take_while(is_same).last().unwrap_or(0);
+        let pairs = rest.split_inclusive('\n').rev().zip(made.split_inclusive('\n').rev());
+        let end: usize = pairs.take_while(|(a, b)| a == b).map(|(line, _)| line.len()).sum();
         let range = self.encoding.range(&document, &(start..old.len() - end));
         Ok(json!([{ "range": range, "newText": new[start..new.len() - end] }]))
     }

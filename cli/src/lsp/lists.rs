@@ -24,12 +24,14 @@ impl Server {
     }
 
     fn item(&self, item: &Item, range: &Value) -> Value {
-        let text = if item.insert.is_empty() { &item.label } else { &item.insert };
-        let is_snippet = self.client.snippets && text.contains("$0");
-        let text = if is_snippet {
-            text.replace('}', "\\}")
-        } else {
-            text[..text.find("$0").unwrap_or(text.len())].to_owned()
+        // A name may look like a place to fill in.
+        let place = item.insert.find("$0");
+        let is_snippet = self.client.snippets && place.is_some();
+        let text = match place {
+            _ if item.insert.is_empty() => item.label.clone(),
+            Some(_) if is_snippet => item.insert.replace('}', "\\}"),
+            Some(place) => item.insert[..place].to_owned(),
+            None => item.insert.clone(),
         };
         let mut out = json!({
             "label": item.label,

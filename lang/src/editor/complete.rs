@@ -194,7 +194,11 @@ impl Asked<'_> {
 
     /// What may stand after `name.`.
     fn members(&self) -> Vec<Item> {
-        let (before, _) = dotted(&self.here.before[..self.here.before.len() - 1]);
+        let (before, rest) = dotted(&self.here.before[..self.here.before.len() - 1]);
+        if rest.last().is_some_and(|token| token.text == "set") {
+            let found = schema::givens_of_label(self.registry, self.project, self.path, &before);
+            return found.unwrap_or_default().into_iter().map(statements::param).collect();
+        }
         let space = format!("{before}.");
         let own = builtins::names().filter_map(|name| name.strip_prefix(&space));
         let mut out: Vec<Item> = own

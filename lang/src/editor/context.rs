@@ -239,7 +239,7 @@ pub(super) fn dotted<'t, 'd>(tokens: &'t [Token<'d>]) -> (String, &'t [Token<'d>
 }
 
 /// What a brace belongs to, by the tokens before it.
-fn brace(tokens: &[Token<'_>]) -> Head {
+pub(super) fn brace(tokens: &[Token<'_>]) -> Head {
     let last = tokens.last().map_or("", |token| token.text);
     if matches!(last, "=" | "(" | "[" | "," | ":" | "=>") {
         return Head::Record;

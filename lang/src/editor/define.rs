@@ -13,6 +13,9 @@ use super::piece::Piece;
 use super::symbols::{Role, Sort, Symbol};
 use crate::syntax::{RESERVED, StmtNode};
 
+/// Names behind one another's dots that are followed: far more than files that import one another.
+const MAX_DOTS: usize = 64;
+
 /// The files that an editor knows.
 pub trait Project {
     /// The file at a path as it is now: an open one as it is being edited.
@@ -67,22 +70,15 @@ pub(super) fn resolve(
 ) -> Option<Place> {
     let here =
         |range: Range<usize>| Place { path: path.to_owned(), range: (range.start, range.end) };
-    let other = |start: usize| {
-        let symbols = piece.symbols();
-        let i = symbols.binary_search_by_key(&start, |symbol| symbol.start).ok()?;
-        Some(Found { piece, symbol: &symbols[i] })
-    };
+    let other = |start: usize| Some(Found { piece, symbol: beginning(piece, start)? });
     match &symbol.role {
         Role::Definition(_) => Some(here(symbol.range(piece.start))),
         Role::Local(start) => Some(here(other(*start)?.symbol.range(piece.start))),
         Role::Top => document.top_before(piece, &symbol.text).map(here),
-        Role::Member(of) => {
-            let module = resolve(project, path, document, &other(*of)?)?;
-            let (file, of) = at_place(project, &module, |symbol| match &symbol.role {
-                Role::Definition(Sort::Import(file)) => Some(file.clone()),
-                _ => None,
-            })?;
-            top_of(project, &beside(&of, &file), &symbol.text)
+        Role::Member(_) => {
+            let (first, names) = before_dots(piece, symbol)?;
+            let place = resolve(project, path, document, &Found { piece, symbol: first })?;
+            names.iter().try_fold(place, |module, name| member(project, &module, name))
         }
         Role::Argument(of) => {
             let function = resolve(project, path, document, &other(*of)?)?;
@@ -92,6 +88,33 @@ pub(super) fn resolve(
         Role::Label | Role::Labelled => label(project, path, &symbol.text),
         Role::File => Some(Place { path: beside(path, &symbol.text), range: (0, 0) }),
     }
+}
+
+/// The name of a statement that begins at a byte of it.
+fn beginning(piece: &Piece, start: usize) -> Option<&Symbol> {
+    let symbols = piece.symbols();
+    let i = symbols.binary_search_by_key(&start, |symbol| symbol.start).ok()?;
+    Some(&symbols[i])
+}
+
+/// What stands before the first of the dots before a name, and the names after each of them.
+fn before_dots<'d>(piece: &'d Piece, last: &'d Symbol) -> Option<(&'d Symbol, Vec<&'d str>)> {
+    let (mut first, mut names) = (last, vec![]);
+    while let Role::Member(of) = first.role {
+        names.push(&*first.text);
+        first = beginning(piece, of).filter(|_| names.len() <= MAX_DOTS)?;
+    }
+    names.reverse();
+    Some((first, names))
+}
+
+/// Where a name of the file is defined that is imported at a place.
+fn member(project: &dyn Project, module: &Place, name: &str) -> Option<Place> {
+    let (file, of) = at_place(project, module, |symbol| match &symbol.role {
+        Role::Definition(Sort::Import(file)) => Some(file.clone()),
+        _ => None,
+    })?;
+    top_of(project, &beside(&of, &file), name)
 }
 
 /// The file that another one names.
@@ -127,7 +150,7 @@ fn argument(project: &dyn Project, function: &Place, name: &str) -> Option<Place
 }
 
 /// The first object of that label, in a file or one that it includes.
-fn label(project: &dyn Project, path: &Path, name: &str) -> Option<Place> {
+pub(super) fn label(project: &dyn Project, path: &Path, name: &str) -> Option<Place> {
     reached(project, path).into_iter().find_map(|path| {
         let document = project.document(&path)?;
         document.pieces().iter().find_map(|piece| {
@@ -145,7 +168,8 @@ pub fn reached(project: &dyn Project, path: &Path) -> Vec<PathBuf> {
     while let Some(path) = out.get(next).cloned() {
         next += 1;
         let Some(document) = project.document(&path) else { continue };
-        for stmt in document.pieces().iter().flat_map(|piece| &piece.read.stmts) {
+        let stmts = document.pieces().iter().flat_map(|piece| &piece.read.stmts);
+        for stmt in stmts.filter(|stmt| !stmt.is_off()) {
             if let StmtNode::Include { path: name, .. } | StmtNode::Import { path: name, .. } =
                 &stmt.node
             {

@@ -11,9 +11,10 @@ use super::piece::{Piece, placed};
 use crate::budgets::Budgets;
 use crate::eval::builtins;
 use crate::eval::names::{Placed, moved, resolve_placed};
+use crate::prescan::FAULTS;
 use crate::shares;
 use crate::sink::Sink;
-use crate::syntax::{Cut, Cuts, cut, read_head};
+use crate::syntax::{Cut, Cuts, RESUME_LIMIT, cut, read_head};
 
 /// A scene file in an editor. Offsets are bytes of its text; spans have source 0.
 #[derive(Clone, Debug)]
@@ -93,18 +94,28 @@ impl Document {
     pub fn edit(&mut self, range: Range<usize>, with: &str) {
         let start = floor(&self.text, range.start);
         let range = start..floor(&self.text, range.end).max(start);
-        self.lines.edit(&range, with);
         self.text.replace_range(range.clone(), with);
+        self.lines.edit(&range, with);
         let before = self.from;
         (self.from, self.head) = read_head(&self.text, &self.budgets);
         self.tops = OnceLock::new();
         match (before, self.from) {
-            (Some(old), Some(new)) => {
+            (Some(old), Some(new)) if !self.is_cut_short() => {
                 let is_same_head = old == new && range.start > old;
                 self.read_around(&range, with.len(), is_same_head);
+                if self.is_cut_short() {
+                    self.read_again();
+                }
             }
             _ => self.read_again(),
         }
+    }
+
+    /// Whether so much does not close that cutting may have ended early: where it did depends on all
+    /// that stands before.
+    fn is_cut_short(&self) -> bool {
+        let faults = self.budgets.diagnostics.min(FAULTS);
+        self.unclosed.len() >= RESUME_LIMIT || self.faults.len() >= faults
     }
 
     fn read_again(&mut self) {

@@ -1,14 +1,17 @@
 //! What the registry says of what stands around a place.
 
+use std::path::Path;
+
 use luxel_core::registry::Registry;
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Param, Unit};
 
-use super::context::{Context, Head};
+use super::context::{Context, Head, brace};
+use super::define::{Project, label};
 use super::document::Document;
 use crate::manual::{self, Field};
-use crate::syntax::{Expr, ExprNode, StmtNode};
+use crate::syntax::{Expr, ExprNode, StmtNode, tokens};
 
 /// What an object may be given.
 #[derive(Clone, Copy)]
@@ -61,6 +64,20 @@ pub(super) fn givens(registry: &Registry, document: &Document, head: &Head) -> V
     let class = kind.and_then(|name| registry.class(kind_of, &name));
     let own = class.into_iter().flat_map(Registry::params).map(Given::Param);
     own.chain(manual::fields_of(kind_of).iter().map(Given::Field)).collect()
+}
+
+/// What the first object of a label may be given.
+pub(super) fn givens_of_label(
+    registry: &Registry,
+    project: &dyn Project,
+    path: &Path,
+    name: &str,
+) -> Option<Vec<Given>> {
+    let place = label(project, path, name)?;
+    let document = project.document(&place.path)?;
+    let start = document.piece_at(place.range.0)?.start;
+    let before: Vec<_> = tokens(document.text(), start..place.range.1).collect();
+    Some(givens(registry, &document, &brace(&before)))
 }
 
 /// What the value is given to that stands at a place: `name = |`.

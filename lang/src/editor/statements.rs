@@ -1,5 +1,6 @@
 //! What the lists of an editor are made of.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use luxel_sdk::kind::Kind;
@@ -88,7 +89,8 @@ pub(super) fn dimensions() -> Vec<Item> {
 
 /// The parameters that a file declares.
 pub(super) fn params_of(document: &Document) -> Vec<Item> {
-    let defs = document.pieces().iter().flat_map(|piece| &piece.read.stmts);
+    let stmts = document.pieces().iter().flat_map(|piece| &piece.read.stmts);
+    let defs = stmts.filter(|stmt| !stmt.is_off());
     let params = defs.filter_map(|stmt| match &stmt.node {
         StmtNode::Param(def) => Some(def),
         _ => None,
@@ -154,13 +156,10 @@ pub(super) fn page_of(category: &str) -> Option<&'static str> {
 impl Document {
     /// The labels of its objects, in order, each once.
     pub(super) fn labels(&self) -> Vec<Arc<str>> {
-        let mut out: Vec<Arc<str>> = vec![];
-        for symbol in self.pieces().iter().flat_map(super::piece::Piece::symbols) {
-            if symbol.role == Role::Label && !out.contains(&symbol.text) {
-                out.push(symbol.text.clone());
-            }
-        }
-        out
+        let mut seen = HashSet::new();
+        let symbols = self.pieces().iter().flat_map(super::piece::Piece::symbols);
+        let labels = symbols.filter(|symbol| symbol.role == Role::Label).map(|symbol| &symbol.text);
+        labels.filter(|label| seen.insert(*label)).cloned().collect()
     }
 
     /// The names of a function's arguments.

@@ -64,7 +64,7 @@ impl Symbol {
 
 /// The names of statements with relative spans, in the order of the text.
 pub(super) fn symbols(stmts: &[Stmt]) -> Vec<Symbol> {
-    let mut walk = Walk { out: vec![], scopes: vec![] };
+    let mut walk = Walk { out: vec![], scopes: vec![], is_off: false };
     for stmt in stmts {
         walk.stmt(stmt);
     }
@@ -76,6 +76,8 @@ struct Walk {
     out: Vec<Symbol>,
     /// The names of each block inside the statement, with where they are defined.
     scopes: Vec<Vec<(Arc<str>, usize)>>,
+    /// Inside a statement that `@off` takes out.
+    is_off: bool,
 }
 
 impl Walk {
@@ -101,6 +103,16 @@ impl Walk {
     }
 
     fn stmt(&mut self, stmt: &Stmt) {
+        if !stmt.is_off() {
+            return self.defining(stmt);
+        }
+        // What is off defines nothing for what follows.
+        let was = std::mem::replace(&mut self.is_off, true);
+        self.scoped(|walk| walk.defining(stmt));
+        self.is_off = was;
+    }
+
+    fn defining(&mut self, stmt: &Stmt) {
         match &stmt.node {
             StmtNode::Let { name, value, .. } => {
                 self.expr(value);
@@ -147,9 +159,7 @@ impl Walk {
         match &stmt.node {
             StmtNode::Place { what, label, body } => {
                 self.expr(what);
-                if let Some(label) = label {
-                    self.add(&label.text, label.span, Role::Label);
-                }
+                self.label(label.as_ref());
                 if let Some(block) = body {
                     self.block(block);
                 }
@@ -223,10 +233,16 @@ impl Walk {
         self.scopes.pop();
     }
 
-    fn object(&mut self, object: &Object) {
-        if let Some(label) = &object.label {
-            self.add(&label.text, label.span, Role::Label);
+    /// A label of what is off is none, but keeps the name of the object that has it.
+    fn label(&mut self, label: Option<&Name>) {
+        let role = if self.is_off { Role::Labelled } else { Role::Label };
+        if let Some(label) = label {
+            self.add(&label.text, label.span, role);
         }
+    }
+
+    fn object(&mut self, object: &Object) {
+        self.label(object.label.as_ref());
         self.block(&object.body);
     }
 

@@ -88,6 +88,25 @@ fn an_edited_document_is_the_document_of_the_edited_text() {
 }
 
 #[test]
+fn a_mend_in_a_text_that_is_cut_short_reads_it_to_the_end() {
+    let open = "group {\nlet a = 1\n".repeat(12);
+    let strays = format!("{}shape sphere {{}}\n", "let s = )\n".repeat(1100));
+    for (text, steps) in [(open, 20), (strays, 1)] {
+        for seed in 0..6 {
+            let mut state = seed;
+            let mut document = Document::new(format!("scene 1\n{text}"), &Budgets::default());
+            for step in 0..steps {
+                let start = 8 + next(&mut state, document.text().len() - 8);
+                let end = start + [0, 1, 9, 40][next(&mut state, 4)];
+                let with = PASTES[next(&mut state, PASTES.len())];
+                document.edit(start..end, with);
+                same(&document, &format!("seed {seed}, step {step}, {start}..{end} {with:?}"));
+            }
+        }
+    }
+}
+
+#[test]
 fn each_letter_of_a_statement_can_be_typed_and_deleted() {
     let typed =
         "shape sphere \"new\" {\n  radius = r\n  material = gold with { roughness = 0.2 }\n}\n";

@@ -139,10 +139,10 @@ fn of_token(all: &[Token<'_>], i: usize) -> Option<Colour> {
                 before.is_some_and(|t| matches!(t.kind, TokenKind::Number | TokenKind::Table));
             match token.text {
                 _ if before_text == "@" => Some(Colour::Attribute),
-                _ if number && on_line => Some(Colour::Unit),
-                _ if matches!(before_text, ")" | "]") && on_line => Some(Colour::Unit),
                 word if RESERVED.contains(&word) => Some(Colour::Keyword),
                 "where" | "plugin" | "version" if next != "=" => Some(Colour::Keyword),
+                _ if number && on_line => Some(Colour::Unit),
+                _ if matches!(before_text, ")" | "]") && on_line => Some(Colour::Unit),
                 _ if next == "=" => Some(Colour::Property),
                 _ if before_text == ":" => Some(Colour::Type),
                 _ if Kind::of_word(before_text).is_some() && on_line => Some(Colour::Class),

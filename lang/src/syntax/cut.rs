@@ -7,7 +7,7 @@ use luxel_core::diag::Diagnostic;
 use crate::prescan::{Fault, scan_until};
 
 /// How often reading goes on after a brace that never closes.
-pub(super) const RESUME_LIMIT: usize = 8;
+pub(crate) const RESUME_LIMIT: usize = 8;
 
 /// The bytes of one statement.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -17,7 +17,7 @@ mod walk;
 mod weigh;
 
 pub(crate) use build::RESERVED;
-pub(crate) use cut::{Cut, Cuts};
+pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
 #[cfg(test)]

@@ -36,6 +36,10 @@ fn statements_kinds_and_parameters_are_offered_where_they_stand() {
     offers("let b = shape sphere { radius = 1 m }\nlet c = b with { | }", &["radius"], &["for"]);
     offers("group \"g\" {\n |\n}", &["shape", "transform"], &["radius"]);
     offers("fn f() {\n |\n}", &["shape", "let"], &["radius"]);
+    let ball = "group \"g\" {\n let r = 1\n shape sphere \"ball\" { radius = 1 m }\n}\n";
+    offers(&format!("{ball}set |"), &["ball", "g"], &["r"]);
+    offers(&format!("{ball}set ball.|"), &["radius", "center"], &["for", "sin"]);
+    offers("set nobody.|", &[], &["radius"]);
     offers("units { | }", &["length", "angle"], &["int"]);
 }
 

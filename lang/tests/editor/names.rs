@@ -24,6 +24,23 @@ fn a_name_is_defined_in_the_innermost_block_around_it() {
 }
 
 #[test]
+fn what_is_off_defines_nothing_and_has_no_label() {
+    let text =
+        "scene 1\nlet x = 1 m\ngroup \"g\" {\n @off let x = 2 m\n shape sphere { radius = |x }\n}";
+    defined(&[("a", text)], "a:2:x");
+    let text = "scene 1\n@off shape sphere \"b\" {}\nshape sphere \"b\" {}\nset |b.radius = 1 m";
+    defined(&[("a", text)], "a:3:\"b\"");
+    defined(&[("a", "scene 1\n@off shape sphere \"b\" {}\nset |b.radius = 1 m")], "nowhere");
+}
+
+#[test]
+fn as_many_dots_as_a_file_holds_lead_nowhere_without_harm() {
+    let text = format!("scene 1\nimport \"a\" as a\nlet x = a{}|.a", ".a".repeat(150_000));
+    defined(&[("a", &text)], "nowhere");
+    defined(&[("a", "scene 1\nimport \"a\" as a\nlet x = a.a.a.|x")], "a:3:x");
+}
+
+#[test]
 fn names_are_found_in_files_that_do_not_parse() {
     let text = "scene 1\nlet r = 1 m\nshape sphere { radius = , }\nlet q = |r\nlet z = (";
     defined(&[("a", text)], "a:2:r");

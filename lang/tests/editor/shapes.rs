@@ -18,6 +18,7 @@ group \"trees\" {
 let t = #[ 1 2
   3 ] mm
 let red = rgb.linear_srgb(1, 0, 0)
+param many: int = 5 in 2..=9
 ";
 
 fn never() -> bool {
@@ -38,7 +39,7 @@ fn an_outline_is_the_tree_of_what_has_names() {
     let found = outline(&document, &never);
     assert_eq!(
         names(&found),
-        "gold[eta] far trees[é for i[gold]] t red".replace("[eta]", "").replace("[gold]", "")
+        "gold[eta] far trees[é for i[gold]] t red many".replace("[eta]", "").replace("[gold]", "")
     );
     for entry in &found {
         assert!(
@@ -81,6 +82,7 @@ fn tokens_are_what_they_mean() {
     assert_eq!(of("metal", 0), Some((Colour::Function, false)));
     assert_eq!(of("far", 1), Some((Colour::Parameter, false)));
     assert_eq!(of("mm", 0), Some((Colour::Unit, false)));
+    assert_eq!(of("in", 1), Some((Colour::Keyword, false)));
     let sorted = found.windows(2).all(|pair| pair[0].range.end <= pair[1].range.start);
     assert!(sorted, "tokens stand in order and apart");
     let part = coloured(&document, &(60..90), &never);

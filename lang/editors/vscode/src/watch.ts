@@ -37,7 +37,7 @@ export interface Start {
 /** A running watch. */
 export class Watch {
   private readonly child: ChildProcess;
-  private readonly files: FSWatcher;
+  private files: FSWatcher | undefined;
   private isOver = false;
 
   constructor(start: Start, private readonly listener: Listener) {
@@ -48,15 +48,11 @@ export class Watch {
       cwd: dirname(start.scene),
       stdio: ["ignore", "pipe", "pipe"],
     });
-    // Of the first sample no line is printed: the picture appears.
-    this.files = watch(start.folder, (_, name) => {
-      const png = `${output}.png`;
-      if (name === basename(png) && existsSync(png)) this.listener.picture(png);
-    });
     this.child.on("error", (error) => this.end(error));
     this.child.on("close", (code) => this.end(code));
     this.lines(this.child.stdout, (line) => this.summary(line));
     this.lines(this.child.stderr, (line) => this.remark(line));
+    this.look(start.folder, `${output}.png`);
   }
 
   /** Ends the watch as Ctrl-C does, or after a while in any case. */
@@ -66,6 +62,19 @@ export class Watch {
     const patience = setTimeout(() => this.child.kill("SIGKILL"), PATIENCE);
     patience.unref();
     this.child.once("close", () => clearTimeout(patience));
+  }
+
+  /** Of the first sample no line is printed: the picture appears. */
+  private look(folder: string, png: string): void {
+    const fails = (error: unknown) => this.listener.message(`the first picture cannot be waited for: ${String(error)}`);
+    try {
+      this.files = watch(folder, (_, name) => {
+        if (name === basename(png) && existsSync(png)) this.listener.picture(png);
+      });
+      this.files.on("error", fails);
+    } catch (error) {
+      fails(error);
+    }
   }
 
   private lines(stream: NodeJS.ReadableStream | null, take: (line: string) => void): void {
@@ -85,14 +94,15 @@ export class Watch {
     const told = object(line);
     if (told === undefined) return this.listener.message(line);
     if (told.severity === "error" && typeof told.message === "string") {
-      this.listener.message(`${told.file}:${told.line}:${told.column}: ${told.message}`);
+      const place = typeof told.file === "string" ? `${told.file}:${told.line}:${told.column}: ` : "";
+      this.listener.message(place + told.message);
     }
   }
 
   private end(how: number | Error | null): void {
     if (this.isOver) return;
     this.isOver = true;
-    this.files.close();
+    this.files?.close();
     this.listener.ended(how);
   }
 }

@@ -40,6 +40,7 @@ test("address, pictures and mistakes are told, and stopping ends it well", async
   assert.deepEqual(of(told, "picture"), [join(folder, "a.png")]);
   const messages = of(told, "message");
   assert.ok(messages.includes("a.scene:2:7: unknown kind"));
+  assert.ok(messages.includes("no camera"), "of no place none is told");
   assert.ok(messages.includes(""), "a finished picture takes the last message away");
   assert.ok(!of(told, "message").includes("not told"));
   assert.deepEqual(of(told, "ended"), [0]);
@@ -67,6 +68,13 @@ test("a program that is not there is told once", async () => {
   const told = await watched({ program: join(folder, "nothing") }, () => false);
   assert.equal(told.length, 1);
   assert.equal(told[0][1].code, "ENOENT");
+});
+
+test("a folder that is not there is told, and the watch goes on", async () => {
+  const gone = join(folder, "gone");
+  const told = await watched({ folder: gone, program: process.execPath, more: [] }, () => false);
+  assert.match(of(told, "message")[0], /^the first picture cannot be waited for: .*ENOENT/);
+  assert.equal(told.at(-1)[0], "ended");
 });
 
 test("a program that does not listen is ended in any case", async () => {

@@ -1,9 +1,10 @@
 //! Mends of mistakes.
 
+use luxel_core::diag::Grade;
 use luxel_lang::editor::Document;
 use serde_json::{Map, Value, json};
 
-use super::judge::{Bytes, Told};
+use super::judge::{Mend, Told};
 use super::server::Server;
 use super::wire::Refusal;
 
@@ -29,7 +30,7 @@ impl Server {
     fn mends(&self, told: &Told, document: &Document) -> Vec<Value> {
         let shown = self.shown(told, document);
         let is_only = told.fixes.len() == 1;
-        let one = |(place, text): &(Bytes, String)| {
+        let one = |Mend { place, text, grade }: &Mend| {
             let document = self.any_document(&place.0)?;
             let old = document.text().get(place.1.clone())?;
             let range = self.encoding.range(&document, &place.1);
@@ -39,7 +40,7 @@ impl Server {
                 "title": title(old, text),
                 "kind": "quickfix",
                 "diagnostics": [shown],
-                "isPreferred": is_only,
+                "isPreferred": is_only && *grade == Grade::Sure,
                 "edit": { "changes": changes },
             }))
         };

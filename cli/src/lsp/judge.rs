@@ -8,7 +8,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use luxel_core::accel::Watch;
-use luxel_core::diag::{Diagnostic, Severity, Sources, Span};
+use luxel_core::diag::{Diagnostic, Grade, Severity, Sources, Span};
 use luxel_core::files::normalise;
 use luxel_core::stage::{self, Unbuilt};
 
@@ -26,11 +26,10 @@ const STACK: usize = 16 << 20;
 pub(super) struct Job {
     /// Counts the edits.
     pub(super) serial: u64,
-    pub(super) roots: Vec<PathBuf>,
+    /// The scenes, and whether their meshes and textures are read too.
+    pub(super) roots: BTreeMap<PathBuf, bool>,
     /// The texts that are open.
     pub(super) texts: Arc<BTreeMap<PathBuf, Arc<[u8]>>>,
-    /// Whether meshes and textures are read too.
-    pub(super) whole: bool,
 }
 
 /// What came of a job.
@@ -44,6 +43,8 @@ pub(super) struct Verdict {
 pub(super) struct Judged {
     pub(super) root: PathBuf,
     pub(super) told: Vec<Told>,
+    /// What is wrong with meshes and textures; `None` if they were not read.
+    pub(super) built: Option<Vec<Told>>,
     /// Values by file and first byte of the name.
     pub(super) values: BTreeMap<(PathBuf, usize), String>,
 }
@@ -62,7 +63,15 @@ pub(super) struct Told {
     pub(super) place: Bytes,
     pub(super) is_placed: bool,
     pub(super) labels: Vec<(Bytes, String)>,
-    pub(super) fixes: Vec<(Bytes, String)>,
+    pub(super) fixes: Vec<Mend>,
+}
+
+/// A new text for a place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mend {
+    pub(super) place: Bytes,
+    pub(super) text: String,
+    pub(super) grade: Grade,
 }
 
 impl Told {
@@ -72,6 +81,10 @@ impl Told {
         let is_placed = found.span().is_some();
         let place = found.span().map_or_else(|| (root.to_owned(), 0..0), bytes);
         let labels = found.labels.into_iter().skip(1);
+        let fixes = found.fixes.into_iter().map(|fix| {
+            let (place, text, grade) = (bytes(fix.span), fix.replacement, fix.grade);
+            Mend { place, text, grade }
+        });
         Self {
             code: found.code,
             severity: found.severity,
@@ -80,7 +93,7 @@ impl Told {
             place,
             is_placed,
             labels: labels.map(|label| (bytes(label.span), label.text)).collect(),
-            fixes: found.fixes.into_iter().map(|fix| (bytes(fix.span), fix.replacement)).collect(),
+            fixes: fixes.collect(),
         }
     }
 }
@@ -97,8 +110,6 @@ struct Desk {
 #[derive(Default)]
 struct State {
     job: Option<Job>,
-    /// The scenes that are being evaluated, and whether meshes and textures are read too.
-    running: (Vec<PathBuf>, bool),
     /// Ends what is being evaluated.
     stop: Arc<AtomicBool>,
     watch: Arc<Watch>,
@@ -120,28 +131,21 @@ impl Judge {
         let _ = thread.spawn(move || {
             loop {
                 let (job, stop, watch) = next(&own);
-                let one = |root: &PathBuf| judged(root, &job, &plugins, &allow, (&stop, &watch));
+                let one = |root| judged(root, &job, &plugins, &allow, (&stop, &watch));
                 let roots = job.roots.iter().map(one).collect();
                 if !stop.load(Ordering::Relaxed) {
                     queue.put(Event::Judged(Verdict { serial: job.serial, roots }));
-                    own.lock().running = Default::default();
                 }
             }
         });
         Self(desk)
     }
 
-    /// Gives up what is being evaluated for a newer job. Scenes that were given up are done too.
-    pub(super) fn put(&self, mut job: Job) {
+    /// Gives up what waits and what is being evaluated for a newer job.
+    pub(super) fn put(&self, job: Job) {
         let mut state = self.0.lock();
         state.stop.store(true, Ordering::Relaxed);
         state.watch.cancel();
-        let old = state.job.take().map(|old| (old.roots, old.whole)).unwrap_or_default();
-        for (roots, whole) in [old, std::mem::take(&mut state.running)] {
-            job.whole |= whole;
-            let more = roots.into_iter().filter(|root| !job.roots.contains(root));
-            job.roots.extend(more.collect::<Vec<_>>());
-        }
         state.job = Some(job);
         self.0.changed.notify_one();
     }
@@ -158,7 +162,6 @@ fn next(desk: &Desk) -> (Job, Arc<AtomicBool>, Arc<Watch>) {
         let waited = desk.changed.wait_timeout(state, PAUSE);
         state = waited.unwrap_or_else(PoisonError::into_inner).0;
         if let Some(job) = state.job.take_if(|job| job.serial == serial) {
-            state.running = (job.roots.clone(), job.whole);
             state.stop = Arc::default();
             state.watch = Arc::default();
             return (job, state.stop.clone(), state.watch.clone());
@@ -167,7 +170,7 @@ fn next(desk: &Desk) -> (Job, Arc<AtomicBool>, Arc<Watch>) {
 }
 
 fn judged(
-    root: &Path,
+    (root, whole): (&PathBuf, &bool),
     job: &Job,
     plugins: &Plugins,
     allow: &[PathBuf],
@@ -182,15 +185,14 @@ fn judged(
             ..Default::default()
         };
         let loaded = luxel_lang::load(root, &files, &plugins.registry, &settings);
-        let mut found = loaded.diagnostics;
-        if let (Some(scene), true) = (&loaded.scene, job.whole) {
-            match stage::build_watched(scene, &plugins.registry, &files, None, watch) {
-                Ok(built) => found.extend(built.warnings),
-                Err(Unbuilt::Faulty(faults)) => found.extend(faults),
-                Err(Unbuilt::Cancelled) => {}
-            }
-        }
-        of_sources(root, found, &loaded.sources, &loaded.values)
+        let build =
+            |scene| match stage::build_watched(scene, &plugins.registry, &files, None, watch) {
+                Ok(built) => built.warnings,
+                Err(Unbuilt::Faulty(faults)) => faults,
+                Err(Unbuilt::Cancelled) => vec![],
+            };
+        let built = whole.then(|| loaded.scene.as_ref().map(build).unwrap_or_default());
+        of_sources(root, (loaded.diagnostics, built), &loaded.sources, &loaded.values)
     };
     blaming(&root.display().to_string(), run).unwrap_or_else(|failure| Judged {
         root: root.to_owned(),
@@ -203,14 +205,16 @@ fn judged(
 
 fn of_sources(
     root: &Path,
-    found: Vec<Diagnostic>,
+    (found, built): (Vec<Diagnostic>, Option<Vec<Diagnostic>>),
     sources: &Sources,
     values: &BTreeMap<Span, String>,
 ) -> Judged {
     let path_of = |span: Span| normalise(Path::new(sources.name(span.source)));
-    let told = found.into_iter().map(|found| Told::new(found, root, &path_of)).collect();
+    let all = |found: Vec<Diagnostic>| -> Vec<Told> {
+        found.into_iter().map(|found| Told::new(found, root, &path_of)).collect()
+    };
     let value =
         |(span, value): (&Span, &String)| ((path_of(*span), span.range().start), value.clone());
     let values = values.iter().map(value).collect();
-    Judged { root: root.to_owned(), told, values }
+    Judged { root: root.to_owned(), told: all(found), built: built.map(all), values }
 }

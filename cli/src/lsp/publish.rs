@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Severity};
+use luxel_lang::Budgets;
 use luxel_lang::editor::Document;
 use serde_json::{Value, json};
 
@@ -19,6 +21,11 @@ const UNNECESSARY: [&str; 2] = ["E0114", "E0420"];
 const DEPRECATED: &str = "E0410";
 
 impl Judged {
+    /// Everything that is wrong.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Told> {
+        self.told.iter().chain(self.built.iter().flatten())
+    }
+
     /// Moves what stands behind an edit of a file, and drops what it touches.
     pub(super) fn edit(&mut self, path: &Path, range: &Range<usize>, length: usize) {
         let moved = |(file, bytes): &mut Bytes| {
@@ -30,11 +37,13 @@ impl Judged {
             *bytes = shift(bytes.start)..shift(bytes.end);
             is_behind
         };
-        self.told.retain_mut(|told| {
+        let kept = |told: &mut Told| {
             told.labels.retain_mut(|(place, _)| moved(place));
-            told.fixes.retain_mut(|(place, _)| moved(place));
+            told.fixes.retain_mut(|mend| moved(&mut mend.place));
             !told.is_placed || moved(&mut told.place)
-        });
+        };
+        self.told.retain_mut(kept);
+        self.built.iter_mut().for_each(|built| built.retain_mut(kept));
         let values = std::mem::take(&mut self.values);
         let kept = values.into_iter().filter_map(|((file, at), value)| {
             let mut place = (file, at..at);
@@ -58,7 +67,7 @@ impl Server {
             .into_iter()
             .map(|found| Told::new(found, path, &|_| path.to_owned()))
             .collect();
-        let others = self.judged.values().flat_map(|judged| &judged.told);
+        let others = self.judged.values().flat_map(Judged::all);
         for told in others.filter(|told| told.place.0 == path) {
             if !out.iter().any(|own| own.code == told.code && own.place == told.place) {
                 out.push(told.clone());
@@ -95,10 +104,10 @@ impl Server {
         if !told.is_empty() {
             self.published.insert(path.to_owned());
         }
-        let Some(document) = self.any_document(path) else {
-            let params = json!({ "uri": self.uri(path), "diagnostics": [] });
-            return notify("textDocument/publishDiagnostics", &params);
-        };
+        // Of a file that is no text, everything is shown at its start.
+        let document = self
+            .any_document(path)
+            .unwrap_or_else(|| Arc::new(Document::new("", &Budgets::default())));
         let shown: Vec<Value> = told.iter().map(|told| self.shown(told, &document)).collect();
         let mut params = json!({ "uri": self.uri(path), "diagnostics": shown });
         if let Some(open) = open {
@@ -112,7 +121,7 @@ impl Server {
     /// # Errors
     /// If nothing can be told any more.
     pub(super) fn publish_all(&mut self) -> Result<(), Failure> {
-        let told = self.judged.values().flat_map(|judged| &judged.told);
+        let told = self.judged.values().flat_map(Judged::all);
         let mut files: BTreeSet<PathBuf> = told.map(|told| told.place.0.clone()).collect();
         files.extend(self.files.open.keys().cloned());
         files.extend(self.published.iter().cloned());

@@ -13,8 +13,11 @@ use super::files::{Open, Opened};
 use super::judge::{Job, Judge, Judged, Verdict};
 use super::queue::Queue;
 use super::shape::LEGEND;
-use crate::exit::Failure;
+use crate::exit::{Failure, blaming};
 use crate::libraries::Plugins;
+
+/// Open files, and the files that each of them reads.
+type Reads = BTreeMap<PathBuf, Vec<PathBuf>>;
 
 /// The state of a session.
 pub(super) struct Server {
@@ -25,6 +28,8 @@ pub(super) struct Server {
     judge: Judge,
     /// Counts the edits.
     serial: u64,
+    /// Scenes of which nothing newer has come yet, and whether to read their meshes and textures.
+    pending: BTreeMap<PathBuf, bool>,
     /// What came of the scenes that are open.
     pub(super) judged: BTreeMap<PathBuf, Judged>,
     /// Files that something was told of.
@@ -49,6 +54,7 @@ impl Server {
             encoding: Encoding::Utf16,
             client: Client::default(),
             serial: 0,
+            pending: BTreeMap::new(),
             judged: BTreeMap::new(),
             published: BTreeSet::new(),
         }
@@ -155,6 +161,7 @@ impl Server {
         let encoding = self.encoding;
         let Some(open) = self.files.open.get_mut(path) else { return Ok(()) };
         let document = Arc::make_mut(&mut open.document);
+        let mut broken = Ok(());
         for change in params["contentChanges"].as_array().into_iter().flatten() {
             let Some(text) = change["text"].as_str() else { continue };
             let range = match change.get("range").filter(|range| !range.is_null()) {
@@ -165,37 +172,42 @@ impl Server {
             for judged in self.judged.values_mut() {
                 judged.edit(path, &range, text.len());
             }
-            document.edit(range, text);
+            let edited = blaming("", || document.edit(range, text));
+            if let Err(failure) = edited {
+                *document = Document::new(document.text(), &Budgets::default());
+                broken = Err(failure);
+            }
         }
         if let Some(version) = params["textDocument"]["version"].as_i64() {
             open.version = version;
         }
-        self.changed(path, false)
+        self.changed(path, false)?;
+        broken
     }
 
     /// Tells what is wrong with a file at once, and has the scenes that read it evaluated.
     fn changed(&mut self, path: &Path, whole: bool) -> Result<(), Failure> {
         self.publish(path)?;
         self.serial += 1;
-        let roots = self.roots_of(path);
+        let reads = self.reads();
+        let scenes = roots(&reads);
+        self.pending.retain(|root, _| scenes.contains(root));
+        for root in roots_of(&reads, path) {
+            *self.pending.entry(root).or_default() |= whole;
+        }
+        // What no other file reads any more is a scene of its own.
+        for root in scenes.into_iter().filter(|root| !self.judged.contains_key(root)) {
+            self.pending.insert(root, true);
+        }
         let texts = Arc::new(self.files.texts());
-        self.judge.put(Job { serial: self.serial, roots, texts, whole });
+        self.judge.put(Job { serial: self.serial, roots: self.pending.clone(), texts });
         Ok(())
     }
 
-    /// The open files to evaluate when one has changed: those that read it and that no other reads.
-    fn roots_of(&self, path: &Path) -> Vec<PathBuf> {
-        let open = || self.files.open.keys();
-        let reads: BTreeMap<&PathBuf, Vec<PathBuf>> =
-            open().map(|root| (root, reached(&self.files, root))).collect();
-        let is_read = |file: &PathBuf| {
-            reads.iter().any(|(root, files)| *root != file && files.contains(file))
-        };
-        let concerned = |root: &&PathBuf| reads[root].iter().any(|file| file == path);
-        let roots: Vec<PathBuf> =
-            open().filter(concerned).filter(|r| !is_read(r)).cloned().collect();
-        // Files that include one another in a circle: one of them tells it.
-        if roots.is_empty() { open().filter(concerned).take(1).cloned().collect() } else { roots }
+    /// The open files, and what each of them reads.
+    fn reads(&self) -> Reads {
+        let open = self.files.open.keys().cloned();
+        open.map(|root| (root.clone(), reached(&self.files, &root))).collect()
     }
 
     /// Takes what came of an evaluation, unless it is of older texts.
@@ -208,12 +220,15 @@ impl Server {
         }
         self.begin();
         for judged in verdict.roots {
-            let judged = self.without_own(judged);
+            let mut judged = self.without_own(judged);
+            // What is wrong with meshes and textures holds until they are read again.
+            let before = self.judged.remove(&judged.root).and_then(|before| before.built);
+            judged.built = judged.built.or(before);
+            self.pending.remove(&judged.root);
             self.judged.insert(judged.root.clone(), judged);
         }
         // A file that another one reads now is no scene of its own any more.
-        let roots: BTreeSet<PathBuf> =
-            self.files.open.keys().flat_map(|path| self.roots_of(path)).collect();
+        let roots = roots(&self.reads());
         self.judged.retain(|root, _| roots.contains(root));
         self.publish_all()
     }
@@ -229,4 +244,22 @@ impl Server {
     pub(super) fn any_document(&self, path: &Path) -> Option<Arc<Document>> {
         self.files.document(path)
     }
+}
+
+/// The files to evaluate when one has changed: those that read it and that no other reads.
+fn roots_of(reads: &Reads, path: &Path) -> Vec<PathBuf> {
+    let is_read =
+        |file: &PathBuf| reads.iter().any(|(root, files)| root != file && files.contains(file));
+    let concerned = || {
+        let readers = reads.iter().filter(|(_, files)| files.iter().any(|file| file == path));
+        readers.map(|(root, _)| root)
+    };
+    let roots: Vec<PathBuf> = concerned().filter(|root| !is_read(root)).cloned().collect();
+    // Files that include one another in a circle: one of them tells it.
+    if roots.is_empty() { concerned().take(1).cloned().collect() } else { roots }
+}
+
+/// Every file that is evaluated.
+fn roots(reads: &Reads) -> BTreeSet<PathBuf> {
+    reads.keys().flat_map(|path| roots_of(reads, path)).collect()
 }

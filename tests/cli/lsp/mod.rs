@@ -65,6 +65,45 @@ fn mistakes_of_included_files_are_told_of_them_and_open_ones_are_read() {
 }
 
 #[test]
+fn a_file_that_no_other_reads_any_more_is_a_scene_of_its_own() {
+    let folder = Folder::new("lsp-own");
+    let (mut client, main, lib) =
+        (Client::new(&folder), uri(&folder, "a.scene"), uri(&folder, "lib.scene"));
+    client.open(&main, &format!("{SCENE}include \"lib.scene\"\n"));
+    client.open(&lib, "scene 1\nshape sphere { radius = 5 }\n");
+    client.until(&lib, &["E0201"]);
+    client.edit(&main, 2, json!({ "start": at(9, 0), "end": at(10, 0) }), "");
+    assert_eq!(codes(&client.told(&lib)), ["E0201"]);
+}
+
+#[test]
+fn a_missing_picture_is_told_until_it_is_looked_for_again() {
+    let folder = Folder::new("lsp-whole");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    let image = "let t = texture image { file = \"none.png\" }\n";
+    let used = "shape sphere { radius = 1 m, material = material diffuse { reflectance = t } }\n";
+    client.open(&uri, &format!("{SCENE}{image}{used}"));
+    let told = client.told(&uri);
+    let missing = codes(&told);
+    assert_eq!(missing.len(), 1, "{told}");
+    client.edit(&uri, 2, span(0, 7, 7), "\nshape sphere { radius = 5 }\n");
+    let both = [vec!["E0201"], missing].concat();
+    let told = client.until(&uri, &both);
+    assert_eq!(told["diagnostics"][1]["range"]["start"]["line"], 11);
+}
+
+#[test]
+fn a_file_that_is_no_text_is_told_of_at_its_start() {
+    let folder = Folder::new("lsp-bytes");
+    std::fs::write(folder.path("lib.scene"), b"scene 1\n\xff\n").unwrap();
+    let (mut client, main, lib) =
+        (Client::new(&folder), uri(&folder, "a.scene"), uri(&folder, "lib.scene"));
+    client.open(&main, &format!("{SCENE}include \"lib.scene\"\n"));
+    let told = client.until(&lib, &["E0003"]);
+    assert_eq!(told["diagnostics"][0]["range"], span(0, 0, 0));
+}
+
+#[test]
 fn services_answer_where_they_are_asked() {
     let folder = Folder::new("lsp-services");
     let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
@@ -121,6 +160,17 @@ fn a_mend_is_offered_and_a_colour_is_shown() {
         found[0]["edit"]["changes"][&uri],
         json!([{ "range": span(2, 8, 11), "newText": "gold" }])
     );
+    assert_eq!(found[0]["isPreferred"], true);
+    // Another is the only one too, but a guess.
+    let guessed = client::uri(&folder, "b.scene");
+    client.open(&guessed, "scene\n");
+    let asked =
+        json!({ "textDocument": { "uri": guessed }, "range": span(0, 0, 0), "context": {} });
+    let found = client.ask("textDocument/codeAction", asked).unwrap();
+    assert_eq!(
+        (&found[0]["title"], &found[0]["isPreferred"]),
+        (&json!("insert `1`"), &json!(false))
+    );
     let document = json!({ "textDocument": { "uri": uri } });
     let colours = client.ask("textDocument/documentColor", document).unwrap();
     assert_eq!(
@@ -134,13 +184,14 @@ fn a_mend_is_offered_and_a_colour_is_shown() {
 
 #[test]
 fn files_are_offered_where_a_path_is_written() {
-    let folder = Folder::new("lsp-paths").with("sub/lib.scene", "").with("sub/x.txt", "");
+    let folder = Folder::new("lsp-paths").with("sub/l$0.scene", "").with("sub/x.txt", "");
     let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
     client.open(&uri, "scene 1\ninclude \"sub/l\"\n");
     let list = client.ask("textDocument/completion", params(&uri, at(1, 14))).unwrap();
     let items = list["items"].as_array().unwrap();
-    assert_eq!((items.len(), &items[0]["label"]), (1, &json!("lib.scene")));
-    assert_eq!(items[0]["textEdit"]["range"], span(1, 13, 14));
+    assert_eq!((items.len(), &items[0]["label"]), (1, &json!("l$0.scene")));
+    let edit = json!({ "range": span(1, 13, 14), "newText": "l$0.scene" });
+    assert_eq!(items[0]["textEdit"], edit);
 }
 
 #[test]

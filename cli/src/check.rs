@@ -8,6 +8,7 @@ use luxel_core::diag::Diagnostic;
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure};
+use crate::interrupt::Guard;
 use crate::load::{self, Course};
 use crate::report::{self, Form, Stream};
 
@@ -48,10 +49,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let form = if args.json { Form::Json } else { Form::Text };
     let stream = if args.json { Stream::Out } else { Stream::Error };
     plugins.notes.tell(form, stream)?;
+    let guard = args.fix.then(Guard::of_files).transpose()?;
     let mut exit = Exit::Fine;
     for file in &args.files {
-        if args.fix {
-            fix::mended(file, &args.load, &plugins, form)?;
+        if let Some(guard) = &guard {
+            fix::mended(file, &args.load, &plugins, form, guard)?;
         }
         let loaded = load::load(file, &args.load, None, &plugins, &Course::default())?;
         report::diagnostics(&loaded.diagnostics, &loaded.sources, form, stream)?;

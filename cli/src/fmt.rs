@@ -1,7 +1,6 @@
 //! `luxel fmt`: scenes written as everyone writes them.
 
-use std::fs;
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use luxel_core::diag::{Diagnostic, Sources, Span};
@@ -12,7 +11,7 @@ use serde_json::json;
 use crate::exit::{Exit, Failure};
 use crate::files::read_limited;
 use crate::interrupt::Guard;
-use crate::output::{Draft, unwritable};
+use crate::output::{replace, unwritable};
 use crate::report::{self, Form, Stream};
 
 /// Lay scenes out: the same tree, every comment, one way to write them
@@ -83,7 +82,7 @@ fn one(file: &Path, args: &Args, guard: &Guard) -> Result<Exit, Failure> {
         report::out(&after)?;
     } else if changes {
         let _whole = guard.saving();
-        write(file, &after).map_err(|error| unwritable(file, &error))?;
+        replace(file, &after).map_err(|error| unwritable(file, &error))?;
     }
     Ok(Exit::Fine)
 }
@@ -133,12 +132,4 @@ fn read(file: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let read = io::stdin().lock().take(limit + 1).read_to_end(&mut bytes);
     read.map_err(|error| FileError::Unreadable(error.to_string()))?;
     if bytes.len() as u64 > limit { Err(FileError::TooLarge(limit)) } else { Ok(bytes) }
-}
-
-/// Puts a text in the place of a file: all of it or nothing, and with the file's permissions.
-fn write(file: &Path, text: &str) -> io::Result<()> {
-    let mut draft = Draft::begin(file)?;
-    draft.file.set_permissions(fs::metadata(file)?.permissions())?;
-    draft.file.write_all(text.as_bytes())?;
-    draft.finish()
 }

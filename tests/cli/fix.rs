@@ -52,6 +52,15 @@ fn what_is_guessed_set_or_outside_is_left_and_told() {
 }
 
 #[test]
+fn several_scenes_are_mended_in_one_run() {
+    let wrong = SCENE.replace("radius = 1 m", "radius: 1 m");
+    let folder = Folder::new("fix-several").with("a.scene", &wrong).with("b.scene", &wrong);
+    let done = folder.luxel(&["check", "a.scene", "b.scene", "--fix"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    assert_eq!([text(&folder, "a.scene"), text(&folder, "b.scene")], [SCENE, SCENE]);
+}
+
+#[test]
 fn what_is_no_scene_is_never_changed() {
     let mesh = "# a mesh\nv 0.1 0.2 0.3\nv 1 2 3\n";
     let scene = format!("{SCENE}include \"m.obj\"\n");

@@ -22,15 +22,16 @@ const ROUNDS: usize = 16;
 /// Mends a scene and the files that it includes, and tells what was changed.
 ///
 /// # Errors
-/// A file that cannot be written; as `load::read`.
+/// A file that cannot be written; an interrupt; as `load::read`.
 pub(super) fn mended(
     scene: &Path,
     args: &LoadArgs,
     plugins: &Plugins,
     form: Form,
+    guard: &Guard,
 ) -> Result<(), Failure> {
-    let guard = Guard::of_files()?;
     for _ in 0..ROUNDS {
+        guard.next_file()?;
         let text = load::read(scene, args, None, plugins, &Course::default())?;
         let Text { diagnostics, sources, files, .. } = &text;
         let may =

@@ -95,7 +95,7 @@ fn a_missing_picture_is_told_until_it_is_looked_for_again() {
 #[test]
 fn a_file_that_is_no_text_is_told_of_at_its_start() {
     let folder = Folder::new("lsp-bytes");
-    std::fs::write(folder.path("lib.scene"), b"scene 1\n\xff\n").unwrap();
+    folder.write_bytes("lib.scene", b"scene 1\n\xff\n");
     let (mut client, main, lib) =
         (Client::new(&folder), uri(&folder, "a.scene"), uri(&folder, "lib.scene"));
     client.open(&main, &format!("{SCENE}include \"lib.scene\"\n"));

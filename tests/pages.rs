@@ -1,47 +1,14 @@
 //! The pages of the catalogue: each example makes its mistake, and each mended one makes none.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
 use luxel_core::diag::Diagnostic;
-use luxel_core::files::{FileError, Files, MemoryFiles, normalise};
+use luxel_core::files::MemoryFiles;
 use luxel_core::stage;
 use luxel_lang::{Budgets, CATALOGUE, Settings, Setup, load, page, setup};
 
+use crate::fenced::{Fenced, SMALL};
 use crate::load::registry;
-
-/// Small enough that the examples of limits pass them.
-const SMALL: Budgets = Budgets {
-    file_bytes: 400,
-    total_bytes: 1000,
-    include_depth: 1,
-    includes: 4,
-    brackets: 4,
-    operators: 8,
-    steps: 1000,
-    list: 1000,
-    nodes: 10,
-    instances: 100,
-    string: 64,
-    pieces: 64,
-    value_bytes: 4000,
-    nesting: 16,
-    diagnostics: 3,
-};
-
-/// Files in memory, of which those above the scene's folder may not be read.
-struct Fenced(MemoryFiles);
-
-impl Files for Fenced {
-    fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
-        let outside = normalise(path).starts_with("..");
-        if outside { Err(FileError::Outside) } else { self.0.read(path) }
-    }
-
-    fn canonical(&self, path: &Path) -> PathBuf {
-        normalise(path)
-    }
-}
 
 /// The bytes of a text in which `\\xE9` and `\\0` stand for single ones.
 fn bytes(text: &str) -> Vec<u8> {

@@ -27,6 +27,9 @@ mod extremes;
 #[cfg(test)]
 mod features;
 #[cfg(test)]
+#[path = "../lang/tests/language/fenced.rs"]
+mod fenced;
+#[cfg(test)]
 #[path = "../cli/src/verify/generated.rs"]
 mod generated;
 #[cfg(test)]

@@ -1,37 +1,18 @@
 //! A case: a snippet with files beside it, how it is loaded, and what must be told of it.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
 use luxel_core::diag::{Diagnostic, Severity, Sources};
-use luxel_core::files::{FileError, Files, MemoryFiles, normalise};
-use luxel_lang::{Budgets, Loaded, Settings, load};
+use luxel_core::files::MemoryFiles;
+use luxel_lang::{Loaded, Settings, load};
 
+use crate::fenced::{Fenced, SMALL};
 use crate::registry::registry;
 
 /// What `CAMERA` in a case stands for.
 const CAMERA: &str =
     "camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)) }";
-
-/// The budgets of a case that says `// small`.
-pub(crate) const SMALL: Budgets = Budgets {
-    file_bytes: 400,
-    total_bytes: 1000,
-    include_depth: 1,
-    includes: 4,
-    brackets: 4,
-    operators: 8,
-    steps: 1000,
-    list: 100,
-    nodes: 10,
-    instances: 100,
-    string: 64,
-    pieces: 64,
-    value_bytes: 4000,
-    nesting: 16,
-    diagnostics: 3,
-};
 
 /// Every case: its name and its text.
 pub(crate) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
@@ -56,20 +37,6 @@ pub(crate) struct Case {
     pub(crate) settings: Settings,
     /// Head (`error: E0402 3:5-3:10`) and fragments.
     pub(crate) expected: Vec<(String, &'static str)>,
-}
-
-/// Files in memory, of which those above the scene's folder may not be read.
-struct Fenced(MemoryFiles);
-
-impl Files for Fenced {
-    fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
-        let outside = normalise(path).starts_with("..");
-        if outside { Err(FileError::Outside) } else { self.0.read(path) }
-    }
-
-    fn canonical(&self, path: &Path) -> PathBuf {
-        normalise(path)
-    }
 }
 
 impl Case {

@@ -3,6 +3,7 @@
 
 mod case;
 mod cases;
+mod fenced;
 mod limits;
 mod plant;
 mod registry;

@@ -1,17 +1,23 @@
 //! A client that reads every byte that the server writes, and forgives none.
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::time::Duration;
 
 use serde_json::{Value, json};
 
 use crate::cli::program::Folder;
 
+/// A server that says nothing for so long will never say what is waited for.
+const PATIENCE: Duration = Duration::from_secs(60);
+
 /// A server and what was heard of it.
 pub(super) struct Client {
     child: Child,
     input: Option<ChildStdin>,
-    output: BufReader<ChildStdout>,
+    /// What it writes, message by message, or what is wrong with how it writes.
+    output: Receiver<Result<Vec<u8>, String>>,
     next: i64,
     /// Every message in order, for the test of a whole session.
     pub(super) heard: Vec<Value>,
@@ -22,7 +28,7 @@ impl Client {
     pub(super) fn raw(folder: &Folder) -> Self {
         let mut child = folder.talk(&["lsp"]);
         let input = child.stdin.take();
-        let output = BufReader::new(child.stdout.take().unwrap());
+        let output = listen(BufReader::new(child.stdout.take().unwrap()));
         Self { child, input, output, next: 0, heard: vec![] }
     }
 
@@ -81,17 +87,11 @@ impl Client {
 
     /// The next message, which must be one to the letter; `None` when the server has gone.
     pub(super) fn hear(&mut self) -> Option<Value> {
-        let mut head = String::new();
-        if self.output.read_line(&mut head).unwrap() == 0 {
-            return None;
-        }
-        let length = head.strip_prefix("Content-Length: ").expect("the header");
-        let length: usize = length.strip_suffix("\r\n").unwrap().parse().unwrap();
-        let mut empty = String::new();
-        self.output.read_line(&mut empty).unwrap();
-        assert_eq!(empty, "\r\n", "a blank line ends the header");
-        let mut bytes = vec![0; length];
-        self.output.read_exact(&mut bytes).unwrap();
+        let bytes = match self.output.recv_timeout(PATIENCE) {
+            Ok(message) => message.unwrap_or_else(|wrong| panic!("{wrong}")),
+            Err(RecvTimeoutError::Disconnected) => return None,
+            Err(RecvTimeoutError::Timeout) => panic!("silence after {:?}", self.heard.last()),
+        };
         let message: Value = serde_json::from_slice(&bytes).unwrap();
         assert_eq!(message["jsonrpc"], "2.0", "{message}");
         let known = ["jsonrpc", "id", "method", "params", "result", "error"];
@@ -165,6 +165,41 @@ impl Drop for Client {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Reads messages as they come, in a thread of its own.
+fn listen(mut output: BufReader<ChildStdout>) -> Receiver<Result<Vec<u8>, String>> {
+    let (sender, receiver) = mpsc::channel();
+    std::thread::spawn(move || {
+        while let Some(message) = framed(&mut output).transpose() {
+            let is_last = message.is_err();
+            if sender.send(message).is_err() || is_last {
+                return;
+            }
+        }
+    });
+    receiver
+}
+
+/// The bytes of one message behind its header; none at the end.
+fn framed(output: &mut impl BufRead) -> Result<Option<Vec<u8>>, String> {
+    let mut line = || {
+        let mut line = String::new();
+        output.read_line(&mut line).map(|_| line).map_err(|error| error.to_string())
+    };
+    let head = line()?;
+    if head.is_empty() {
+        return Ok(None);
+    }
+    let length = head.strip_prefix("Content-Length: ").and_then(|it| it.strip_suffix("\r\n"));
+    let length = length.and_then(|it| it.parse().ok()).ok_or(format!("the header {head:?}"))?;
+    let empty = line()?;
+    if empty != "\r\n" {
+        return Err(format!("{empty:?} instead of the blank line that ends the header"));
+    }
+    let mut bytes = vec![0; length];
+    output.read_exact(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(Some(bytes))
 }
 
 /// The result of a response, or code and message of its error.

@@ -32,17 +32,22 @@ pub(crate) fn each_expr<'s>(stmt: &'s Stmt, each: &mut dyn FnMut(&'s Expr)) {
                 block(inner, each);
             }
         }
-        StmtNode::Include { with, .. } => with.iter().for_each(|field| expr(&field.value, each)),
+        StmtNode::Include { with: fields, .. } | StmtNode::Units(fields) => {
+            for field in fields {
+                expr(&field.value, each);
+            }
+        }
         StmtNode::Place { body, .. } => body.iter().for_each(|inner| block(inner, each)),
         StmtNode::Assert { cond, .. } => expr(cond, each),
-        StmtNode::Expect(said) => said.values.iter().for_each(|value| expr(value, each)),
+        StmtNode::Expect(said) => {
+            let at = said.at.iter().flat_map(|(_, args)| args).map(|arg| &arg.value);
+            let given = said.given.iter().map(|field| &field.value);
+            at.chain(&said.values).chain(given).for_each(|value| expr(value, each));
+        }
         StmtNode::Field(field) => expr(&field.value, each),
         StmtNode::Object(object) => block(&object.body, each),
         StmtNode::Call(call) => expr(call, each),
-        StmtNode::Import { .. }
-        | StmtNode::Use { .. }
-        | StmtNode::Units(_)
-        | StmtNode::Broken { .. } => {}
+        StmtNode::Import { .. } | StmtNode::Use { .. } | StmtNode::Broken { .. } => {}
     }
 }
 

@@ -67,6 +67,15 @@ fn colours_of_numbers_are_found_and_written() {
 }
 
 #[test]
+fn colours_stand_wherever_values_do() {
+    let text = "scene 1\nexpect mean = 1 where { tint = rgb.srgb(0, 1, 0) }\n";
+    let document = Document::new(text, &Budgets::default());
+    let found: Vec<_> = swatches(&document, &never).iter().map(|it| it.srgb).collect();
+    assert_eq!(found.len(), 1);
+    assert!((found[0][1] - 1.0).abs() < 1e-6, "{found:?}");
+}
+
+#[test]
 fn tokens_are_what_they_mean() {
     let document = Document::new(TEXT, &Budgets::default());
     let found = coloured(&document, &(0..TEXT.len()), &never);

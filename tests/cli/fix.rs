@@ -61,6 +61,15 @@ fn several_scenes_are_mended_in_one_run() {
 }
 
 #[test]
+fn names_are_mended_beside_what_cannot_be_read() {
+    let wrong = format!("{}let a = 5 +\n", SCENE.replace("radius", "radis"));
+    let folder = Folder::new("fix-beside").with("a.scene", &wrong);
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert!(done.code == 1 && done.err.contains("E0015"), "{done:?}");
+    assert_eq!(text(&folder, "a.scene"), wrong.replace("radis", "radius"));
+}
+
+#[test]
 fn what_is_no_scene_is_never_changed() {
     let mesh = "# a mesh\nv 0.1 0.2 0.3\nv 1 2 3\n";
     let scene = format!("{SCENE}include \"m.obj\"\n");

@@ -64,8 +64,11 @@ fn is_scene(diagnostics: &[Diagnostic], id: SourceId) -> bool {
 }
 
 /// Whether mends of what is written wrongly leave less of it, or the same mistake further on: of several
-/// missing commas the first is told.
+/// missing commas the first is told. Mends of names and values are not asked for that.
 fn is_better(mended: &Mended, sources: &Sources) -> bool {
+    if !mended.changes.iter().any(|(code, _)| code.starts_with("E00")) {
+        return true;
+    }
     let faults = |text: &str| -> Vec<(&'static str, usize)> {
         let (_, found) = luxel_lang::parse_only(text, &Budgets::default());
         let errors = found.iter().filter(|found| found.is_error());

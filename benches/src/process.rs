@@ -64,11 +64,9 @@ impl Luxel {
 
 /// Runs a program that succeeds; `words` begins with it.
 fn timed(words: &[PathBuf]) -> Result<Took, String> {
-    let (took, succeeded, told) = ran(words)?;
-    if !succeeded {
-        return Err(format!("{} failed: {told}", words[0].display()));
-    }
-    Ok(took)
+    told(words)
+        .map(|(took, _)| took)
+        .map_err(|told| format!("{} failed: {told}", words[0].display()))
 }
 
 /// Runs a program: what it took, whether it succeeded, and what it told.
@@ -88,6 +86,15 @@ fn ran(words: &[PathBuf]) -> Result<(Took, bool, String), String> {
     let (kilobytes, cpu) = (numbers.next(), numbers.next().unwrap_or(f64::NAN));
     let took = Took { seconds, cpu, megabytes: kilobytes.map(|k| k / 1024.0) };
     Ok((took, output.status.success(), told))
+}
+
+/// Runs a program that succeeds; what it took and what it told.
+///
+/// # Errors
+/// The program did not start or failed; its words.
+pub(crate) fn told(words: &[PathBuf]) -> Result<(Took, String), String> {
+    let (took, succeeded, told) = ran(words)?;
+    if succeeded { Ok((took, told)) } else { Err(told) }
 }
 
 /// Whether this Python can import Mitsuba.

@@ -5,6 +5,7 @@
 //! reads files or knows a plugin by name.
 
 mod color;
+mod compact;
 mod conform;
 mod diff;
 mod expect;

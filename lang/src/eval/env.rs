@@ -1,7 +1,7 @@
 //! Names in sight while a file is evaluated.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -35,7 +35,43 @@ pub(crate) struct Override {
 #[derive(Debug, Default)]
 struct Frame {
     parent: Option<Env>,
-    names: RefCell<BTreeMap<Arc<str>, (usize, Value)>>,
+    names: RefCell<Names>,
+}
+
+/// From how many names on they are found by a table.
+const MANY: usize = 8;
+
+/// Names and their values, in the order of their definition.
+#[derive(Debug, Default)]
+struct Names {
+    list: Vec<(Arc<str>, Value)>,
+    /// Where in the list each stands, if they are many.
+    places: HashMap<Arc<str>, usize>,
+}
+
+impl Names {
+    /// Where in the list a name stands.
+    fn place(&self, name: &str) -> Option<usize> {
+        if self.list.len() < MANY {
+            return self.list.iter().position(|(known, _)| **known == *name);
+        }
+        self.places.get(name).copied()
+    }
+
+    /// Puts in a name, unless it is there.
+    fn define(&mut self, name: &Arc<str>, value: Value) {
+        if self.place(name).is_some() {
+            return;
+        }
+        self.list.push((name.clone(), value));
+        let added = match self.list.len() {
+            MANY => 0..MANY,
+            n if n > MANY => n - 1..n,
+            _ => return,
+        };
+        let names = added.map(|i| (self.list[i].0.clone(), i));
+        self.places.extend(names);
+    }
 }
 
 /// The names that are in sight at one place. A function keeps the ones that stood before it, so that
@@ -62,26 +98,23 @@ impl Env {
 
     /// The names that are in sight now, and none that come later.
     pub(crate) fn frozen(&self) -> Self {
-        let visible = self.frame.names.borrow().len();
+        let visible = self.frame.names.borrow().list.len();
         Self { visible, ..self.clone() }
     }
 
     /// Defines a name in the innermost block. The first definition stays: a second one is a mistake
     /// that was told.
     pub(crate) fn define(&self, name: &Arc<str>, value: Value) {
-        let mut names = self.frame.names.borrow_mut();
-        let index = names.len();
-        names.entry(name.clone()).or_insert((index, value));
+        self.frame.names.borrow_mut().define(name, value);
     }
 
     /// The value of a name.
     pub(crate) fn get(&self, name: &str) -> Option<Value> {
         let mut env = self;
         loop {
-            if let Some((index, value)) = env.frame.names.borrow().get(name)
-                && *index < env.visible
-            {
-                return Some(value.clone());
+            let names = env.frame.names.borrow();
+            if let Some(place) = names.place(name).filter(|place| *place < env.visible) {
+                return Some(names.list[place].1.clone());
             }
             env = env.frame.parent.as_ref()?;
         }
@@ -90,6 +123,6 @@ impl Env {
     /// Every name of the innermost block.
     pub(crate) fn names(&self) -> BTreeMap<Arc<str>, Value> {
         let names = self.frame.names.borrow();
-        names.iter().map(|(name, (_, value))| (name.clone(), value.clone())).collect()
+        names.list.iter().cloned().collect()
     }
 }

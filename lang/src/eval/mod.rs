@@ -29,6 +29,7 @@ mod value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_core::files::Files;
@@ -71,6 +72,7 @@ pub(crate) fn load(
         chain: vec![],
         loops: vec![],
         labels: Labels::default(),
+        classes: BTreeMap::new(),
         slots: BTreeMap::new(),
         has_asset: false,
         damaged: false,
@@ -112,6 +114,8 @@ struct Evaluator<'a> {
     /// The loops that are running.
     loops: Vec<Span>,
     labels: Labels,
+    /// The names of the classes that objects have.
+    classes: BTreeMap<&'static str, Arc<str>>,
     /// Where the camera, film, … were given.
     slots: BTreeMap<luxel_sdk::kind::Kind, Span>,
     has_asset: bool,

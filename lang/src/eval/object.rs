@@ -52,14 +52,16 @@ impl Evaluator<'_> {
             self.tell(found.help(format!("known are {}", known.join(", "))));
             return None;
         };
-        let names: Vec<&'static str> = self.registry.of_kind(kind).map(|e| e.class.name).collect();
+        let names = || self.registry.of_kind(kind).map(|e| e.class.name).collect::<Vec<_>>();
         let Some(class) = &object.kind else {
             let message = format!("which {kind}? its name is missing after `{kind}`");
             let found = Diagnostic::error("E0401", category.span, message);
-            self.tell(found.help(format!("known are {}", names.join(", "))));
+            let names = names().join(", ");
+            self.tell(found.help(format!("known are {names}")));
             return None;
         };
         if self.registry.class(kind, &class.text).is_none() {
+            let names = names();
             self.no_class(kind, class, &names);
             return None;
         }
@@ -166,7 +168,7 @@ impl Evaluator<'_> {
         };
         let class = *class;
         let before = self.sink.errors();
-        let (mut params, mut overrides) = (vec![], vec![]);
+        let (mut params, mut overrides) = (Vec::with_capacity(fields.len()), vec![]);
         let mut pose = Pose::IDENTITY;
         let (mut poisoned, mut depth) = (false, 0);
         let mut meant = vec![];
@@ -208,17 +210,29 @@ impl Evaluator<'_> {
         }
         let node = Node {
             kind: class.kind,
-            class: Arc::from(class.name),
+            class: self.shared(class.name),
             label: head.label.as_ref().map(|label| label.text.clone()),
             params,
             overrides,
             span: head.span,
             hash: [0; 32],
         };
-        let what = What::Node(self.scene.add(node), class.kind);
+        let what = What::Node(self.add(node), class.kind);
         let head = head.clone();
         let depth = depth + 1;
         Value::Object(Rc::new(ObjectValue { what, fields, pose, head, depth, instances: 1 }))
+    }
+
+    /// Keeps a node; its hash is computed when the scene is complete.
+    fn add(&mut self, node: Node) -> NodeId {
+        let id = NodeId(u32::try_from(self.scene.nodes.len()).unwrap_or(u32::MAX));
+        self.scene.nodes.push(node);
+        id
+    }
+
+    /// A class's name, one for all objects of it.
+    fn shared(&mut self, name: &'static str) -> Arc<str> {
+        self.classes.entry(name).or_insert_with(|| Arc::from(name)).clone()
     }
 
     /// `materials = { name = material, … }`: what takes the place of an asset's own.

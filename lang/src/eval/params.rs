@@ -222,6 +222,9 @@ impl Evaluator<'_> {
     /// Changes what `set` names; each object is checked against its schema again.
     pub(super) fn apply_sets(&mut self) {
         for set in std::mem::take(&mut self.labels.sets) {
+            if !self.tick(1, set.field.span) {
+                return;
+            }
             let Some(objects) = self.labels.objects.get(&set.label.text).cloned() else {
                 if !self.damaged {
                     self.no_label(&set.label);
@@ -249,15 +252,18 @@ impl Evaluator<'_> {
             return None;
         }
         let fields = merged(&object.fields, vec![set.field.clone()]);
-        let Value::Object(changed) = self.build(&object.head, fields) else { return None };
+        // It takes the place of one that was counted.
+        self.placements = self.placements.saturating_sub(1);
+        let changed = self.build(&object.head, fields);
+        let Value::Object(changed) = changed else { return None };
         let What::Node(new, kind) = changed.what else { return None };
         if self.holds(new, old) {
             let message = format!("\"{}\" would stand in itself", set.label.text);
             self.poison("E0109", set.field.span, message);
             return None;
         }
-        // The new node takes the place of the old one: they swap numbers.
-        self.scene.nodes.swap(old.0 as usize, new.0 as usize);
+        // The new node, the last one, takes the place of the old one, which nothing needs any more.
+        self.scene.nodes.swap_remove(old.0 as usize);
         let what = What::Node(old, kind);
         Some(Rc::new(ObjectValue { what, ..(*changed).clone() }))
     }

@@ -21,6 +21,8 @@ pub(crate) fn run() {
     let middle = objects[..objects.len() / 2].rfind("radius = r").unwrap_or_default();
     report("objects, in a number", &objects, middle - 10, "7");
     report("objects, a new name", &objects, middle + 10, "x");
+    let used = head.find("r = 50").unwrap_or_default() + 1;
+    report("objects, what all use", &objects, used, "x");
     report("objects, an open brace", &objects, middle - 10, "{");
     let few = "let a = 1\n".repeat(3);
     let table =

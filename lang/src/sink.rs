@@ -18,7 +18,7 @@ fn shorten(line: &mut String) {
 }
 
 /// Diagnostics of one load, in the order in which they were found.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Sink {
     list: Vec<Diagnostic>,
     seen: HashSet<(&'static str, Option<Span>)>,
@@ -64,12 +64,28 @@ impl Sink {
         Self::new(self.limit).until(self.stop.clone())
     }
 
+    /// Changes each diagnostic that is kept.
+    pub(crate) fn each(&mut self, change: &mut dyn FnMut(&mut Diagnostic)) {
+        self.list.iter_mut().for_each(change);
+    }
+
+    /// Counts errors that it would not keep.
+    pub(crate) fn count(&mut self, errors: usize) {
+        self.errors += errors;
+        self.dropped += errors;
+    }
+
     /// Takes in what was told of a part.
     pub(crate) fn absorb(&mut self, part: Self) {
         let kept = part.list.iter().filter(|found| found.is_error()).count();
         self.errors += part.errors - kept;
         self.dropped += part.dropped;
         part.list.into_iter().for_each(|found| self.push(found));
+    }
+
+    /// Whether nothing was told.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty() && self.dropped == 0
     }
 
     /// How many errors there were, dropped ones included.

@@ -10,7 +10,7 @@ use super::lines::Lines;
 use super::piece::{Piece, placed};
 use crate::budgets::Budgets;
 use crate::eval::builtins;
-use crate::eval::names::{Placed, moved, resolve_placed};
+use crate::eval::names::{Known, Placed, moved, resolve_placed};
 use crate::prescan::FAULTS;
 use crate::shares;
 use crate::sink::Sink;
@@ -31,8 +31,10 @@ pub struct Document {
     faults: Vec<Diagnostic>,
     /// Brackets that never close, of each part of the file the first.
     unclosed: Vec<usize>,
+    /// The names of all statements.
+    known: Known,
     /// What is wrong with names.
-    names: Arc<Vec<Diagnostic>>,
+    names: Arc<Sink>,
     /// What the file defines for all that stands after it, by name; found when it is asked for.
     tops: OnceLock<HashMap<Arc<str>, Range<usize>>>,
 }
@@ -50,7 +52,8 @@ impl Document {
             pieces: vec![],
             faults: vec![],
             unclosed: vec![],
-            names: Arc::default(),
+            known: Known::default(),
+            names: Arc::new(Sink::new(0)),
             tops: OnceLock::new(),
         };
         out.read_again();
@@ -86,7 +89,8 @@ impl Document {
             piece.read.diagnostics.iter().map(|found| placed(found.clone(), piece.start))
         });
         let around = self.head.iter().chain(&self.faults).cloned();
-        around.chain(own).chain(self.names.iter().cloned()).for_each(|found| sink.push(found));
+        around.chain(own).for_each(|found| sink.push(found));
+        sink.absorb(Sink::clone(&self.names));
         sink.finish()
     }
 
@@ -125,6 +129,7 @@ impl Document {
             None => Cuts::default(),
         };
         (self.faults, self.unclosed) = (found.faults, found.unclosed);
+        self.known = Known::default();
         let read = |cut: &Cut| {
             let range = &cut.range;
             Piece::new(&self.text, range.start, range.end, cut.faulty, &self.budgets)
@@ -236,18 +241,17 @@ impl Document {
 
     /// Looks at the names of all statements.
     fn resolve(&mut self) {
-        let mut out = Sink::new(self.budgets.diagnostics);
-        let look = |piece: &'_ Piece| !piece.is_alone;
-        let of = self.pieces.iter().filter(|piece| look(piece)).map(|piece| Placed {
-            start: piece.start,
-            text: &self.text[piece.start..piece.end],
-            stmts: &piece.read.stmts,
-            facts: &piece.read.facts,
-        });
-        resolve_placed(of, &mut |start, sink| {
-            sink.finish().into_iter().for_each(|found| out.push(placed(found, start)));
-        });
-        self.names = Arc::new(out.finish());
+        let mut sink = Sink::new(self.budgets.diagnostics);
+        self.pieces.iter_mut().for_each(|piece| piece.number(&mut self.known));
+        let at = |i: usize| {
+            let piece: &Piece = &self.pieces[i];
+            let (text, read) = (&self.text[piece.start..piece.end], &piece.read);
+            let (stmts, facts, numbered) = (&*read.stmts, &read.facts, &piece.numbered);
+            Placed { start: piece.start, text, stmts, facts, numbered }
+        };
+        let all = self.pieces.iter().map(|piece| &piece.numbered);
+        resolve_placed(&self.known, &all, &at, &mut sink);
+        self.names = Arc::new(sink);
     }
 
     /// Where the file defines a name for all that stands after it.

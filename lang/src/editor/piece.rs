@@ -3,11 +3,11 @@
 
 use std::sync::{Arc, OnceLock};
 
-use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::diag::Diagnostic;
 
 use super::symbols::{Symbol, symbols};
 use crate::budgets::Budgets;
-use crate::eval::names::{Facts, RELATIVE, moved};
+use crate::eval::names::{Facts, Known, Numbered, RELATIVE, place};
 use crate::syntax::{Stmt, read_piece};
 
 /// A statement in its place.
@@ -20,6 +20,8 @@ pub(super) struct Piece {
     /// Nothing is wrong with it and nothing around it concerns it.
     pub(super) is_alone: bool,
     pub(super) read: Arc<Read>,
+    /// Its names, empty until the document knows them.
+    pub(super) numbered: Numbered,
 }
 
 /// What a statement says.
@@ -45,7 +47,14 @@ impl Piece {
         let facts = Facts::of(&text[start..end], &stmts);
         let is_alone = facts.is_alone() && diagnostics.is_empty();
         let read = Arc::new(Read { stmts, diagnostics, facts, symbols: OnceLock::new() });
-        Self { start, end, faulty, is_alone, read }
+        Self { start, end, faulty, is_alone, read, numbered: Numbered::default() }
+    }
+
+    /// Learns the numbers of its names.
+    pub(super) fn number(&mut self, known: &mut Known) {
+        if self.numbered.is_unknown() {
+            self.numbered = known.numbered(&self.read.facts);
+        }
     }
 
     /// What its doc comment says.
@@ -62,8 +71,6 @@ impl Piece {
 
 /// A diagnostic of a statement in its file.
 pub(super) fn placed(mut diagnostic: Diagnostic, start: usize) -> Diagnostic {
-    let place = |span: &mut Span| *span = moved(*span, start);
-    diagnostic.labels.iter_mut().for_each(|label| place(&mut label.span));
-    diagnostic.fixes.iter_mut().for_each(|fix| place(&mut fix.span));
+    place(&mut diagnostic, start);
     diagnostic
 }

@@ -1,7 +1,10 @@
 //! An edited document is the document of the edited text.
 
+use luxel_core::diag::{Diagnostic, SourceId};
+
 use super::Document;
-use crate::Budgets;
+use crate::sink::Sink;
+use crate::{Budgets, eval, syntax};
 
 const START: &str = r#"//! A scene.
 scene 1
@@ -49,7 +52,11 @@ const PASTES: [&str; 24] = [
 ];
 
 fn same(edited: &Document, step: &str) {
-    let fresh = Document::new(edited.text(), &Budgets::default());
+    same_within(edited, step, &Budgets::default());
+}
+
+fn same_within(edited: &Document, step: &str, budgets: &Budgets) {
+    let fresh = Document::new(edited.text(), budgets);
     let pieces = |document: &Document| -> Vec<_> {
         let of = |piece: &super::piece::Piece| {
             (piece.start, piece.end, piece.faulty, piece.read.stmts.clone())
@@ -84,6 +91,80 @@ fn an_edited_document_is_the_document_of_the_edited_text() {
             document.edit(start..end, with);
             same(&document, &format!("seed {seed}, step {step}, {start}..{end} {with:?}"));
         }
+    }
+}
+
+/// Lines about names: defined, used, used too early, mentioned by functions, shadowed, labelled.
+const NAMED: [&str; 16] = [
+    "let a = 1",
+    "let b = a + c",
+    "let c = (a, b, a)",
+    "let d = [for a in 0..3 => a + b]",
+    "param a: length = 1 m in 1 m..=b",
+    "fn a(x: length) = b(x)",
+    "fn b(y: length = c) = a(y)",
+    "fn c() { shape sphere \"a\" { radius = a } }",
+    "for b in 0..3 { let a = b place c }",
+    "if a { let c = b } else { shape box \"b\" { size = c } }",
+    "shape sphere \"a\" { radius = b }",
+    "shape sphere \"b\" { radius (a, 1, 1) material = sin(a) }",
+    "set a.radius = c",
+    "@off let b = nope",
+    "import \"f\" as c",
+    "include \"f\" with { a = b }",
+];
+
+/// What a whole reading of a text says of it and its names.
+fn whole(text: &str, budgets: &Budgets) -> Vec<Diagnostic> {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let tree = syntax::parse(text, SourceId(0), budgets, &mut sink);
+    eval::resolve(&tree, text, &mut sink);
+    sink.finish()
+}
+
+#[test]
+fn names_of_an_edited_document_are_those_of_a_whole_reading() {
+    let mut told = 0;
+    for seed in 0..60 {
+        let mut state = seed;
+        let lines: Vec<_> = (0..12).map(|_| NAMED[next(&mut state, NAMED.len())]).collect();
+        let lines = lines.join("\n");
+        let mut document = Document::new(format!("scene 1\n{lines}\n"), &Budgets::default());
+        for step in 0..12 {
+            let line = 1 + next(&mut state, document.n_lines().saturating_sub(2));
+            let range = document.line(line);
+            let with = NAMED[next(&mut state, NAMED.len())];
+            match next(&mut state, 3) {
+                0 => document.edit(range, with),
+                1 => document.edit(range.start..range.start, &format!("{with}\n")),
+                _ => document.edit(range.start..range.end + 1, ""),
+            }
+            same(&document, &format!("seed {seed}, step {step}"));
+            let sorted = |mut found: Vec<Diagnostic>| {
+                found.sort_by_key(|found| (found.span(), found.code));
+                found
+            };
+            let text = document.text();
+            let found = sorted(document.diagnostics());
+            assert_eq!(found, sorted(whole(text, &Budgets::default())), "seed {seed}\n{text}");
+            told += found.len();
+        }
+    }
+    assert!(told > 1000, "{told}");
+}
+
+#[test]
+fn mistakes_beyond_those_shown_are_counted_as_in_a_whole_reading() {
+    let budgets = Budgets { diagnostics: 5, ..Budgets::default() };
+    let text = format!("scene 1\nlet r = 1\n{}", "let a = r\nlet b = (r, s, r)\n".repeat(20));
+    let mut document = Document::new(text, &budgets);
+    for (range, with) in [(12..13, "q"), (12..13, "s"), (8..8, "let s = 2\n")] {
+        document.edit(range, with);
+        same_within(&document, with, &budgets);
+        let counted = |found: Vec<Diagnostic>| found.last().map(|last| last.message.clone());
+        let found = counted(document.diagnostics());
+        assert!(found.as_ref().is_some_and(|message| message.contains("more mistakes")));
+        assert_eq!(found, counted(whole(document.text(), &budgets)));
     }
 }
 

@@ -10,7 +10,7 @@ use luxel_sdk::params::{Dimension, Unit};
 
 use super::env::{Env, File, Override};
 use super::exec::{Body, Place};
-use super::resolve;
+use super::resolve::resolve;
 use super::value::{FieldValue, Module, Value};
 use super::{Evaluator, OpenGroup};
 use crate::syntax::{self, ExprNode, Name, Stmt, StmtNode, Tree};
@@ -83,7 +83,7 @@ impl Evaluator<'_> {
         let source = self.sources.add(name, text.clone());
         let tree = syntax::parse(&text, source, &self.budgets, &mut self.sink);
         self.stopped |= self.sink.is_full();
-        resolve::resolve(&tree, &text, &mut self.sink);
+        resolve(&tree, &text, &mut self.sink);
         let units = self.units(&tree.stmts);
         Some(Rc::new(ReadFile { tree, units }))
     }

@@ -21,14 +21,27 @@ fn mention(expr: &Expr, out: &mut BTreeSet<Arc<str>>) {
     }
 }
 
-fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
+/// The names that statements mention.
+pub(super) fn mention_stmts(stmts: &[Stmt], out: &mut BTreeSet<Arc<str>>) {
     for stmt in stmts {
         match &stmt.node {
             StmtNode::Let { value, .. }
             | StmtNode::Set { value, .. }
             | StmtNode::Assert { cond: value, .. }
             | StmtNode::Call(value) => mention(value, out),
-            StmtNode::Fn(def) => mention_body(def, out),
+            StmtNode::Fn(def) => {
+                let defaults = def.params.iter().flat_map(|param| &param.default);
+                defaults.for_each(|value| mention(value, out));
+                mention_body(def, out);
+            }
+            StmtNode::Param(def) => {
+                [&def.value].into_iter().chain(&def.range).for_each(|value| mention(value, out));
+            }
+            StmtNode::Include { with, .. } => {
+                for field in with {
+                    mention(&field.value, out);
+                }
+            }
             StmtNode::For { over, body, .. } => {
                 mention(over, out);
                 mention_stmts(&body.stmts, out);

@@ -18,6 +18,7 @@ mod include;
 mod mention;
 pub(crate) mod names;
 mod note;
+mod numbered;
 mod object;
 mod ops;
 mod params;
@@ -35,6 +36,9 @@ use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
 use luxel_core::scene::{Group, Scene};
+
+#[cfg(test)]
+pub(crate) use self::resolve::resolve;
 
 use self::emit::Labels;
 use self::include::ReadFile;

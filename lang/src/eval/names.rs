@@ -1,11 +1,14 @@
 //! Names of a file that is being edited: each statement is looked at once, and again only if what
 //! stands around it matters.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use luxel_core::diag::{SourceId, Span};
+use luxel_core::diag::{Diagnostic, SourceId, Span};
 
+use super::mention::mention_stmts;
+use super::numbered::Firsts;
+pub(crate) use super::numbered::{Known, Numbered};
 use super::resolve::{Resolver, Scope, defines, mentions};
 use crate::sink::Sink;
 use crate::syntax::{Name, Stmt};
@@ -16,15 +19,15 @@ pub(crate) const RELATIVE: SourceId = SourceId(1);
 /// What a statement has to do with the names around it.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Facts {
-    /// Names that it uses and that others must define.
-    free: BTreeSet<Arc<str>>,
+    /// Names that it uses and that others must define, and how often.
+    pub(super) free: BTreeMap<Arc<str>, u32>,
     /// Names that it defines for what stands after it.
     pub(crate) defines: Vec<Name>,
-    labels: Vec<Name>,
+    pub(super) labels: Vec<Name>,
     /// What the functions in it mention.
-    mentions: Vec<(Arc<str>, BTreeSet<Arc<str>>)>,
+    pub(super) mentions: Vec<(Arc<str>, BTreeSet<Arc<str>>)>,
     /// Nothing is wrong with it whatever stands around it.
-    sound: bool,
+    pub(super) sound: bool,
 }
 
 impl Facts {
@@ -33,7 +36,7 @@ impl Facts {
         let mut sink = Sink::new(1);
         let mut resolver = Resolver::new(text, &mut sink);
         resolver.scopes.push(Scope::default());
-        resolver.free = Some(BTreeSet::new());
+        resolver.free = Some(BTreeMap::new());
         for stmt in stmts {
             resolver.stmt(stmt);
         }
@@ -61,66 +64,93 @@ pub(crate) struct Placed<'p> {
     pub(crate) text: &'p str,
     pub(crate) stmts: &'p [Stmt],
     pub(crate) facts: &'p Facts,
+    pub(crate) numbered: &'p Numbered,
 }
 
-/// Tells every name that is unknown, used too early or defined twice, as `resolve` does for a tree;
-/// spans of the statement itself are relative, those of others have source 0. Gives the statements,
-/// by number, that something was told of or may be told of.
+/// Tells every name that is unknown, used too early or defined twice, as `resolve` does for a tree,
+/// of statements whose names `known` has. Those that nothing is wrong with are not read.
 pub(crate) fn resolve_placed<'p>(
-    placed: impl Iterator<Item = Placed<'p>> + Clone,
-    tell: &mut dyn FnMut(usize, Sink),
+    known: &Known,
+    all: &(impl Iterator<Item = &'p Numbered> + Clone),
+    at: &dyn Fn(usize) -> Placed<'p>,
+    sink: &mut Sink,
 ) {
-    let odd = odd(placed.clone());
-    if odd.is_empty() {
-        return;
-    }
-    let mut top = Scope::default();
-    for Placed { start, facts, .. } in placed.clone() {
-        for name in &facts.defines {
-            top.later.entry(name.text.clone()).or_insert(moved(name.span, start));
+    let (firsts, odd) = Firsts::of(known, all.clone());
+    let mut mentions: Option<Mentions> = None;
+    for i in odd {
+        let placed = at(i);
+        // What is only counted is not looked at.
+        if sink.is_full()
+            && let Some(n) = firsts.count(i, placed.numbered)
+        {
+            sink.count(n);
+            continue;
         }
-        top.mentions.extend(facts.mentions.iter().cloned());
-    }
-    for (i, Placed { start, text, stmts, facts }) in placed.enumerate() {
-        if odd.contains(&i) {
-            let mut sink = Sink::new(usize::MAX);
-            let mut resolver = Resolver::new(text, &mut sink);
-            resolver.scopes.push(std::mem::take(&mut top));
-            for stmt in stmts {
-                resolver.stmt(stmt);
-            }
-            top = resolver.scopes.pop().unwrap_or_default();
-            tell(start, sink);
+        let mut scope = scope(&firsts, i, at);
+        if placed.text.contains("fn") {
+            scope.mentions = mentions.take().unwrap_or_else(|| all_mentions(all.clone(), at));
         }
-        for name in &facts.defines {
-            let place = top.names.entry(name.text.clone()).or_insert(name.span);
-            *place = moved(*place, start);
+        let before = || firsts.before(i);
+        let mut part = sink.like();
+        let mut resolver = Resolver::new(placed.text, &mut part);
+        resolver.before = Some(&before);
+        resolver.scopes.push(scope);
+        for stmt in placed.stmts {
+            resolver.stmt(stmt);
         }
-        for label in &facts.labels {
-            let place = top.labels.entry(label.text.clone()).or_insert(label.span);
-            *place = moved(*place, start);
-        }
+        let scope = resolver.scopes.pop().unwrap_or_default();
+        mentions = mentions.or_else(|| Some(scope.mentions).filter(|of| !of.is_empty()));
+        part.each(&mut |found| place(found, placed.start));
+        sink.absorb(part);
     }
 }
 
-/// The statements, by number, that something is wrong with, or that define what is defined before.
-fn odd<'p>(placed: impl Iterator<Item = Placed<'p>>) -> HashSet<usize> {
-    let (mut names, mut labels) = (HashSet::new(), HashSet::new());
-    let mut out = HashSet::new();
-    for (i, Placed { facts, .. }) in placed.enumerate() {
-        // Every name is put in, whatever was found of those before.
-        let twice = |seen: &mut HashSet<_>, names: &'p [Name]| {
-            names.iter().filter(|name| !seen.insert(&*name.text)).count() > 0
-        };
-        let known = facts.free.iter().all(|name| names.contains(&**name));
-        let defined = twice(&mut names, &facts.defines);
-        let labelled = twice(&mut labels, &facts.labels);
-        let fine = facts.sound && known && !defined && !labelled;
-        if !fine {
-            out.insert(i);
+/// What the functions of a file mention.
+type Mentions = BTreeMap<Arc<str>, BTreeSet<Arc<str>>>;
+
+fn all_mentions<'p>(
+    all: impl Iterator<Item = &'p Numbered>,
+    at: &dyn Fn(usize) -> Placed<'p>,
+) -> Mentions {
+    let functions = all.enumerate().filter(|(_, numbered)| numbered.has_functions);
+    functions.flat_map(|(i, _)| at(i).facts.mentions.iter().cloned()).collect()
+}
+
+/// What stands around a statement, as far as it mentions it.
+fn scope<'p>(firsts: &Firsts<'_>, i: usize, at: &dyn Fn(usize) -> Placed<'p>) -> Scope {
+    let Placed { stmts, facts, .. } = at(i);
+    let mut scope = Scope::default();
+    let mut mentioned = BTreeSet::new();
+    mention_stmts(stmts, &mut mentioned);
+    mentioned.extend(facts.defines.iter().chain(&facts.labels).map(|name| name.text.clone()));
+    let span = |definer: usize, names: fn(&Facts) -> &[Name], text: &str| {
+        let placed = at(definer);
+        let name = names(placed.facts).iter().find(|name| *name.text == *text);
+        name.map(|name| moved(name.span, placed.start))
+    };
+    for text in mentioned {
+        let definer = firsts.definer(&text);
+        if let Some((definer, span)) =
+            definer.and_then(|it| Some((it, span(it, |facts| &facts.defines, &text)?)))
+        {
+            if definer < i {
+                scope.names.insert(text.clone(), span);
+            }
+            scope.later.insert(text.clone(), span);
+        }
+        let labeller = firsts.labeller(&text).filter(|labeller| *labeller < i);
+        if let Some(span) = labeller.and_then(|it| span(it, |facts| &facts.labels, &text)) {
+            scope.labels.insert(text, span);
         }
     }
-    out
+    scope
+}
+
+/// Brings a diagnostic of a statement into its file.
+pub(crate) fn place(diagnostic: &mut Diagnostic, start: usize) {
+    let place = |span: &mut Span| *span = moved(*span, start);
+    diagnostic.labels.iter_mut().for_each(|label| place(&mut label.span));
+    diagnostic.fixes.iter_mut().for_each(|fix| place(&mut fix.span));
 }
 
 /// A relative span in its file.

@@ -16,8 +16,12 @@ use crate::syntax::{
     Stmt, StmtNode, Tree, Ty, children,
 };
 
+/// Known names among which near ones are looked for: more than `near` looks at, names that are known
+/// twice counted.
+const LOOKED_AT: usize = 30_000;
+
 /// Tells every name that is unknown, used too early or defined twice.
-pub(super) fn resolve(tree: &Tree, text: &str, sink: &mut Sink) {
+pub(crate) fn resolve(tree: &Tree, text: &str, sink: &mut Sink) {
     let mut resolver = Resolver::new(text, sink);
     resolver.block(&tree.stmts, &[]);
 }
@@ -52,7 +56,9 @@ pub(super) struct Resolver<'a> {
     /// In the body of an object that holds no others.
     in_object: bool,
     /// Where names that nothing defines are kept instead of being told.
-    pub(super) free: Option<BTreeSet<Arc<str>>>,
+    pub(super) free: Option<BTreeMap<Arc<str>, u32>>,
+    /// Names that stand before the statement beside those of `scopes`.
+    pub(super) before: Option<&'a dyn Fn() -> Vec<&'a str>>,
 }
 
 /// What a statement mentions, if it is a function.
@@ -77,7 +83,8 @@ pub(super) fn defines(stmt: &Stmt) -> Option<&Name> {
 impl<'a> Resolver<'a> {
     /// Nothing is defined yet.
     pub(super) fn new(text: &'a str, sink: &'a mut Sink) -> Self {
-        Self { sink, text, scopes: vec![], functions: vec![], in_object: false, free: None }
+        let (scopes, functions) = (vec![], vec![]);
+        Self { sink, text, scopes, functions, in_object: false, free: None, before: None }
     }
 
     fn block(&mut self, stmts: &[Stmt], names: &[&Name]) {
@@ -209,7 +216,8 @@ impl<'a> Resolver<'a> {
         if stmt.is_off() {
             return;
         }
-        if let Some(first) = scope.labels.insert(label.text.clone(), label.span) {
+        let first = *scope.labels.entry(label.text.clone()).or_insert(label.span);
+        if first != label.span {
             let message = format!("the label \"{}\" is used twice", label.text);
             self.sink.push(
                 Diagnostic::error("E0110", label.span, message).label(first, "first used here"),
@@ -375,7 +383,7 @@ impl<'a> Resolver<'a> {
             return;
         }
         if let Some(free) = &mut self.free {
-            free.insert(first.text.clone());
+            *free.entry(first.text.clone()).or_default() += 1;
             return;
         }
         // What is only counted needs no advice.
@@ -422,7 +430,12 @@ impl<'a> Resolver<'a> {
         let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
         let mut known: Vec<&str> = builtins::names().collect();
         known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
+        known.extend(self.before.into_iter().flat_map(|before| before()));
         // Which are looked at must not depend on the order in which a table holds them.
+        if known.len() > LOOKED_AT {
+            known.select_nth_unstable(LOOKED_AT);
+            known.truncate(LOOKED_AT);
+        }
         known.sort_unstable();
         // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
         let ending = builtins::names()

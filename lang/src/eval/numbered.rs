@@ -1,0 +1,154 @@
+//! Names as numbers, so that those of a hundred thousand statements are looked through at once.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::names::Facts;
+
+/// Nobody defines it.
+const NONE: u32 = u32::MAX;
+
+/// Names, each with its number.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Known {
+    numbers: HashMap<Arc<str>, u32>,
+    names: Vec<Arc<str>>,
+}
+
+/// What a statement has to do with names, which are numbers here.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Numbered {
+    /// First the names that it uses and how often, by turns, then those that it defines, then labels.
+    all: Arc<[u32]>,
+    /// How many of them are of the first sort and of the first two.
+    ends: [u32; 2],
+    /// Nothing is wrong with it whatever stands around it.
+    is_sound: bool,
+    /// A function stands in it.
+    pub(super) has_functions: bool,
+    is_known: bool,
+}
+
+impl Known {
+    fn number(&mut self, name: &Arc<str>) -> u32 {
+        if let Some(number) = self.numbers.get(name) {
+            return *number;
+        }
+        let number = u32::try_from(self.names.len()).expect("a text is shorter than 2^32 bytes");
+        self.names.push(name.clone());
+        self.numbers.insert(name.clone(), number);
+        number
+    }
+
+    /// A statement's names.
+    pub(crate) fn numbered(&mut self, facts: &Facts) -> Numbered {
+        let mut all = vec![];
+        for (name, times) in &facts.free {
+            all.extend([self.number(name), *times]);
+        }
+        let first = all.len();
+        all.extend(facts.defines.iter().map(|name| self.number(&name.text)));
+        let second = all.len();
+        all.extend(facts.labels.iter().map(|name| self.number(&name.text)));
+        let ends = [first, second].map(|at| u32::try_from(at).unwrap_or(u32::MAX));
+        let has_functions = !facts.mentions.is_empty();
+        Numbered { all: all.into(), ends, is_sound: facts.sound, has_functions, is_known: true }
+    }
+}
+
+impl Numbered {
+    /// Whether its numbers are still to be found.
+    pub(crate) fn is_unknown(&self) -> bool {
+        !self.is_known
+    }
+
+    fn uses(&self) -> impl Iterator<Item = (u32, u32)> {
+        self.all[..self.ends[0] as usize].chunks_exact(2).map(|use_| (use_[0], use_[1]))
+    }
+
+    fn defines(&self) -> &[u32] {
+        &self.all[self.ends[0] as usize..self.ends[1] as usize]
+    }
+
+    fn labels(&self) -> &[u32] {
+        &self.all[self.ends[1] as usize..]
+    }
+}
+
+/// Which statement defines each name first, and which bears each label first.
+pub(super) struct Firsts<'k> {
+    known: &'k Known,
+    defines: Vec<u32>,
+    labels: Vec<u32>,
+}
+
+impl<'k> Firsts<'k> {
+    /// Looks through statements in order; gives also the numbers of those that something is wrong with.
+    pub(super) fn of<'n>(
+        known: &'k Known,
+        all: impl Iterator<Item = &'n Numbered>,
+    ) -> (Self, Vec<usize>) {
+        let none = || vec![NONE; known.names.len()];
+        let mut out = Self { known, defines: none(), labels: none() };
+        let mut odd = vec![];
+        for (i, numbered) in all.enumerate() {
+            let place = u32::try_from(i).unwrap_or(NONE);
+            let is_fine = numbered.uses().all(|(name, _)| out.defines[name as usize] != NONE);
+            let mut is_fine = is_fine && numbered.is_sound;
+            for name in numbered.defines() {
+                is_fine &= first(&mut out.defines[*name as usize], place);
+            }
+            for label in numbered.labels() {
+                is_fine &= first(&mut out.labels[*label as usize], place);
+            }
+            if !is_fine {
+                odd.push(i);
+            }
+        }
+        (out, odd)
+    }
+
+    /// The statement that first defines a name.
+    pub(super) fn definer(&self, name: &str) -> Option<usize> {
+        self.place(&self.defines, name)
+    }
+
+    /// The statement that first bears a label.
+    pub(super) fn labeller(&self, label: &str) -> Option<usize> {
+        self.place(&self.labels, label)
+    }
+
+    fn place(&self, places: &[u32], name: &str) -> Option<usize> {
+        let place = places[*self.known.numbers.get(name)? as usize];
+        (place != NONE).then_some(place as usize)
+    }
+
+    /// The names that are defined before a statement.
+    pub(super) fn before(&self, statement: usize) -> Vec<&'k str> {
+        let names = self.known.names.iter().zip(&self.defines);
+        names.filter(|(_, at)| (**at as usize) < statement).map(|(name, _)| &**name).collect()
+    }
+
+    /// How many mistakes a statement makes, if that can be told without looking at it: names that it
+    /// uses and that nothing before it defines.
+    pub(super) fn count(&self, statement: usize, numbered: &Numbered) -> Option<usize> {
+        let is_before = |places: &[u32], name: u32| (places[name as usize] as usize) < statement;
+        let is_new = |name: &u32| self.defines[*name as usize] as usize == statement;
+        let is_own = |label: &u32| self.labels[*label as usize] as usize == statement;
+        let simple = numbered.is_sound
+            && numbered.defines().len() + numbered.labels().len() < 2
+            && numbered.defines().iter().all(is_new)
+            && numbered.labels().iter().all(is_own);
+        let unknown = numbered.uses().filter(|(name, _)| !is_before(&self.defines, *name));
+        simple.then(|| unknown.map(|(_, times)| times as usize).sum())
+    }
+}
+
+/// Puts a statement in as the first; whether it is.
+fn first(place: &mut u32, statement: u32) -> bool {
+    let is_first = *place == NONE;
+    if is_first {
+        *place = statement;
+    }
+    is_first
+}

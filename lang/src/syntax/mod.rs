@@ -7,7 +7,9 @@ mod explain;
 mod expr;
 mod head;
 mod lex;
+mod make;
 mod number;
+mod operators;
 mod parse;
 #[cfg(test)]
 mod tests;
@@ -16,10 +18,10 @@ mod unopened;
 mod walk;
 mod weigh;
 
-pub(crate) use build::RESERVED;
 pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
+pub(crate) use make::RESERVED;
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, cut, parse, parse_expr, read_head, read_piece};

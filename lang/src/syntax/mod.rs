@@ -1,8 +1,11 @@
-//! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
+//! Text to tree: the grammar and its second reader, the tree, and the explanation of what cannot be
+//! read.
 
+mod agree;
 mod around;
 mod build;
 mod cut;
+mod direct;
 mod explain;
 mod expr;
 mod head;
@@ -18,6 +21,7 @@ mod unopened;
 mod walk;
 mod weigh;
 
+pub use agree::{Agreement, agree};
 pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};

@@ -119,13 +119,13 @@ fn agreed(text: &str, budgets: &Budgets) -> Agreement {
 
 /// The texts of files with an ending, below a folder.
 fn texts(folder: &Path, ending: &str, out: &mut Vec<(PathBuf, String)>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+    for entry in std::fs::read_dir(folder).expect("a folder of the project") {
+        let path = entry.expect("a file of the project").path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() && !name.starts_with('.') && name != "target" && name != "node_modules" {
             texts(&path, ending, out);
         } else if path.extension().is_some_and(|e| e == ending) {
-            let text = std::fs::read_to_string(&path).unwrap();
+            let text = std::fs::read_to_string(&path).expect("a text");
             out.push((path, text));
         }
     }
@@ -189,7 +189,7 @@ fn edited_statements_are_read_alike() {
     let (statements, mut dice, mut sum) = (statements(), Dice(11), Agreement::default());
     for _ in 0..4000 {
         let mut text = statements[dice.below(statements.len())].clone();
-        for _ in 0..1 + dice.below(2) {
+        for _ in 0..=dice.below(2) {
             let mut place = |longest: usize| {
                 let ends: Vec<usize> =
                     text.char_indices().map(|(at, _)| at).chain([text.len()]).collect();

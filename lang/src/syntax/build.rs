@@ -7,9 +7,10 @@ use luxel_sdk::params::{UNITS, Unit};
 use pest::iterators::Pair;
 
 use super::Rule;
+use super::make::{self, RESERVED};
 use super::tree::{
-    Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, ListTy, Name, Object,
-    ParamDef, Quoted, Stmt, StmtNode, Ty,
+    Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
+    Quoted, Stmt, StmtNode,
 };
 use crate::budgets::Budgets;
 use crate::sink::Sink;
@@ -21,12 +22,6 @@ pub(super) struct Builder<'a> {
     pub(super) sink: &'a mut Sink,
     pub(super) budgets: &'a Budgets,
 }
-
-/// Names that no definition may take.
-pub(crate) const RESERVED: [&str; 19] = [
-    "let", "param", "fn", "for", "if", "else", "include", "import", "use", "place", "set",
-    "assert", "expect", "units", "with", "as", "in", "true", "false",
-];
 
 fn is_keyword(rule: Rule) -> bool {
     matches!(
@@ -97,7 +92,7 @@ impl Builder<'_> {
         for part in pair.into_inner() {
             let place = self.span(&part);
             match part.as_rule() {
-                Rule::doc => docs.push(doc(&part, place)),
+                Rule::doc => docs.push(make::doc(part.as_str(), place)),
                 Rule::attr => {
                     let text = part.as_str()[1..].into();
                     attrs.push(self.attribute(Name { text, span: place }));
@@ -137,7 +132,7 @@ impl Builder<'_> {
                 let mut next = take(&mut parts);
                 let mut ty = None;
                 if next.as_rule() == Rule::ty {
-                    ty = Some(self.ty(&next));
+                    ty = Some(make::ty(next.as_str(), self.span(&next)));
                     next = take(&mut parts);
                 }
                 StmtNode::Let { name, ty, value: self.expr(next) }
@@ -246,11 +241,11 @@ impl Builder<'_> {
         docs: &[Doc],
     ) -> ParamDef {
         let name = self.definition(&take(parts));
-        let ty = self.ty(&take(parts));
+        let ty = take(parts);
+        let ty = make::ty(ty.as_str(), self.span(&ty));
         let value = self.expr(take(parts));
         let range = parts.next().map(|range| self.expr(range));
-        let lines: Vec<&str> = docs.iter().map(|doc| doc.text.trim()).collect();
-        ParamDef { name, ty, value, range, doc: lines.join("\n") }
+        ParamDef { name, ty, value, range, doc: make::lines(docs) }
     }
 
     fn function<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> FnDef {
@@ -272,20 +267,9 @@ impl Builder<'_> {
     fn fn_param(&mut self, pair: Pair<'_, Rule>) -> FnParam {
         let mut parts = parts(pair);
         let name = self.definition(&take(&mut parts));
-        let ty = self.ty(&take(&mut parts));
+        let ty = take(&mut parts);
+        let ty = make::ty(ty.as_str(), self.span(&ty));
         FnParam { name, ty, default: parts.next().map(|value| self.expr(value)) }
-    }
-
-    fn ty(&mut self, pair: &Pair<'_, Rule>) -> Ty {
-        let span = self.span(pair);
-        let text = pair.as_str();
-        let Some((name, list)) = text.split_once('[') else {
-            return Ty { name: Name { text: text.into(), span }, list: ListTy::One };
-        };
-        let list = list.trim_end_matches(']').parse().map_or(ListTy::Any, ListTy::Exactly);
-        let start = span.range().start;
-        let span = Span::new(self.source, start, start + name.len());
-        Ty { name: Name { text: name.into(), span }, list }
     }
 
     pub(super) fn block(&mut self, pair: Pair<'_, Rule>) -> Block {
@@ -349,7 +333,7 @@ impl Builder<'_> {
             self.sink.push(Diagnostic::error("E0509", span, message));
             return Name { text: "".into(), span };
         }
-        Name { text: unescape(body.as_str()).into(), span }
+        Name { text: make::unescape(body.as_str()), span }
     }
 
     /// The unit that a token names; `None` if it is none, which is told.
@@ -373,11 +357,6 @@ impl Builder<'_> {
         self.sink.push(diagnostic);
         None
     }
-}
-
-fn doc(pair: &Pair<'_, Rule>, span: Span) -> Doc {
-    let text = pair.as_str().trim_start_matches('/').trim_end();
-    Doc { text: text.strip_prefix(' ').unwrap_or(text).to_owned(), span }
 }
 
 /// The unit that a misspelt one stands for: full names are sure, slips of the pen are guessed.
@@ -407,29 +386,4 @@ fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
     let case = UNITS.iter().find(|(name, _)| name.to_lowercase() == lower).map(|(name, _)| *name);
     let near = case.or_else(|| nearest(text, UNITS.iter().map(|(name, _)| *name)));
     full.map(|unit| (unit, Grade::Sure)).or(near.map(|unit| (unit, Grade::Guess)))
-}
-
-/// Resolves escapes; the grammar and the pre-scan let only known ones through.
-fn unescape(body: &str) -> String {
-    let mut out = String::with_capacity(body.len());
-    let mut chars = body.chars();
-    while let Some(c) = chars.next() {
-        if c != '\\' {
-            out.push(c);
-            continue;
-        }
-        match chars.next() {
-            Some('n') => out.push('\n'),
-            Some('t') => out.push('\t'),
-            Some('u') => {
-                let digits: String =
-                    chars.by_ref().skip(1).take_while(|digit| *digit != '}').collect();
-                let code = u32::from_str_radix(&digits, 16).ok().and_then(char::from_u32);
-                out.push(code.unwrap_or(char::REPLACEMENT_CHARACTER));
-            }
-            Some(other) => out.push(other),
-            None => {}
-        }
-    }
-    out
 }

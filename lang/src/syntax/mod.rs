@@ -1,13 +1,18 @@
-//! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
+//! Text to tree: the grammar and its second reader, the tree, and the explanation of what cannot be
+//! read.
 
+mod agree;
 mod around;
 mod build;
 mod cut;
+mod direct;
 mod explain;
 mod expr;
 mod head;
 mod lex;
+mod make;
 mod number;
+mod operators;
 mod parse;
 #[cfg(test)]
 mod tests;
@@ -16,10 +21,11 @@ mod unopened;
 mod walk;
 mod weigh;
 
-pub(crate) use build::RESERVED;
+pub use agree::{Agreement, agree};
 pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
+pub(crate) use make::RESERVED;
 #[cfg(test)]
 pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, cut, parse, parse_expr, read_head, read_piece};

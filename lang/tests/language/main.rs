@@ -6,6 +6,7 @@ mod cases;
 mod fenced;
 mod limits;
 mod plant;
+mod readers;
 mod registry;
 mod scenes;
 mod seeded;

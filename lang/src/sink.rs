@@ -39,6 +39,11 @@ impl Sink {
         Self { stop, ..self }
     }
 
+    /// What tells it to stop.
+    pub(crate) fn stop(&self) -> Option<Arc<AtomicBool>> {
+        self.stop.clone()
+    }
+
     /// Whether it was told to stop.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
@@ -62,6 +67,11 @@ impl Sink {
     /// An empty one of the same kind, for a part of the text.
     pub(crate) fn like(&self) -> Self {
         Self::new(self.limit).until(self.stop.clone())
+    }
+
+    /// An empty one for a part of which it keeps all that the other one keeps.
+    pub(crate) fn rest(&self) -> Self {
+        Self::new(self.limit.saturating_sub(self.list.len())).until(self.stop.clone())
     }
 
     /// Changes each diagnostic that is kept.

@@ -50,6 +50,11 @@ struct Names {
 }
 
 impl Names {
+    fn clear(&mut self) {
+        self.list.clear();
+        self.places.clear();
+    }
+
     /// Where in the list a name stands.
     fn place(&self, name: &str) -> Option<usize> {
         if self.list.len() < MANY {
@@ -94,6 +99,17 @@ impl Env {
     pub(crate) fn inner(&self) -> Self {
         let frame = Frame { parent: Some(self.clone()), names: RefCell::default() };
         Self { frame: Rc::new(frame), visible: usize::MAX, file: self.file.clone() }
+    }
+
+    /// Forgets the names of the innermost block: as a new one, whose room is the old one's if nothing
+    /// keeps that.
+    pub(crate) fn renew(&mut self) {
+        if let Some(frame) = Rc::get_mut(&mut self.frame) {
+            frame.names.get_mut().clear();
+        } else {
+            let parent = self.frame.parent.clone();
+            self.frame = Rc::new(Frame { parent, names: RefCell::default() });
+        }
     }
 
     /// The names that are in sight now, and none that come later.

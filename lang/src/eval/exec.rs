@@ -41,9 +41,8 @@ impl Body {
 impl Evaluator<'_> {
     /// The statements of a block, in an environment of their own.
     pub(super) fn block(&mut self, block: &Block, env: &Env, body: &mut Body) {
-        let inner = env.inner();
-        if self.enter(block.span) {
-            self.stmts(&block.stmts, &inner, body);
+        if self.enter(block.span) && !block.stmts.is_empty() {
+            self.stmts(&block.stmts, &env.inner(), body);
         }
         self.leave();
     }
@@ -186,8 +185,9 @@ impl Evaluator<'_> {
         let Some(elements) = self.elements(value, over.span) else { return };
         self.loops.push(item.span);
         let mut count = 0.0;
+        let mut inner = env.inner();
         while let Some(element) = elements.get(count) {
-            let inner = env.inner();
+            inner.renew();
             if let Some(index) = index {
                 inner.define(&index.text, Value::plain(count));
             }

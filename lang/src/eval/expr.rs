@@ -255,8 +255,9 @@ impl Evaluator<'_> {
         let mut out = vec![];
         self.loops.push(span);
         let mut index = 0.0;
+        let mut inner = env.inner();
         while let Some(element) = elements.get(index) {
-            let inner = env.inner();
+            inner.renew();
             if let Some(name) = &comp.index {
                 inner.define(&name.text, Value::plain(index));
             }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, near};
+use luxel_core::diag::{Diagnostic, SourceId, Span, near};
 use luxel_core::files::FileError;
 use luxel_sdk::params::{Dimension, Unit};
 
@@ -27,8 +28,8 @@ impl Evaluator<'_> {
     pub(super) fn root(&mut self, path: &Path, set: &[(String, String)]) {
         self.open_groups.push(OpenGroup::default());
         let canonical = self.files.canonical(path);
-        let read = match self.files.read(path) {
-            Ok(bytes) => self.read_bytes(path, &bytes, None),
+        let text = match self.files.read(path) {
+            Ok(bytes) => self.text(path, &bytes, None),
             Err(error) => {
                 let code = if error == FileError::Outside { "E0108" } else { "E0107" };
                 let code = if matches!(error, FileError::TooLarge(_)) { "E0504" } else { code };
@@ -37,23 +38,29 @@ impl Evaluator<'_> {
                 None
             }
         };
-        let Some(read) = read else {
+        let Some((text, source)) = text else {
             self.damaged = true;
             return;
         };
         self.chain.push((canonical, None));
-        let overrides = self.settings(&read.tree, set);
-        self.run(&read, path, overrides, true);
+        if let Some(declared) = self.declared(&text, source, set) {
+            self.run_in_turns((&text, source), path, &declared, set);
+        } else {
+            let read = self.read_text(&text, source);
+            let overrides = self.settings(&read.tree, set);
+            self.run(&read, path, overrides, true);
+            self.apply_sets();
+        }
         self.chain.pop();
-        self.apply_sets();
     }
 
-    fn read_bytes(
+    /// The text of a file; `None` after a mistake.
+    fn text(
         &mut self,
         path: &Path,
         bytes: &[u8],
         from: Option<Span>,
-    ) -> Option<Rc<ReadFile>> {
+    ) -> Option<(Arc<str>, SourceId)> {
         let name = path.to_string_lossy();
         let limit = self.budgets.file_bytes;
         let total = self.bytes_read.saturating_add(bytes.len());
@@ -79,17 +86,21 @@ impl Evaluator<'_> {
                 return None;
             }
         };
-        let text: std::sync::Arc<str> = text.into();
+        let text: Arc<str> = text.into();
         let source = self.sources.add(name, text.clone());
-        let tree = syntax::parse(&text, source, &self.budgets, &mut self.sink);
+        Some((text, source))
+    }
+
+    fn read_text(&mut self, text: &str, source: SourceId) -> Rc<ReadFile> {
+        let tree = syntax::parse(text, source, &self.budgets, &mut self.sink);
+        resolve(&tree, text, &mut self.sink);
         self.stopped |= self.sink.is_full();
-        resolve(&tree, &text, &mut self.sink);
         let units = self.units(&tree.stmts);
-        Some(Rc::new(ReadFile { tree, units }))
+        Rc::new(ReadFile { tree, units })
     }
 
     /// What bare numbers count in a file.
-    fn units(&mut self, stmts: &[Stmt]) -> BTreeMap<Dimension, f64> {
+    pub(super) fn units(&mut self, stmts: &[Stmt]) -> BTreeMap<Dimension, f64> {
         let mut out = BTreeMap::new();
         let blocks = stmts.iter().filter(|stmt| !stmt.is_off());
         let fields = blocks.filter_map(|stmt| match &stmt.node {
@@ -133,14 +144,23 @@ impl Evaluator<'_> {
         &mut self,
         read: &ReadFile,
         path: &Path,
-        overrides: BTreeMap<std::sync::Arc<str>, Override>,
+        overrides: BTreeMap<Arc<str>, Override>,
+        is_root: bool,
+    ) -> Env {
+        let env = Self::file_env(path, read.units.clone(), overrides, is_root);
+        self.stmts(&read.tree.stmts, &env, &mut Body::new(Place::File));
+        env
+    }
+
+    /// What stands around the statements of a file.
+    pub(super) fn file_env(
+        path: &Path,
+        units: BTreeMap<Dimension, f64>,
+        overrides: BTreeMap<Arc<str>, Override>,
         is_root: bool,
     ) -> Env {
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        let file = File { folder, units: read.units.clone(), overrides, is_root };
-        let env = Env::new(Rc::new(file));
-        self.stmts(&read.tree.stmts, &env, &mut Body::new(Place::File));
-        env
+        Env::new(Rc::new(File { folder, units, overrides, is_root }))
     }
 
     /// The file that a statement names: its path and text. `None` after a mistake.
@@ -173,7 +193,8 @@ impl Evaluator<'_> {
                 return None;
             }
         };
-        let read = self.read_bytes(&path, &bytes, Some(name.span))?;
+        let (text, source) = self.text(&path, &bytes, Some(name.span))?;
+        let read = self.read_text(&text, source);
         self.read.insert(canonical.clone(), read.clone());
         Some((path, canonical, read))
     }

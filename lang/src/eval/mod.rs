@@ -24,6 +24,7 @@ mod ops;
 mod params;
 mod require;
 mod resolve;
+mod turns;
 pub(crate) mod types;
 mod value;
 
@@ -54,6 +55,17 @@ pub(crate) fn load(
     registry: &Registry,
     settings: &Settings,
 ) -> Loaded {
+    load_in_turns(path, files, registry, settings, turns::TURN)
+}
+
+/// The same; a root file of so many bytes is read in turns of so many.
+fn load_in_turns(
+    path: &Path,
+    files: &dyn Files,
+    registry: &Registry,
+    settings: &Settings,
+    turn: usize,
+) -> Loaded {
     let mut evaluator = Evaluator {
         files,
         registry,
@@ -63,6 +75,7 @@ pub(crate) fn load(
         sink: Sink::new(settings.budgets.diagnostics).until(settings.stop.clone()),
         scene: Scene::default(),
         open_groups: vec![],
+        turn,
         quiet: 0,
         steps: 0,
         depth: 0,
@@ -98,6 +111,8 @@ struct Evaluator<'a> {
     scene: Scene,
     /// Groups that are being filled, the world first, each with its depth and instances.
     open_groups: Vec<OpenGroup>,
+    /// Bytes of a large file that are read before they are evaluated.
+    turn: usize,
     /// Above zero while a file is imported: its camera, film, … are not the scene's.
     quiet: usize,
     steps: u64,

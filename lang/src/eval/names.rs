@@ -76,37 +76,97 @@ pub(crate) fn resolve_placed<'p>(
     sink: &mut Sink,
 ) {
     let (firsts, odd) = Firsts::of(known, all.clone());
+    let around = Among { firsts: &firsts, at };
     let mut mentions: Option<Mentions> = None;
     for i in odd {
-        let placed = at(i);
+        let Placed { start, text, stmts, facts, numbered } = at(i);
         // What is only counted is not looked at.
         if sink.is_full()
-            && let Some(n) = firsts.count(i, placed.numbered)
+            && let Some(n) = firsts.count(i, numbered)
         {
             sink.count(n);
             continue;
         }
-        let mut scope = scope(&firsts, i, at);
-        if placed.text.contains("fn") {
-            scope.mentions = mentions.take().unwrap_or_else(|| all_mentions(all.clone(), at));
+        if mentions.is_none() && text.contains("fn") {
+            mentions = Some(all_mentions(all.clone(), at));
         }
-        let before = || firsts.before(i);
-        let mut part = sink.like();
-        let mut resolver = Resolver::new(placed.text, &mut part);
-        resolver.before = Some(&before);
-        resolver.scopes.push(scope);
-        for stmt in placed.stmts {
-            resolver.stmt(stmt);
-        }
-        let scope = resolver.scopes.pop().unwrap_or_default();
-        mentions = mentions.or_else(|| Some(scope.mentions).filter(|of| !of.is_empty()));
-        part.each(&mut |found| place(found, placed.start));
+        let mut part = sink.rest();
+        tell_odd(&Odd { i, text, stmts, facts }, &around, &mut mentions, &mut part);
+        part.each(&mut |found| place(found, start));
         sink.absorb(part);
     }
 }
 
+/// A statement whose names are looked at among those of its file.
+pub(super) struct Odd<'p> {
+    /// Which of the file's statements.
+    pub(super) i: usize,
+    pub(super) text: &'p str,
+    pub(super) stmts: &'p [Stmt],
+    pub(super) facts: &'p Facts,
+}
+
+/// The names of a file.
+pub(super) trait Around {
+    /// The statement that first defines a name, and where it stands in the file.
+    fn definer(&self, name: &str) -> Option<(usize, Span)>;
+    /// The statement that first bears a label, and where it stands in the file.
+    fn labeller(&self, label: &str) -> Option<(usize, Span)>;
+    /// The names that are defined before a statement.
+    fn before(&self, statement: usize) -> Vec<&str>;
+}
+
+/// Names of statements that are read already.
+struct Among<'a, 'p> {
+    firsts: &'a Firsts<'a>,
+    at: &'a dyn Fn(usize) -> Placed<'p>,
+}
+
+impl Among<'_, '_> {
+    fn span(&self, i: usize, names: fn(&Facts) -> &[Name], text: &str) -> Option<(usize, Span)> {
+        let placed = (self.at)(i);
+        let name = names(placed.facts).iter().find(|name| *name.text == *text)?;
+        Some((i, moved(name.span, placed.start)))
+    }
+}
+
+impl Around for Among<'_, '_> {
+    fn definer(&self, name: &str) -> Option<(usize, Span)> {
+        self.span(self.firsts.definer(name)?, |facts| &facts.defines, name)
+    }
+
+    fn labeller(&self, label: &str) -> Option<(usize, Span)> {
+        self.span(self.firsts.labeller(label)?, |facts| &facts.labels, label)
+    }
+
+    fn before(&self, statement: usize) -> Vec<&str> {
+        self.firsts.before(statement)
+    }
+}
+
+/// Tells what is wrong with the names of a statement; `mentions` are those of all functions, if it may
+/// have some.
+pub(super) fn tell_odd(
+    odd: &Odd<'_>,
+    around: &dyn Around,
+    mentions: &mut Option<Mentions>,
+    sink: &mut Sink,
+) {
+    let mut scope = scope(odd, around);
+    scope.mentions = mentions.take().unwrap_or_default();
+    let before = || around.before(odd.i);
+    let mut resolver = Resolver::new(odd.text, sink);
+    resolver.before = Some(&before);
+    resolver.scopes.push(scope);
+    for stmt in odd.stmts {
+        resolver.stmt(stmt);
+    }
+    let scope = resolver.scopes.pop().unwrap_or_default();
+    *mentions = Some(scope.mentions).filter(|mentions| !mentions.is_empty());
+}
+
 /// What the functions of a file mention.
-type Mentions = BTreeMap<Arc<str>, BTreeSet<Arc<str>>>;
+pub(super) type Mentions = BTreeMap<Arc<str>, BTreeSet<Arc<str>>>;
 
 fn all_mentions<'p>(
     all: impl Iterator<Item = &'p Numbered>,
@@ -117,29 +177,20 @@ fn all_mentions<'p>(
 }
 
 /// What stands around a statement, as far as it mentions it.
-fn scope<'p>(firsts: &Firsts<'_>, i: usize, at: &dyn Fn(usize) -> Placed<'p>) -> Scope {
-    let Placed { stmts, facts, .. } = at(i);
+fn scope(odd: &Odd<'_>, around: &dyn Around) -> Scope {
     let mut scope = Scope::default();
     let mut mentioned = BTreeSet::new();
-    mention_stmts(stmts, &mut mentioned);
-    mentioned.extend(facts.defines.iter().chain(&facts.labels).map(|name| name.text.clone()));
-    let span = |definer: usize, names: fn(&Facts) -> &[Name], text: &str| {
-        let placed = at(definer);
-        let name = names(placed.facts).iter().find(|name| *name.text == *text);
-        name.map(|name| moved(name.span, placed.start))
-    };
+    mention_stmts(odd.stmts, &mut mentioned);
+    let own = odd.facts.defines.iter().chain(&odd.facts.labels);
+    mentioned.extend(own.map(|name| name.text.clone()));
     for text in mentioned {
-        let definer = firsts.definer(&text);
-        if let Some((definer, span)) =
-            definer.and_then(|it| Some((it, span(it, |facts| &facts.defines, &text)?)))
-        {
-            if definer < i {
+        if let Some((definer, span)) = around.definer(&text) {
+            if definer < odd.i {
                 scope.names.insert(text.clone(), span);
             }
             scope.later.insert(text.clone(), span);
         }
-        let labeller = firsts.labeller(&text).filter(|labeller| *labeller < i);
-        if let Some(span) = labeller.and_then(|it| span(it, |facts| &facts.labels, &text)) {
+        if let Some((_, span)) = around.labeller(&text).filter(|(i, _)| *i < odd.i) {
             scope.labels.insert(text, span);
         }
     }

@@ -36,9 +36,29 @@ pub(crate) struct Tree {
 
 /// Reads one text; what cannot be read is told and leaves `StmtNode::Broken`.
 pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut Sink) -> Tree {
-    let mut reader = Reader::new(text, source, budgets, sink);
-    reader.file();
-    reader.out
+    let mut out = Tree::default();
+    let mut take = |stmts| out.stmts.extend(stmts);
+    Reader::new(text, source, budgets, sink)
+        .file(&mut Turns { bytes: usize::MAX, take: &mut take });
+    out
+}
+
+/// Who takes statements, some after others: what has been taken need not be kept.
+pub(crate) struct Turns<'t> {
+    /// Bytes of text that are read before what has been read is taken.
+    pub(crate) bytes: usize,
+    pub(crate) take: &'t mut dyn FnMut(Vec<Stmt>),
+}
+
+/// The same, in turns.
+pub(crate) fn parse_in_turns(
+    text: &str,
+    source: SourceId,
+    budgets: &Budgets,
+    sink: &mut Sink,
+    turns: &mut Turns<'_>,
+) {
+    Reader::new(text, source, budgets, sink).file(turns);
 }
 
 /// What stands before the first statement of a text: where reading goes on, if it is of use, and what
@@ -90,6 +110,19 @@ pub(crate) fn read_piece(
         reader.chunk(0..text.len(), Place::File);
     }
     (reader.out.stmts, sink.finish())
+}
+
+/// Reads the statement at some bytes; what is wrong with it is not told.
+pub(crate) fn read_at(
+    text: &str,
+    piece: Range<usize>,
+    source: SourceId,
+    budgets: &Budgets,
+) -> Vec<Stmt> {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let mut reader = Reader::new(text, source, budgets, &mut sink);
+    reader.chunk(piece, Place::File);
+    reader.out.stmts
 }
 
 /// Reads a statement straight from its bytes where that is possible, or by the grammar of record alone
@@ -162,10 +195,10 @@ impl Reader<'_> {
         Span::new(self.source, range.start, range.end)
     }
 
-    fn file(&mut self) {
+    fn file(&mut self, turns: &mut Turns<'_>) {
         let Some(mut from) = self.head() else { return };
         for _ in 0..RESUME_LIMIT {
-            match self.region(from) {
+            match self.region(from, turns) {
                 Some(next) if next > from => from = next,
                 _ => break,
             }
@@ -223,31 +256,35 @@ impl Reader<'_> {
         Some(version.end())
     }
 
-    /// Reads statements from `from` on. Gives where to go on after a brace that never closes.
-    fn region(&mut self, from: usize) -> Option<usize> {
+    /// Reads statements from `from` on, which are taken in turns. Gives where to go on after a brace that never closes.
+    fn region(&mut self, from: usize, turns: &mut Turns<'_>) -> Option<usize> {
         let mut found = region(self.text, from, self.budgets.brackets, &mut |_| false);
         unopened(self.text, &mut found);
         self.region_faults(from, &found);
-        let (text, source, budgets) = (self.text, self.source, self.budgets);
-        let empty = self.sink.like();
-        let shares = shares::map(
-            &found.pieces,
-            |piece| piece.range.len(),
-            |pieces| {
-                let mut sink = empty.like();
-                let mut reader = Reader::new(text, source, budgets, &mut sink);
-                reader.pieces(pieces);
-                (reader.out.stmts, sink)
-            },
-        );
-        for (stmts, sink) in shares {
-            if self.sink.is_full() {
-                break;
-            }
-            self.out.stmts.extend(stmts);
-            self.sink.absorb(sink);
+        let turn = |cut: &Cut| cut.range.start / turns.bytes;
+        for pieces in found.pieces.chunk_by(|one, next| turn(one) == turn(next)) {
+            self.turn(pieces, turns.take);
         }
         found.next
+    }
+
+    /// Reads the statements of some pieces on several threads.
+    fn turn(&mut self, pieces: &[Cut], take: &mut dyn FnMut(Vec<Stmt>)) {
+        let (text, source, budgets) = (self.text, self.source, self.budgets);
+        let empty = self.sink.like();
+        let read = |pieces: &[Cut]| {
+            let mut sink = empty.like();
+            let mut reader = Reader::new(text, source, budgets, &mut sink);
+            reader.pieces(pieces);
+            (reader.out.stmts, sink)
+        };
+        for (stmts, sink) in shares::map(pieces, |piece| piece.range.len(), read) {
+            if self.sink.is_full() {
+                return;
+            }
+            take(stmts);
+            self.sink.absorb(sink);
+        }
     }
 
     /// Reads the statements of some pieces.

@@ -109,6 +109,16 @@ fn loops_lists_and_nodes_end_at_their_budgets() {
 }
 
 #[test]
+fn a_large_file_gives_the_scene_of_a_small_one() {
+    let text = include_str!("../scenes/parametric.scene");
+    let small = load_bytes(text.as_bytes().to_vec(), Budgets::default());
+    let spheres = "@off shape sphere { radius = 1 m }\n".repeat(40_000);
+    let large = load_bytes(format!("{text}\n{spheres}").into_bytes(), Budgets::default());
+    assert_eq!(large.diagnostics, small.diagnostics);
+    assert_eq!(large.scene.expect("it has no mistake"), small.scene.expect("it has no mistake"));
+}
+
+#[test]
 fn shared_groups_count_as_often_as_they_stand() {
     let mut text = "let g0 = group { shape sphere { radius = 1 m } }\n".to_owned();
     for i in 1..40 {

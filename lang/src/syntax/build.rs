@@ -103,11 +103,12 @@ impl Builder<'_> {
                     }
                     span.end = place.end;
                     let node = self.node(part, &docs);
-                    return Stmt { span, docs, attrs, node };
+                    return Stmt { span, docs: docs.into(), attrs: attrs.into(), node };
                 }
             }
         }
-        Stmt { span, docs, attrs, node: StmtNode::Broken { defines: None } }
+        let node = StmtNode::Broken { defines: None };
+        Stmt { span, docs: docs.into(), attrs: attrs.into(), node }
     }
 
     fn attribute(&mut self, name: Name) -> Name {
@@ -132,7 +133,7 @@ impl Builder<'_> {
                 let mut next = take(&mut parts);
                 let mut ty = None;
                 if next.as_rule() == Rule::ty {
-                    ty = Some(make::ty(next.as_str(), self.span(&next)));
+                    ty = Some(Box::new(make::ty(next.as_str(), self.span(&next))));
                     next = take(&mut parts);
                 }
                 StmtNode::Let { name, ty, value: self.expr(next) }
@@ -141,13 +142,14 @@ impl Builder<'_> {
             Rule::fn_def => StmtNode::Fn(Arc::new(self.function(&mut parts))),
             Rule::for_stmt => {
                 let (index, item) = self.loop_names(&mut parts);
-                let over = self.expr(take(&mut parts));
-                StmtNode::For { index, item, over, body: self.block(take(&mut parts)) }
+                let over = Box::new(self.expr(take(&mut parts)));
+                let body = Box::new(self.block(take(&mut parts)));
+                StmtNode::For { index, item, over, body }
             }
             Rule::if_stmt => self.if_stmt(&mut parts),
             Rule::include_stmt => {
                 let path = self.string(take(&mut parts));
-                let with = parts.next().map_or_else(Vec::new, |record| self.record(record));
+                let with = parts.next().map_or_else(Box::default, |record| self.record(record));
                 StmtNode::Include { path, with }
             }
             Rule::import_stmt => {
@@ -181,7 +183,8 @@ impl Builder<'_> {
 
     fn expectation<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> Expect {
         let what = self.name(&take(parts));
-        let mut out = Expect { what, at: None, path: None, values: vec![], given: vec![] };
+        let given = Box::default();
+        let mut out = Expect { what, at: None, path: None, values: vec![], given };
         for part in parts {
             match part.as_rule() {
                 Rule::string => out.path = Some(self.string(part)),
@@ -195,12 +198,13 @@ impl Builder<'_> {
 
     fn place<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> StmtNode {
         let path = take(parts);
-        let what = Expr { span: self.span(&path), node: ExprNode::Path(self.path(path)) };
+        let span = self.span(&path);
+        let what = Box::new(Expr { span, node: ExprNode::Path(self.path(path)) });
         let (mut label, mut body) = (None, None);
         for part in parts {
             match part.as_rule() {
                 Rule::string => label = Some(self.string(part)),
-                _ => body = Some(self.block(part)),
+                _ => body = Some(Box::new(self.block(part))),
             }
         }
         StmtNode::Place { what, label, body }
@@ -216,10 +220,10 @@ impl Builder<'_> {
                 let cond = self.expr(take(&mut inner));
                 arms.push((cond, self.block(take(&mut inner))));
             } else {
-                otherwise = Some(self.block(part));
+                otherwise = Some(Box::new(self.block(part)));
             }
         }
-        StmtNode::If { arms, otherwise }
+        StmtNode::If { arms: arms.into(), otherwise }
     }
 
     /// `i` or `i, x`: an index, if two names are given, and the item.
@@ -257,9 +261,12 @@ impl Builder<'_> {
                 Rule::fn_param => params.push(self.fn_param(part)),
                 Rule::block => {
                     let body = FnBody::Template(self.block(part));
-                    return FnDef { name, params, body };
+                    return FnDef { name, params: params.into(), body };
                 }
-                _ => return FnDef { name, params, body: FnBody::Value(self.expr(part)) },
+                _ => {
+                    let body = FnBody::Value(self.expr(part));
+                    return FnDef { name, params: params.into(), body };
+                }
             }
         }
     }
@@ -281,7 +288,7 @@ impl Builder<'_> {
                 _ => self.dangling(&part),
             }
         }
-        Block { span, stmts }
+        Block { span, stmts: stmts.into() }
     }
 
     /// Warns of a doc comment that documents nothing.
@@ -301,7 +308,7 @@ impl Builder<'_> {
         Field { name, value: self.expr(take(parts)) }
     }
 
-    pub(super) fn record(&mut self, pair: Pair<'_, Rule>) -> Vec<Field> {
+    pub(super) fn record(&mut self, pair: Pair<'_, Rule>) -> Box<[Field]> {
         pair.into_inner().map(|field| self.field(&mut parts(field))).collect()
     }
 
@@ -321,7 +328,7 @@ impl Builder<'_> {
         Object { category, kind, label, body: self.block(take(parts)) }
     }
 
-    pub(super) fn path(&mut self, pair: Pair<'_, Rule>) -> Vec<Name> {
+    pub(super) fn path(&mut self, pair: Pair<'_, Rule>) -> Box<[Name]> {
         pair.into_inner().map(|name| self.name(&name)).collect()
     }
 
@@ -337,10 +344,10 @@ impl Builder<'_> {
     }
 
     /// The unit that a token names; `None` if it is none, which is told.
-    pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Unit> {
+    pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Arc<Unit>> {
         let text = pair.as_str();
         let bad = match Unit::parse(text) {
-            Ok(unit) => return Some(unit),
+            Ok(unit) => return Some(Arc::new(unit)),
             Err(bad) => bad,
         };
         let span = self.span(pair);

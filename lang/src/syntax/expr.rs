@@ -52,7 +52,7 @@ impl Builder<'_> {
             );
             return Expr { span: whole, node: ExprNode::Broken };
         }
-        join(operands, ops)
+        join(operands.drain(..), ops.drain(..))
     }
 
     fn postfix(&mut self, of: Expr, pair: Pair<'_, Rule>) -> Expr {
@@ -65,7 +65,7 @@ impl Builder<'_> {
                 ExprNode::Index { of: of_box(of), at }
             }
             Rule::member => {
-                let name = self.name(&take(&mut pair.into_inner()));
+                let name = Box::new(self.name(&take(&mut pair.into_inner())));
                 ExprNode::Member { of: of_box(of), name }
             }
             _ => {
@@ -83,7 +83,7 @@ impl Builder<'_> {
     }
 
     /// What stands between the brackets of a call.
-    pub(super) fn args(&mut self, pair: Pair<'_, Rule>) -> Vec<Arg> {
+    pub(super) fn args(&mut self, pair: Pair<'_, Rule>) -> Box<[Arg]> {
         pair.into_inner().map(|arg| self.arg(arg)).collect()
     }
 
@@ -158,7 +158,7 @@ impl Builder<'_> {
         let inside = match numbers {
             Some(None) => return ExprNode::Broken,
             Some(Some((data, span))) => Inside::Numbers(data, span),
-            None => Inside::Items(items),
+            None => Inside::Items(items.into()),
         };
         make::bracketed(inside, comma, unit, form)
     }
@@ -166,7 +166,7 @@ impl Builder<'_> {
     fn table(&mut self, pair: Pair<'_, Rule>) -> ExprNode {
         let mut parts = pair.into_inner();
         let data = self.numbers(&take(&mut parts));
-        let unit: Option<Option<Unit>> = parts.next().map(|unit| self.unit(&unit));
+        let unit: Option<Option<Arc<Unit>>> = parts.next().map(|unit| self.unit(&unit));
         match (data, unit) {
             (None, _) | (_, Some(None)) => ExprNode::Broken,
             (Some((data, _)), unit) => {
@@ -229,7 +229,8 @@ impl Builder<'_> {
                 let cond = self.expr(take(&mut inner));
                 arms.push((cond, self.expr(take(&mut inner))));
             } else {
-                return ExprNode::If { arms, otherwise: Box::new(self.expr(part)) };
+                let otherwise = Box::new(self.expr(part));
+                return ExprNode::If { arms: arms.into(), otherwise };
             }
         }
     }

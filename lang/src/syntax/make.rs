@@ -66,7 +66,7 @@ pub(super) fn unescape(body: &str) -> Arc<str> {
 }
 
 /// Words joined by dots that stand for a value.
-pub(super) fn path(words: Vec<Name>) -> ExprNode {
+pub(super) fn path(words: Box<[Name]>) -> ExprNode {
     match &words[..] {
         [word] if &*word.text == "true" => ExprNode::Bool(true),
         [word] if &*word.text == "false" => ExprNode::Bool(false),
@@ -78,11 +78,16 @@ pub(super) fn path(words: Vec<Name>) -> ExprNode {
 pub(super) enum Inside {
     /// Literal numbers; the span is that of them all.
     Numbers(Arc<[f64]>, Span),
-    Items(Vec<Expr>),
+    Items(Box<[Expr]>),
 }
 
 /// Brackets with what is in them; `comma` says whether one stands after the last item.
-pub(super) fn bracketed(inside: Inside, comma: bool, unit: Option<Unit>, form: Form) -> ExprNode {
+pub(super) fn bracketed(
+    inside: Inside,
+    comma: bool,
+    unit: Option<Arc<Unit>>,
+    form: Form,
+) -> ExprNode {
     let single = form == Form::Tuple && !comma;
     match inside {
         Inside::Numbers(data, span) if data.len() == 1 && single => {
@@ -90,10 +95,13 @@ pub(super) fn bracketed(inside: Inside, comma: bool, unit: Option<Unit>, form: F
             ExprNode::Paren { inner: Box::new(inner), unit }
         }
         Inside::Numbers(data, _) => ExprNode::Numbers { data, unit, form },
-        Inside::Items(mut items) if items.len() == 1 && single => {
-            let inner = items.pop().expect("its length is one");
-            ExprNode::Paren { inner: Box::new(inner), unit }
-        }
+        Inside::Items(items) if single => match <Box<[Expr; 1]>>::try_from(items) {
+            Ok(one) => {
+                let [inner] = *one;
+                ExprNode::Paren { inner: Box::new(inner), unit }
+            }
+            Err(items) => ExprNode::Items { items, unit, form },
+        },
         Inside::Items(items) => ExprNode::Items { items, unit, form },
     }
 }

@@ -1,7 +1,6 @@
 //! Operands and operators joined as they bind.
 
-use std::iter::Peekable;
-use std::vec::IntoIter;
+use std::vec::Drain;
 
 use luxel_core::diag::Span;
 
@@ -30,49 +29,60 @@ pub(super) fn prefix(token: &str) -> Op {
 }
 
 /// Joins operands by the operators between them.
-pub(super) fn join(operands: Vec<Operand>, ops: Vec<(Op, Span)>) -> Expr {
-    Joiner { operands: operands.into_iter(), ops: ops.into_iter().peekable() }.chain(0)
+pub(super) fn join(operands: Drain<'_, Operand>, ops: Drain<'_, (Op, Span)>) -> Expr {
+    Joiner { operands, ops }.chain(0)
 }
 
-struct Joiner {
-    operands: IntoIter<Operand>,
-    ops: Peekable<IntoIter<(Op, Span)>>,
+struct Joiner<'a> {
+    operands: Drain<'a, Operand>,
+    ops: Drain<'a, (Op, Span)>,
 }
 
-impl Joiner {
+impl Joiner<'_> {
     /// Joins by operators that bind at least as strongly as `level`.
     fn chain(&mut self, level: usize) -> Expr {
         if level == POWER {
             return self.power();
         }
         let first = self.chain(level + 1);
-        let mut rest = vec![];
-        while let Some((op, span)) = self.ops.next_if(|(op, _)| op.strength() == level) {
-            rest.push((op, span, self.chain(level + 1)));
-        }
-        chained(first, rest)
+        let n = self.count(level);
+        self.chained(first, n, |joiner| joiner.chain(level + 1))
     }
 
     /// Joins by `^`. A sign before the first applies to the entire power: −2² is −4.
     fn power(&mut self) -> Expr {
         let first = self.operand();
-        let mut rest = vec![];
-        while let Some((op, span)) = self.ops.next_if(|(op, _)| op.strength() == POWER) {
-            let next = self.operand();
-            rest.push((op, span, signed(next.prefixes, next.expr)));
-        }
-        signed(first.prefixes, chained(first.expr, rest))
+        let n = self.count(POWER);
+        let power = self.chained(first.expr, n, |joiner| {
+            let next = joiner.operand();
+            signed(next.prefixes, next.expr)
+        });
+        signed(first.prefixes, power)
+    }
+
+    /// How many operators of a level follow before one that binds less.
+    fn count(&self, level: usize) -> usize {
+        let strengths = self.ops.as_slice().iter().map(|(op, _)| op.strength());
+        strengths.take_while(|strength| *strength >= level).filter(|it| *it == level).count()
     }
 
     fn operand(&mut self) -> Operand {
         self.operands.next().expect("an operand stands on each side of an operator")
     }
-}
 
-fn chained(first: Expr, rest: Vec<(Op, Span, Expr)>) -> Expr {
-    let Some((_, _, last)) = rest.last() else { return first };
-    let span = first.span.to(last.span);
-    Expr { span, node: ExprNode::Chain { first: Box::new(first), rest } }
+    /// An operand and the next `n` with the operators before them.
+    fn chained(&mut self, first: Expr, n: usize, mut next: impl FnMut(&mut Self) -> Expr) -> Expr {
+        if n == 0 {
+            return first;
+        }
+        let mut rest = Vec::with_capacity(n);
+        for _ in 0..n {
+            let (op, span) = self.ops.next().expect("there are so many");
+            rest.push((op, span, next(self)));
+        }
+        let span = rest.last().map_or(first.span, |(_, _, last)| first.span.to(last.span));
+        Expr { span, node: ExprNode::Chain { first: Box::new(first), rest: rest.into() } }
+    }
 }
 
 /// An operand under the signs before it.

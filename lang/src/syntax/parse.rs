@@ -498,6 +498,6 @@ impl Reader<'_> {
         let name = name.filter(|_| misspelt || DEFINING.contains(&first));
         let defines = name.map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
         let node = StmtNode::Broken { defines };
-        self.out.stmts.push(Stmt { span, docs: vec![], attrs: vec![], node });
+        self.out.stmts.push(Stmt { span, docs: Box::default(), attrs: Box::default(), node });
     }
 }

@@ -57,20 +57,21 @@ impl Reader<'_> {
     fn operation(&mut self, place: Place) -> Option<Expr> {
         let (first, _) = self.operand(place)?;
         let Some(op) = self.infix(place) else { return Some(signed(first.prefixes, first.expr)) };
-        let (mut operands, mut ops, mut next) = (vec![first], vec![], Some(op));
-        let mut end = None;
+        let (operands, ops) = (self.operands.len(), self.ops.len());
+        self.operands.push(first);
+        let (mut next, mut end) = (Some(op), None);
         while let Some(op) = next {
-            ops.push(op);
+            self.ops.push(op);
             let (operand, its_end) = self.operand(place)?;
-            operands.push(operand);
+            self.operands.push(operand);
             (end, next) = (its_end, self.infix(place));
         }
-        if are_too_many(ops.len(), 0, self.budgets.operators) {
+        if are_too_many(self.ops.len() - ops, 0, self.budgets.operators) {
             return None;
         }
         // What stands behind the last call or member is not taken.
         self.cursor.at = end.unwrap_or(self.cursor.at);
-        Some(join(operands, ops))
+        Some(join(self.operands.drain(operands..), self.ops.drain(ops..)))
     }
 
     /// An operand with the blanks after it, and where its last call, index or member ends.
@@ -123,7 +124,7 @@ impl Reader<'_> {
             }
             b'.' => {
                 self.cursor.at += 1;
-                ExprNode::Member { of: Box::new(of), name: self.name()? }
+                ExprNode::Member { of: Box::new(of), name: Box::new(self.name()?) }
             }
             _ => {
                 self.cursor.at += "with".len();
@@ -141,7 +142,7 @@ impl Reader<'_> {
     }
 
     /// What stands between the brackets of a call, and where.
-    pub(super) fn args(&mut self) -> Option<(Span, Vec<Arg>)> {
+    pub(super) fn args(&mut self) -> Option<(Span, Box<[Arg]>)> {
         self.cursor.skip();
         let start = self.cursor.at;
         self.cursor.mark(b'(')?;
@@ -248,7 +249,8 @@ impl Reader<'_> {
             arms.push((cond, self.braced()?));
             self.cursor.takes_word("else").then_some(())?;
         }
-        Some(ExprNode::If { arms, otherwise: Box::new(self.braced()?) })
+        let otherwise = Box::new(self.braced()?);
+        Some(ExprNode::If { arms: arms.into(), otherwise })
     }
 
     fn braced(&mut self) -> Option<Expr> {
@@ -259,13 +261,13 @@ impl Reader<'_> {
     }
 
     /// Fields between braces.
-    pub(super) fn record(&mut self) -> Option<Vec<Field>> {
+    pub(super) fn record(&mut self) -> Option<Box<[Field]>> {
         self.cursor.mark(b'{')?;
         let mut fields = vec![];
         loop {
             self.cursor.skip();
             if self.cursor.takes(b'}') {
-                return Some(fields);
+                return Some(fields.into());
             }
             let name = self.definition()?;
             self.cursor.equals().then_some(())?;

@@ -97,13 +97,13 @@ impl Reader<'_> {
     }
 
     /// Words joined by dots.
-    pub(super) fn path(&mut self) -> Option<Vec<Name>> {
+    pub(super) fn path(&mut self) -> Option<Box<[Name]>> {
         let mut words = vec![self.name()?];
         while self.cursor.peek() == Some(b'.') && self.cursor.ahead(1).is_some_and(begins_word) {
             self.cursor.at += 1;
             words.push(self.name()?);
         }
-        Some(words)
+        Some(words.into())
     }
 
     /// The head of an object, if one stands here.

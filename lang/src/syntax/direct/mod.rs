@@ -19,7 +19,8 @@ use std::ops::Range;
 
 use luxel_core::diag::{SourceId, Span};
 
-use super::tree::Stmt;
+use super::operators::Operand;
+use super::tree::{Op, Stmt};
 use crate::budgets::Budgets;
 use cursor::Cursor;
 pub(super) use words::Words;
@@ -38,7 +39,16 @@ pub(super) fn read(
 ) -> Option<Stmt> {
     let end = range.end;
     let cursor = Cursor::new(&text[..end], range.start);
-    let mut reader = Reader { cursor, source, budgets, words, numbers: vec![], depth: 0 };
+    let mut reader = Reader {
+        cursor,
+        source,
+        budgets,
+        words,
+        numbers: vec![],
+        operands: vec![],
+        ops: vec![],
+        depth: 0,
+    };
     reader.cursor.skip();
     let stmt = reader.stmt()?;
     reader.cursor.skip();
@@ -53,6 +63,9 @@ struct Reader<'a> {
     words: &'a mut Words,
     /// Room for the numbers of a list.
     numbers: Vec<f64>,
+    /// Operands and operators of expressions that are being read, the outermost first.
+    operands: Vec<Operand>,
+    ops: Vec<(Op, Span)>,
     depth: usize,
 }
 
@@ -78,12 +91,12 @@ impl Reader<'_> {
         &mut self,
         close: u8,
         mut read: impl FnMut(&mut Self) -> Option<T>,
-    ) -> Option<(Vec<T>, bool)> {
+    ) -> Option<(Box<[T]>, bool)> {
         let (mut made, mut comma) = (vec![], false);
         loop {
             self.cursor.skip();
             if self.cursor.takes(close) {
-                return Some((made, comma));
+                return Some((made.into(), comma));
             }
             if !made.is_empty() && !comma {
                 return None;

@@ -33,14 +33,15 @@ impl Reader<'_> {
             loop {
                 reader.cursor.skip();
                 if reader.cursor.takes(b'}') {
-                    return Some(Block { span: reader.span(start), stmts });
+                    let span = reader.span(start);
+                    return Some(Block { span, stmts: stmts.into() });
                 }
                 stmts.push(reader.stmt()?);
             }
         })
     }
 
-    fn docs(&mut self) -> Vec<Doc> {
+    fn docs(&mut self) -> Box<[Doc]> {
         let mut docs = vec![];
         while self.cursor.is_doc() {
             let start = self.cursor.at;
@@ -49,10 +50,10 @@ impl Reader<'_> {
             docs.push(make::doc(self.cursor.since(start), self.span(start)));
             self.cursor.skip();
         }
-        docs
+        docs.into()
     }
 
-    fn attributes(&mut self) -> Option<Vec<Name>> {
+    fn attributes(&mut self) -> Option<Box<[Name]>> {
         let mut attrs = vec![];
         while self.cursor.peek() == Some(b'@') {
             let start = self.cursor.at;
@@ -62,7 +63,7 @@ impl Reader<'_> {
             attrs.push(Name { text, span: self.span(start) });
             self.cursor.skip();
         }
-        Some(attrs)
+        Some(attrs.into())
     }
 
     fn node(&mut self, docs: &[Doc]) -> Option<StmtNode> {
@@ -82,8 +83,8 @@ impl Reader<'_> {
             "fn" => Some(StmtNode::Fn(Arc::new(self.function()?))),
             "for" => {
                 let (index, item) = self.loop_names()?;
-                let over = self.expr(Place::Cond)?;
-                Some(StmtNode::For { index, item, over, body: self.block()? })
+                let over = Box::new(self.expr(Place::Cond)?);
+                Some(StmtNode::For { index, item, over, body: Box::new(self.block()?) })
             }
             "if" => self.if_stmt(),
             "place" => self.place(),
@@ -130,7 +131,8 @@ impl Reader<'_> {
         match word {
             "include" => {
                 let path = self.string()?;
-                let with = if self.cursor.takes_word("with") { self.record()? } else { Vec::new() };
+                let with =
+                    if self.cursor.takes_word("with") { self.record()? } else { Box::default() };
                 Some(StmtNode::Include { path, with })
             }
             "import" => {
@@ -151,7 +153,7 @@ impl Reader<'_> {
     fn let_stmt(&mut self) -> Option<StmtNode> {
         let name = self.definition()?;
         self.cursor.skip();
-        let ty = if self.cursor.takes(b':') { Some(self.ty()?) } else { None };
+        let ty = if self.cursor.takes(b':') { Some(Box::new(self.ty()?)) } else { None };
         Some(StmtNode::Let { name, ty, value: self.assigned()? })
     }
 
@@ -205,11 +207,11 @@ impl Reader<'_> {
             let cond = self.expr(Place::Cond)?;
             arms.push((cond, self.block()?));
             if !self.cursor.takes_word("else") {
-                return Some(StmtNode::If { arms, otherwise: None });
+                return Some(StmtNode::If { arms: arms.into(), otherwise: None });
             }
             if !self.cursor.takes_word("if") {
-                let otherwise = Some(self.block()?);
-                return Some(StmtNode::If { arms, otherwise });
+                let otherwise = Some(Box::new(self.block()?));
+                return Some(StmtNode::If { arms: arms.into(), otherwise });
             }
         }
     }
@@ -218,19 +220,20 @@ impl Reader<'_> {
         self.cursor.skip();
         let start = self.cursor.at;
         let path = self.path()?;
-        let what = Expr { span: self.span(start), node: ExprNode::Path(path) };
+        let what = Box::new(Expr { span: self.span(start), node: ExprNode::Path(path) });
         self.cursor.skip();
         let has_label = self.cursor.peek() == Some(b'"');
         let label = if has_label { Some(self.string()?) } else { None };
         self.cursor.skip();
         let has_body = self.cursor.peek() == Some(b'{');
-        let body = if has_body { Some(self.block()?) } else { None };
+        let body = if has_body { Some(Box::new(self.block()?)) } else { None };
         Some(StmtNode::Place { what, label, body })
     }
 
     fn expectation(&mut self) -> Option<Expect> {
         let what = self.name()?;
-        let mut out = Expect { what, at: None, path: None, values: vec![], given: vec![] };
+        let given = Box::default();
+        let mut out = Expect { what, at: None, path: None, values: vec![], given };
         self.cursor.skip();
         if self.cursor.peek() == Some(b'"') {
             out.path = Some(self.string()?);

@@ -1,6 +1,7 @@
 //! Numbers, units, strings and tables.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use luxel_sdk::params::Unit;
 
@@ -154,7 +155,7 @@ impl Reader<'_> {
     /// What `make` makes of the unit that stands after a number or bracket on its line, if one does.
     pub(super) fn with_unit(
         &mut self,
-        make: impl FnOnce(Option<Unit>) -> ExprNode,
+        make: impl FnOnce(Option<Arc<Unit>>) -> ExprNode,
     ) -> Option<ExprNode> {
         let cursor = &mut self.cursor;
         let before = cursor.at;
@@ -170,7 +171,8 @@ impl Reader<'_> {
             end = cursor.at;
         }
         cursor.at = end;
-        Unit::parse(cursor.since(start)).ok().map(|unit| make(Some(unit)))
+        let text = cursor.since(start);
+        self.words.unit(text).map(|unit| make(Some(unit)))
     }
 
     /// What stands between brackets up to `close`, and whether a comma stands after the last.

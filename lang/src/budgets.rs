@@ -23,8 +23,10 @@ pub struct Budgets {
     pub nodes: usize,
     /// Placements when shared groups are counted as often as they stand.
     pub instances: u64,
-    /// Bytes of one string.
+    /// Bytes of one string or word.
     pub string: usize,
+    /// Names that one block defines.
+    pub names: usize,
     /// Words, marks and texts of one statement, numbers left out.
     pub pieces: usize,
     /// Bytes that large lists, comprehensions and records hold, all that were made counted.
@@ -49,6 +51,7 @@ impl Default for Budgets {
             nodes: 1_000_000,
             instances: 100_000_000,
             string: 1 << 20,
+            names: 500_000,
             pieces: 300_000,
             value_bytes: 96 << 20,
             nesting: 640,

@@ -119,9 +119,11 @@ impl Env {
     }
 
     /// Defines a name in the innermost block. The first definition stays: a second one is a mistake
-    /// that was told.
-    pub(crate) fn define(&self, name: &Arc<str>, value: Value) {
-        self.frame.names.borrow_mut().define(name, value);
+    /// that was told. Gives how many names the block has.
+    pub(crate) fn define(&self, name: &Arc<str>, value: Value) -> usize {
+        let mut names = self.frame.names.borrow_mut();
+        names.define(name, value);
+        names.list.len()
     }
 
     /// The value of a name.

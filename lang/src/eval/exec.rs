@@ -69,16 +69,16 @@ impl Evaluator<'_> {
                     found = self.fit(ty, found, value.span, env);
                 }
                 self.note(name, &found);
-                env.define(&name.text, found);
+                self.define(name, found, env);
             }
             StmtNode::Param(def) => {
                 let value = self.param(def, env);
                 self.note(&def.name, &value);
-                env.define(&def.name.text, value);
+                self.define(&def.name, value, env);
             }
             StmtNode::Fn(def) => {
                 let function = Function { def: def.clone(), env: env.frozen() };
-                env.define(&def.name.text, Value::Function(Rc::new(function)));
+                self.define(&def.name, Value::Function(Rc::new(function)), env);
             }
             StmtNode::For { index, item, over, body: block } => {
                 self.for_loop((index.as_ref(), item), over, block, env, body);
@@ -86,7 +86,7 @@ impl Evaluator<'_> {
             StmtNode::If { arms, otherwise } => self.if_stmt(arms, otherwise.as_deref(), env, body),
             StmtNode::Import { path, name } => {
                 let module = self.import(path, env);
-                env.define(&name.text, module);
+                self.define(name, module, env);
             }
             StmtNode::Use { name, version } => self.require(name, version.as_ref()),
             StmtNode::Set { path, value } => {
@@ -105,6 +105,15 @@ impl Evaluator<'_> {
                 }
             }
             _ => self.content(stmt, env, body),
+        }
+    }
+
+    /// Defines a name for what stands after it in its block.
+    fn define(&mut self, name: &Name, value: Value, env: &Env) {
+        let n_names = env.define(&name.text, value);
+        if n_names > self.budgets.names && !self.stopped {
+            let message = format!("a block defines more than {} names", self.budgets.names);
+            self.over_budget("E0511", name.span, message);
         }
     }
 

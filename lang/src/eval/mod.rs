@@ -81,6 +81,7 @@ fn load_in_turns(
         depth: 0,
         placements: 0,
         stopped: false,
+        spent: None,
         held: 0,
         bytes_read: 0,
         includes: 0,
@@ -118,8 +119,10 @@ struct Evaluator<'a> {
     steps: u64,
     depth: usize,
     placements: usize,
-    /// A budget is spent: everything winds up.
+    /// Everything winds up: a budget is spent, or too much was told.
     stopped: bool,
+    /// Where a budget was spent, if one was.
+    spent: Option<Span>,
     /// Bytes of lists and records that were made so far.
     held: usize,
     bytes_read: usize,
@@ -196,7 +199,7 @@ impl Evaluator<'_> {
             diagnostic = diagnostic.label(*outer, "inside this loop");
         }
         self.tell(diagnostic);
-        self.stopped = true;
+        (self.stopped, self.spent) = (true, Some(span));
     }
 
     /// Goes one level deeper; `false` when that is too deep, which is told.
@@ -208,7 +211,7 @@ impl Evaluator<'_> {
         if !self.stopped {
             let message = format!("evaluation nests more than {} deep", self.budgets.nesting);
             self.tell(Diagnostic::error("E0507", span, message));
-            self.stopped = true;
+            (self.stopped, self.spent) = (true, Some(span));
         }
         false
     }

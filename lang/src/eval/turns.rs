@@ -70,13 +70,20 @@ impl Evaluator<'_> {
             self.stmts(&stmts, &env, &mut body);
             // What stands in the file itself is no object's.
             body.fields.clear();
-            for stmt in stmts {
-                names.add(text, stmt);
+            // Where a budget is spent, the rest is not read.
+            let goes_on = self.spent.is_none();
+            if goes_on {
+                for stmt in stmts {
+                    names.add(text, stmt);
+                }
             }
+            goes_on
         };
         let mut turns = Turns { bytes, take: &mut take };
         syntax::parse_in_turns(text, source, &budgets, &mut told, &mut turns);
-        names.tell(text, &mut told);
+        if self.spent.is_none() {
+            names.tell(text, &mut told);
+        }
         self.apply_sets();
         if told.is_full() {
             self.stopped = true;

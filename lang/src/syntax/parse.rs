@@ -15,7 +15,7 @@ use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
 use super::unopened::unopened;
-use super::weigh::weigh;
+use super::weigh::too_large;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
 use crate::prescan::{Fault, scan};
@@ -37,7 +37,10 @@ pub(crate) struct Tree {
 /// Reads one text; what cannot be read is told and leaves `StmtNode::Broken`.
 pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut Sink) -> Tree {
     let mut out = Tree::default();
-    let mut take = |stmts| out.stmts.extend(stmts);
+    let mut take = |stmts| {
+        out.stmts.extend(stmts);
+        true
+    };
     Reader::new(text, source, budgets, sink)
         .file(&mut Turns { bytes: usize::MAX, take: &mut take });
     out
@@ -47,7 +50,8 @@ pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut 
 pub(crate) struct Turns<'t> {
     /// Bytes of text that are read before what has been read is taken.
     pub(crate) bytes: usize,
-    pub(crate) take: &'t mut dyn FnMut(Vec<Stmt>),
+    /// Takes some; whether more are wanted.
+    pub(crate) take: &'t mut dyn FnMut(Vec<Stmt>) -> bool,
 }
 
 /// The same, in turns.
@@ -256,20 +260,23 @@ impl Reader<'_> {
         Some(version.end())
     }
 
-    /// Reads statements from `from` on, which are taken in turns. Gives where to go on after a brace that never closes.
+    /// Reads statements from `from` on, which are taken in turns. Gives where to go on after a brace
+    /// that never closes.
     fn region(&mut self, from: usize, turns: &mut Turns<'_>) -> Option<usize> {
         let mut found = region(self.text, from, self.budgets.brackets, &mut |_| false);
         unopened(self.text, &mut found);
         self.region_faults(from, &found);
         let turn = |cut: &Cut| cut.range.start / turns.bytes;
         for pieces in found.pieces.chunk_by(|one, next| turn(one) == turn(next)) {
-            self.turn(pieces, turns.take);
+            if !self.turn(pieces, turns.take) {
+                return None;
+            }
         }
         found.next
     }
 
-    /// Reads the statements of some pieces on several threads.
-    fn turn(&mut self, pieces: &[Cut], take: &mut dyn FnMut(Vec<Stmt>)) {
+    /// Reads the statements of some pieces on several threads; whether more are wanted.
+    fn turn(&mut self, pieces: &[Cut], take: &mut dyn FnMut(Vec<Stmt>) -> bool) -> bool {
         let (text, source, budgets) = (self.text, self.source, self.budgets);
         let empty = self.sink.like();
         let read = |pieces: &[Cut]| {
@@ -279,12 +286,12 @@ impl Reader<'_> {
             (reader.out.stmts, sink)
         };
         for (stmts, sink) in shares::map(pieces, |piece| piece.range.len(), read) {
-            if self.sink.is_full() {
-                return;
+            if self.sink.is_full() || !take(stmts) {
+                return false;
             }
-            take(stmts);
             self.sink.absorb(sink);
         }
+        true
     }
 
     /// Reads the statements of some pieces.
@@ -416,24 +423,10 @@ impl Reader<'_> {
 
     /// Whether a statement would take too much to read, which is told.
     fn is_too_large(&mut self, chunk: &Range<usize>) -> bool {
-        let Budgets { pieces, string, .. } = *self.budgets;
-        if chunk.len() <= pieces.min(string) {
-            return false;
-        }
-        let weight = weigh(&self.text[chunk.clone()], string);
-        if let Some(at) = weight.text {
-            let span = self.span(chunk.start + at.start..chunk.start + at.end);
-            let message = format!("a string of more than {string} bytes");
-            self.sink.push(Diagnostic::error("E0509", span, message));
-        } else if weight.pieces > pieces {
-            let first = tokens(self.text, chunk.clone()).next().map_or(0..0, |t| t.start..t.end());
-            let message = format!("a statement of more than {pieces} words and marks");
-            let found = Diagnostic::error("E0510", self.span(first), message);
-            self.sink.push(found.help("part it; many numbers belong into `#[ … ]` or a file"));
-        } else {
-            return false;
-        }
-        true
+        let found = too_large(self.text, chunk, self.source, self.budgets);
+        let is_found = found.is_some();
+        found.into_iter().for_each(|found| self.sink.push(found));
+        is_found
     }
 
     /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those

@@ -2,17 +2,48 @@
 
 use std::ops::Range;
 
-/// How large a statement is.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Weight {
-    /// Words, marks and texts; numbers and what parts them are read at one go and count nothing.
-    pub(super) pieces: usize,
-    /// The first text that is longer than the limit.
-    pub(super) text: Option<Range<usize>>,
+use luxel_core::diag::{Diagnostic, SourceId, Span};
+
+use super::lex::tokens;
+use crate::budgets::Budgets;
+
+/// What is to be told of a statement that would take too much to read.
+pub(super) fn too_large(
+    text: &str,
+    chunk: &Range<usize>,
+    source: SourceId,
+    budgets: &Budgets,
+) -> Option<Diagnostic> {
+    let Budgets { pieces, string, .. } = *budgets;
+    if chunk.len() <= pieces.min(string) {
+        return None;
+    }
+    let weight = weigh(&text[chunk.clone()], string);
+    if let Some(at) = weight.text {
+        let span = Span::new(source, chunk.start + at.start, chunk.start + at.end);
+        let what = if text[span.range()].starts_with('"') { "string" } else { "word" };
+        let message = format!("a {what} of more than {string} bytes");
+        return Some(Diagnostic::error("E0509", span, message));
+    }
+    (weight.pieces > pieces).then(|| {
+        let first = tokens(text, chunk.clone()).next().map_or(0..0, |t| t.start..t.end());
+        let message = format!("a statement of more than {pieces} words and marks");
+        let found = Diagnostic::error("E0510", Span::new(source, first.start, first.end), message);
+        found.help("part it; many numbers belong into `#[ … ]` or a file")
+    })
 }
 
-/// Weighs a statement whose brackets and texts close; texts longer than `limit` are noted.
-pub(super) fn weigh(text: &str, limit: usize) -> Weight {
+/// How large a statement is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Weight {
+    /// Words, marks and texts; numbers and what parts them are read at one go and count nothing.
+    pieces: usize,
+    /// The first text or word that is longer than the limit.
+    text: Option<Range<usize>>,
+}
+
+/// Weighs a statement whose brackets and texts close; texts and words longer than `limit` are noted.
+fn weigh(text: &str, limit: usize) -> Weight {
     let bytes = text.as_bytes();
     let (mut out, mut at, mut last) = (Weight::default(), 0, b',');
     while let Some(&byte) = bytes.get(at) {
@@ -47,6 +78,9 @@ pub(super) fn weigh(text: &str, limit: usize) -> Weight {
                 let is_word = |b: &&u8| b.is_ascii_alphanumeric() || **b == b'_';
                 if is_word(&&byte) {
                     at += bytes[at..].iter().take_while(is_word).count();
+                    if at - start > limit && out.text.is_none() {
+                        out.text = Some(start..at);
+                    }
                 }
                 out.pieces += 1;
             }
@@ -87,7 +121,11 @@ mod tests {
         assert_eq!(pieces("let a = #[ 1 2 x y z ] m"), 5);
         assert_eq!(pieces("x.a.a + b"), 7);
         assert_eq!(pieces("a /* #[ \" */ = b // 5\" wide\n + c /**/ /* "), 5);
+        assert_eq!(weigh("a = b12345678901", 10).text, Some(4..16));
+        assert_eq!(weigh("a = b123456789", 10).text, None);
         assert_eq!(weigh("a = \"0123456789\"", 10).text, None);
+        assert_eq!(weigh("a = b12345678901", 10).text, Some(4..16));
+        assert_eq!(weigh("a = b123456789", 10).text, None);
         assert_eq!(weigh("a = \"01234\\\"6789a\"", 10).text, Some(4..18));
     }
 }

@@ -21,6 +21,7 @@ pub(crate) const SMALL: Budgets = Budgets {
     instances: 100,
     string: 64,
     pieces: 64,
+    names: 8,
     value_bytes: 4000,
     nesting: 16,
     diagnostics: 3,

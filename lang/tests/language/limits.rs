@@ -76,8 +76,8 @@ fn what_makes_much_of_a_short_text_is_told_soon() {
     // Each took gigabytes or minutes before it was bounded.
     check(&"}".repeat(2_000_000), "E0010");
     check(&"[)".repeat(1_000_000), "E0009");
-    check(&format!("let a = {}", "b".repeat(5_000_000)), "E0101");
-    let names = format!("let {0} = 1\nlet b = {0}c", "a".repeat(2_000_000));
+    check(&format!("let a = {}", "b".repeat(5_000_000)), "E0509");
+    let names = format!("let {0} = 1\nlet b = {0}c", "a".repeat(1_000_000));
     check(&names, "E0101");
     check(&format!("let a = b{}", ".a".repeat(1_000_000)), "E0510");
     check(&format!("let a = [{}]", "x, ".repeat(1_000_000)), "E0510");
@@ -93,11 +93,14 @@ fn what_makes_much_of_a_short_text_is_told_soon() {
 
 #[test]
 fn loops_lists_and_nodes_end_at_their_budgets() {
-    let small = Budgets { steps: 100_000, nodes: 1000, list: 1000, ..Budgets::default() };
+    let small =
+        Budgets { steps: 100_000, nodes: 1000, list: 1000, names: 1000, ..Budgets::default() };
     let check = |text: &str, code: &str| assert_eq!(codes_within(text, small), [code], "{text}");
     check("for i in 0..1000000000 { let a = i }", "E0502");
     check("for i in 0..1000000 { for j in 0..1000000 { } }", "E0502");
     check("let list = [for i in 0..100000 => i]", "E0503");
+    let names: Vec<_> = (0..1001).map(|i| format!("let a{i} = 1")).collect();
+    check(&names.join("\n"), "E0511");
     check("let list = [for i in 0..100000 if true => i]", "E0503");
     check("for i in 0..100000 { shape sphere { radius = 1 m } }", "E0501");
     // Lists that share their items: 2^40 comparisons of 40 short statements.

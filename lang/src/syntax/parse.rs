@@ -92,8 +92,8 @@ pub(crate) fn read_piece(
 }
 
 /// Reads one text in one piece, without recovery: the oracle of `parse`.
-#[cfg(test)]
-pub(crate) fn parse_whole(
+#[cfg(any(test, feature = "fuzz"))]
+pub(super) fn parse_whole(
     text: &str,
     source: SourceId,
     budgets: &Budgets,

@@ -1,5 +1,6 @@
 //! The grammar against the pre-scan, and mistakes in bulk.
 
+use super::parse::parse_whole;
 use super::*;
 use crate::Budgets;
 use crate::sink::Sink;

@@ -1,0 +1,32 @@
+//! Reading by statement is reading the file whole. Asked by tests and by `tests/fuzz`.
+
+use luxel_core::diag::SourceId;
+
+use super::parse::{parse, parse_whole};
+use crate::budgets::Budgets;
+use crate::prescan::{Fault, scan};
+use crate::sink::Sink;
+
+/// Reads a text in both ways; whether it can be read.
+///
+/// # Panics
+/// If one way reads what the other refuses, or something else.
+pub(crate) fn whole(text: &str) -> bool {
+    let (budgets, source) = (Budgets::default(), SourceId(0));
+    let too_deep = |fault: &Fault| matches!(fault, Fault::TooDeep { .. });
+    if scan(text, 0..text.len(), 0, budgets.brackets).faults.iter().any(too_deep) {
+        return false;
+    }
+    let mut told = Sink::new(budgets.diagnostics);
+    let by_statement = parse(text, source, &budgets, &mut told);
+    let mut told_whole = Sink::new(budgets.diagnostics);
+    let whole = parse_whole(text, source, &budgets, &mut told_whole);
+    let whole = whole.filter(|_| told_whole.errors() == 0);
+    if told.errors() > 0 {
+        let told = told.finish();
+        assert!(whole.is_none(), "only by statement something is wrong: {told:?}\n{text}");
+        return false;
+    }
+    assert_eq!(Some(by_statement), whole, "{text}");
+    true
+}

@@ -1,8 +1,8 @@
 //! Reading by statement is reading the file whole. Asked by tests and by `tests/fuzz`.
 
-use luxel_core::diag::SourceId;
+use luxel_core::diag::{Diagnostic, SourceId};
 
-use super::parse::{parse, parse_whole};
+use super::parse::{parse, parse_whole, read_head};
 use crate::budgets::Budgets;
 use crate::prescan::{Fault, scan};
 use crate::sink::Sink;
@@ -13,6 +13,10 @@ use crate::sink::Sink;
 /// If one way reads what the other refuses, or something else.
 pub(crate) fn whole(text: &str) -> bool {
     let (budgets, source) = (Budgets::default(), SourceId(0));
+    // The grammar takes any version.
+    if read_head(text, &budgets).1.iter().any(Diagnostic::is_error) {
+        return false;
+    }
     let too_deep = |fault: &Fault| matches!(fault, Fault::TooDeep { .. });
     if scan(text, 0..text.len(), 0, budgets.brackets).faults.iter().any(too_deep) {
         return false;

@@ -278,7 +278,7 @@ impl Reader<'_> {
             Fault::Unclosed { open } => {
                 let message = format!("this `{}` is never closed", byte(*open));
                 let found = Diagnostic::error("E0008", self.span(*open..open + 1), message);
-                match resume {
+                match resume.filter(|at| at > open) {
                     Some(at) => found.label(self.span(at..at), "it most likely closes before this"),
                     None => found,
                 }

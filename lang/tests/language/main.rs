@@ -3,9 +3,12 @@
 
 mod case;
 mod cases;
+mod damage;
 mod fenced;
 mod limits;
 mod plant;
 mod registry;
 mod scenes;
 mod seeded;
+#[path = "../../../tests/fuzz/src/targets/told.rs"]
+mod told;

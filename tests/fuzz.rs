@@ -86,7 +86,7 @@ fn judges_of_scenes_look_at_them() {
     assert!(targets::damage::judge(scene));
     assert!(targets::evaluate::judge(scene));
     assert!(targets::nested::judge(b"group {\n~a = = 1\n~}\n"));
-    let wrong: String = (0..20).map(|i| format!("let a{i} = nope\n")).collect();
-    assert!(!targets::damage::judge(format!("scene 1\n{wrong}").as_bytes()));
+    let wrong: Vec<String> = (0..20).map(|i| format!("let a{i} = nope")).collect();
+    assert!(!targets::damage::judge(format!("scene 1\n{}", wrong.join("\n")).as_bytes()));
     assert!(!targets::import::judge(b"nope\n"));
 }

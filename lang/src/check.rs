@@ -56,8 +56,8 @@ pub fn edits(bytes: &[u8]) -> bool {
     let mut n = 0;
     for part in parts.take(32) {
         let Some(([high, low, length], with)) = part.split_first_chunk() else { continue };
-        let share = usize::from(*high) << 8 | usize::from(*low);
-        let start = share * (document.text().len() + 1) >> 16;
+        let share = usize::from(u16::from_be_bytes([*high, *low]));
+        let start = (share * (document.text().len() + 1)) >> 16;
         let (end, with) = (start + usize::from(*length), String::from_utf8_lossy(with));
         document.edit(start..end, &with);
         n += 1;

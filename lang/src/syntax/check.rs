@@ -2,7 +2,8 @@
 
 use luxel_core::diag::{Diagnostic, SourceId};
 
-use super::parse::{parse, parse_whole, read_head};
+use super::lex::tokens;
+use super::parse::{Tree, parse, parse_whole, read_head};
 use crate::budgets::Budgets;
 use crate::prescan::{Fault, scan};
 use crate::sink::Sink;
@@ -28,9 +29,23 @@ pub(crate) fn whole(text: &str) -> bool {
     let whole = whole.filter(|_| told_whole.errors() == 0);
     if told.errors() > 0 {
         let told = told.finish();
+        // Only the whole file may hold two statements in a line without anything between.
+        let whole = whole.filter(|whole| are_apart(text, whole));
         assert!(whole.is_none(), "only by statement something is wrong: {told:?}\n{text}");
         return false;
     }
     assert_eq!(Some(by_statement), whole, "{text}");
     true
+}
+
+/// Whether each statement begins a line, or follows a comma or semicolon.
+fn are_apart(text: &str, tree: &Tree) -> bool {
+    let mut statements = tree.stmts.iter().skip(1).map(|stmt| stmt.span.range().start).peekable();
+    let mut before = "";
+    tokens(text, 0..text.len()).all(|token| {
+        let begins = statements.next_if_eq(&token.start).is_some();
+        let apart = !begins || token.first_on_line || matches!(before, "," | ";");
+        before = token.text;
+        apart
+    })
 }

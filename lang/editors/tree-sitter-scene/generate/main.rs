@@ -1,5 +1,4 @@
-//! Makes the parser of `grammar.js` (which node reads) in the folder that is given, as `tree-sitter
-//! generate` would.
+//! Makes the parser of `grammar.js` (which node reads) in `build/made`, as `tree-sitter generate` would.
 
 use std::path::Path;
 
@@ -7,15 +6,9 @@ use std::path::Path;
 const ABI: usize = 15;
 
 fn main() {
-    let folder = std::env::args().nth(1).expect("a folder for the parser");
     let grammar = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    tree_sitter_generate::generate_parser_in_directory(
-        &grammar,
-        Some(&folder),
-        None,
-        ABI,
-        None,
-        None,
-    )
-    .unwrap_or_else(|error| panic!("{error}"));
+    let made = grammar.join("build/made");
+    let made = made.to_str().expect("a folder whose path is text");
+    tree_sitter_generate::generate_parser_in_directory(&grammar, Some(made), None, ABI, None, None)
+        .unwrap_or_else(|error| panic!("{error}"));
 }

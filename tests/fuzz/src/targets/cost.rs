@@ -5,28 +5,29 @@ use std::time::{Duration, Instant};
 
 use luxel_lang::{Budgets, parse_only};
 
-/// So many times as long as a plain text of its length a text may take. That takes half a millisecond
-/// for each KiB; the design allows ten.
-const FACTOR: u32 = 20;
+/// So often each mistake that is told may have the text read again, and the text itself.
+const LOOKS: u32 = 2;
 /// Any text may take so long: what is shorter tells nothing.
 const FLOOR: Duration = Duration::from_millis(50);
 /// So often it is tried: a machine that is busy is not so each time.
 const TRIES: usize = 5;
 const PLAIN: &str = "shape sphere { radius = 1 m, material = a }\n";
 
-/// Runs, and runs again while it took longer than a text of so many bytes may; gives the least time.
+/// Reads a text, and again while that took longer than it may; gives the least time.
 ///
 /// # Panics
 /// If it took too long each time.
-pub(crate) fn bounded(bytes: usize, run: impl Fn()) -> Duration {
-    let least = least(&run, FLOOR);
-    if least > FLOOR {
-        let plain = format!("scene 1\n{}", PLAIN.repeat(bytes.div_ceil(PLAIN.len())));
-        let plain = self::least(&|| drop(parse_only(&plain, &Budgets::default())), Duration::ZERO);
-        let limit = FLOOR + FACTOR * plain;
-        assert!(least <= limit, "{bytes} bytes took {least:?}; {limit:?} are allowed");
+pub(crate) fn bounded(text: &str, budgets: &Budgets) -> Duration {
+    let read = |text: &str| drop(parse_only(text, budgets));
+    let took = least(&|| read(text), FLOOR);
+    if took > FLOOR {
+        let plain = format!("scene 1\n{}", PLAIN.repeat(text.len().div_ceil(PLAIN.len())));
+        let plain = least(&|| read(&plain), Duration::ZERO);
+        let mistakes = u32::try_from(budgets.diagnostics).unwrap_or(u32::MAX);
+        let limit = FLOOR + plain * LOOKS * (1 + mistakes);
+        assert!(took <= limit, "{} bytes took {took:?}; {limit:?} are allowed", text.len());
     }
-    least
+    took
 }
 
 /// The least time of several runs, or the first that is short enough.

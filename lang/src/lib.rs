@@ -21,6 +21,8 @@ mod syntax;
 pub use budgets::Budgets;
 pub use catalogue::{CATALOGUE, Example, Page, Setup, page, setup};
 pub use fmt::format;
+#[doc(hidden)]
+pub use syntax::{Agreement, agree};
 
 use std::collections::BTreeMap;
 use std::path::Path;

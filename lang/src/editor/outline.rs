@@ -96,7 +96,7 @@ fn entry(text: &str, stmt: &Stmt, start: usize) -> Option<Entry> {
             made(&name, "", EntryKind::Block, item.span, entries(text, body, start))
         }
         StmtNode::If { arms, otherwise } => {
-            let blocks = arms.iter().map(|(_, block)| block).chain(otherwise);
+            let blocks = arms.iter().map(|(_, block)| block).chain(otherwise.as_deref());
             let children = blocks.flat_map(|block| entries(text, block, start)).collect();
             made("if", "", EntryKind::Block, arms.first()?.0.span, children)
         }

@@ -49,7 +49,7 @@ impl Labels {
             }
             StmtNode::For { body, .. } => body.stmts.iter().for_each(|stmt| self.off(stmt)),
             StmtNode::If { arms, otherwise } => {
-                let blocks = arms.iter().map(|(_, block)| block).chain(otherwise);
+                let blocks = arms.iter().map(|(_, block)| block).chain(otherwise.as_deref());
                 blocks.flat_map(|block| &block.stmts).for_each(|stmt| self.off(stmt));
             }
             _ => {}

@@ -84,7 +84,7 @@ impl Evaluator<'_> {
             StmtNode::For { index, item, over, body: block } => {
                 self.for_loop((index.as_ref(), item), over, block, env, body);
             }
-            StmtNode::If { arms, otherwise } => self.if_stmt(arms, otherwise.as_ref(), env, body),
+            StmtNode::If { arms, otherwise } => self.if_stmt(arms, otherwise.as_deref(), env, body),
             StmtNode::Import { path, name } => {
                 let module = self.import(path, env);
                 env.define(&name.text, module);
@@ -119,7 +119,7 @@ impl Evaluator<'_> {
             }
             StmtNode::Place { what, label, body: block } => {
                 self.emits(stmt.span, body, "place");
-                self.place(what, label.as_ref(), block.as_ref(), stmt.span, env);
+                self.place(what, label.as_ref(), block.as_deref(), stmt.span, env);
             }
             StmtNode::Field(field) => {
                 let value = self.field(field, env);

@@ -19,7 +19,7 @@ impl Evaluator<'_> {
         }
         // Leaves need no room on the stack.
         match &expr.node {
-            ExprNode::Number(x, unit) => return scaled_number(*x, *unit),
+            ExprNode::Number(x, unit) => return scaled_number(*x, unit.as_deref()),
             ExprNode::Text(text) => return Value::Text(text.clone()),
             ExprNode::Bool(value) => return Value::Bool(*value),
             ExprNode::Path(path) => return self.path(path, env),
@@ -34,7 +34,7 @@ impl Evaluator<'_> {
     fn eval_inner(&mut self, expr: &Expr, env: &Env) -> Value {
         match &expr.node {
             ExprNode::Numbers { data, unit, form } => {
-                let unit = unit.unwrap_or(Unit::ONE);
+                let unit = unit.as_deref().copied().unwrap_or(Unit::ONE);
                 if unit == Unit::ONE {
                     return Value::numbers(data.clone(), Dimension::NONE, *form);
                 }
@@ -42,10 +42,10 @@ impl Evaluator<'_> {
                 let data: Vec<f64> = data.iter().map(|x| x * unit.scale).collect();
                 Value::numbers(data, unit.dimension, *form)
             }
-            ExprNode::Items { items, unit, form } => self.items(items, *unit, *form, env),
+            ExprNode::Items { items, unit, form } => self.items(items, unit.as_deref(), *form, env),
             ExprNode::Paren { inner, unit } => {
                 let value = self.eval(inner, env);
-                self.with_unit(value, *unit, inner.span)
+                self.with_unit(value, unit.as_deref(), inner.span)
             }
             ExprNode::Chain { first, rest } => self.chain(first, rest, env),
             ExprNode::Unary { op, inner } => {
@@ -161,7 +161,7 @@ impl Evaluator<'_> {
         Value::Poison
     }
 
-    fn items(&mut self, items: &[Expr], unit: Option<Unit>, form: Form, env: &Env) -> Value {
+    fn items(&mut self, items: &[Expr], unit: Option<&Unit>, form: Form, env: &Env) -> Value {
         let mut values = Vec::with_capacity(items.len());
         for item in items {
             let value = self.eval(item, env);
@@ -183,7 +183,7 @@ impl Evaluator<'_> {
     }
 
     /// A value times the unit that stands after its brackets: it must be a bare number.
-    fn with_unit(&mut self, value: Value, unit: Option<Unit>, span: Span) -> Value {
+    fn with_unit(&mut self, value: Value, unit: Option<&Unit>, span: Span) -> Value {
         let Some(unit) = unit else { return value };
         match value {
             Value::Number(x, Dimension::NONE) => Value::Number(x * unit.scale, unit.dimension),
@@ -352,7 +352,7 @@ impl Elements {
     }
 }
 
-fn scaled_number(x: f64, unit: Option<Unit>) -> Value {
-    let unit = unit.unwrap_or(Unit::ONE);
+fn scaled_number(x: f64, unit: Option<&Unit>) -> Value {
+    let unit = unit.copied().unwrap_or(Unit::ONE);
     Value::Number(x * unit.scale, unit.dimension)
 }

@@ -306,7 +306,7 @@ fn written_unit(
             // Behind the digits, whose exponent is a letter too, and is no unit with what follows.
             let mut ends = text.char_indices().filter(|(_, c)| c.is_alphabetic());
             let name = ends.find_map(|(i, _)| {
-                Unit::parse(&text[i..]).is_ok_and(|found| found == *unit).then(|| &text[i..])
+                Unit::parse(&text[i..]).is_ok_and(|found| found == **unit).then(|| &text[i..])
             })?;
             Some((name.trim().to_owned(), unit.scale))
         }

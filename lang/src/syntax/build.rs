@@ -7,9 +7,10 @@ use luxel_sdk::params::{UNITS, Unit};
 use pest::iterators::Pair;
 
 use super::Rule;
+use super::make::{self, RESERVED};
 use super::tree::{
-    Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, ListTy, Name, Object,
-    ParamDef, Quoted, Stmt, StmtNode, Ty,
+    Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
+    Quoted, Stmt, StmtNode,
 };
 use crate::budgets::Budgets;
 use crate::sink::Sink;
@@ -21,12 +22,6 @@ pub(super) struct Builder<'a> {
     pub(super) sink: &'a mut Sink,
     pub(super) budgets: &'a Budgets,
 }
-
-/// Names that no definition may take.
-pub(crate) const RESERVED: [&str; 19] = [
-    "let", "param", "fn", "for", "if", "else", "include", "import", "use", "place", "set",
-    "assert", "expect", "units", "with", "as", "in", "true", "false",
-];
 
 fn is_keyword(rule: Rule) -> bool {
     matches!(
@@ -97,7 +92,7 @@ impl Builder<'_> {
         for part in pair.into_inner() {
             let place = self.span(&part);
             match part.as_rule() {
-                Rule::doc => docs.push(doc(&part, place)),
+                Rule::doc => docs.push(make::doc(part.as_str(), place)),
                 Rule::attr => {
                     let text = part.as_str()[1..].into();
                     attrs.push(self.attribute(Name { text, span: place }));
@@ -108,11 +103,12 @@ impl Builder<'_> {
                     }
                     span.end = place.end;
                     let node = self.node(part, &docs);
-                    return Stmt { span, docs, attrs, node };
+                    return Stmt { span, docs: docs.into(), attrs: attrs.into(), node };
                 }
             }
         }
-        Stmt { span, docs, attrs, node: StmtNode::Broken { defines: None } }
+        let node = StmtNode::Broken { defines: None };
+        Stmt { span, docs: docs.into(), attrs: attrs.into(), node }
     }
 
     fn attribute(&mut self, name: Name) -> Name {
@@ -137,7 +133,7 @@ impl Builder<'_> {
                 let mut next = take(&mut parts);
                 let mut ty = None;
                 if next.as_rule() == Rule::ty {
-                    ty = Some(self.ty(&next));
+                    ty = Some(Box::new(make::ty(next.as_str(), self.span(&next))));
                     next = take(&mut parts);
                 }
                 StmtNode::Let { name, ty, value: self.expr(next) }
@@ -146,13 +142,14 @@ impl Builder<'_> {
             Rule::fn_def => StmtNode::Fn(Arc::new(self.function(&mut parts))),
             Rule::for_stmt => {
                 let (index, item) = self.loop_names(&mut parts);
-                let over = self.expr(take(&mut parts));
-                StmtNode::For { index, item, over, body: self.block(take(&mut parts)) }
+                let over = Box::new(self.expr(take(&mut parts)));
+                let body = Box::new(self.block(take(&mut parts)));
+                StmtNode::For { index, item, over, body }
             }
             Rule::if_stmt => self.if_stmt(&mut parts),
             Rule::include_stmt => {
                 let path = self.string(take(&mut parts));
-                let with = parts.next().map_or_else(Vec::new, |record| self.record(record));
+                let with = parts.next().map_or_else(Box::default, |record| self.record(record));
                 StmtNode::Include { path, with }
             }
             Rule::import_stmt => {
@@ -186,7 +183,8 @@ impl Builder<'_> {
 
     fn expectation<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> Expect {
         let what = self.name(&take(parts));
-        let mut out = Expect { what, at: None, path: None, values: vec![], given: vec![] };
+        let given = Box::default();
+        let mut out = Expect { what, at: None, path: None, values: vec![], given };
         for part in parts {
             match part.as_rule() {
                 Rule::string => out.path = Some(self.string(part)),
@@ -200,12 +198,13 @@ impl Builder<'_> {
 
     fn place<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> StmtNode {
         let path = take(parts);
-        let what = Expr { span: self.span(&path), node: ExprNode::Path(self.path(path)) };
+        let span = self.span(&path);
+        let what = Box::new(Expr { span, node: ExprNode::Path(self.path(path)) });
         let (mut label, mut body) = (None, None);
         for part in parts {
             match part.as_rule() {
                 Rule::string => label = Some(self.string(part)),
-                _ => body = Some(self.block(part)),
+                _ => body = Some(Box::new(self.block(part))),
             }
         }
         StmtNode::Place { what, label, body }
@@ -221,10 +220,10 @@ impl Builder<'_> {
                 let cond = self.expr(take(&mut inner));
                 arms.push((cond, self.block(take(&mut inner))));
             } else {
-                otherwise = Some(self.block(part));
+                otherwise = Some(Box::new(self.block(part)));
             }
         }
-        StmtNode::If { arms, otherwise }
+        StmtNode::If { arms: arms.into(), otherwise }
     }
 
     /// `i` or `i, x`: an index, if two names are given, and the item.
@@ -246,11 +245,11 @@ impl Builder<'_> {
         docs: &[Doc],
     ) -> ParamDef {
         let name = self.definition(&take(parts));
-        let ty = self.ty(&take(parts));
+        let ty = take(parts);
+        let ty = make::ty(ty.as_str(), self.span(&ty));
         let value = self.expr(take(parts));
         let range = parts.next().map(|range| self.expr(range));
-        let lines: Vec<&str> = docs.iter().map(|doc| doc.text.trim()).collect();
-        ParamDef { name, ty, value, range, doc: lines.join("\n") }
+        ParamDef { name, ty, value, range, doc: make::lines(docs) }
     }
 
     fn function<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> FnDef {
@@ -262,9 +261,12 @@ impl Builder<'_> {
                 Rule::fn_param => params.push(self.fn_param(part)),
                 Rule::block => {
                     let body = FnBody::Template(self.block(part));
-                    return FnDef { name, params, body };
+                    return FnDef { name, params: params.into(), body };
                 }
-                _ => return FnDef { name, params, body: FnBody::Value(self.expr(part)) },
+                _ => {
+                    let body = FnBody::Value(self.expr(part));
+                    return FnDef { name, params: params.into(), body };
+                }
             }
         }
     }
@@ -272,20 +274,9 @@ impl Builder<'_> {
     fn fn_param(&mut self, pair: Pair<'_, Rule>) -> FnParam {
         let mut parts = parts(pair);
         let name = self.definition(&take(&mut parts));
-        let ty = self.ty(&take(&mut parts));
+        let ty = take(&mut parts);
+        let ty = make::ty(ty.as_str(), self.span(&ty));
         FnParam { name, ty, default: parts.next().map(|value| self.expr(value)) }
-    }
-
-    fn ty(&mut self, pair: &Pair<'_, Rule>) -> Ty {
-        let span = self.span(pair);
-        let text = pair.as_str();
-        let Some((name, list)) = text.split_once('[') else {
-            return Ty { name: Name { text: text.into(), span }, list: ListTy::One };
-        };
-        let list = list.trim_end_matches(']').parse().map_or(ListTy::Any, ListTy::Exactly);
-        let start = span.range().start;
-        let span = Span::new(self.source, start, start + name.len());
-        Ty { name: Name { text: name.into(), span }, list }
     }
 
     pub(super) fn block(&mut self, pair: Pair<'_, Rule>) -> Block {
@@ -297,7 +288,7 @@ impl Builder<'_> {
                 _ => self.dangling(&part),
             }
         }
-        Block { span, stmts }
+        Block { span, stmts: stmts.into() }
     }
 
     /// Warns of a doc comment that documents nothing.
@@ -317,7 +308,7 @@ impl Builder<'_> {
         Field { name, value: self.expr(take(parts)) }
     }
 
-    pub(super) fn record(&mut self, pair: Pair<'_, Rule>) -> Vec<Field> {
+    pub(super) fn record(&mut self, pair: Pair<'_, Rule>) -> Box<[Field]> {
         pair.into_inner().map(|field| self.field(&mut parts(field))).collect()
     }
 
@@ -337,7 +328,7 @@ impl Builder<'_> {
         Object { category, kind, label, body: self.block(take(parts)) }
     }
 
-    pub(super) fn path(&mut self, pair: Pair<'_, Rule>) -> Vec<Name> {
+    pub(super) fn path(&mut self, pair: Pair<'_, Rule>) -> Box<[Name]> {
         pair.into_inner().map(|name| self.name(&name)).collect()
     }
 
@@ -349,14 +340,14 @@ impl Builder<'_> {
             self.sink.push(Diagnostic::error("E0509", span, message));
             return Name { text: "".into(), span };
         }
-        Name { text: unescape(body.as_str()).into(), span }
+        Name { text: make::unescape(body.as_str()), span }
     }
 
     /// The unit that a token names; `None` if it is none, which is told.
-    pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Unit> {
+    pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Arc<Unit>> {
         let text = pair.as_str();
         let bad = match Unit::parse(text) {
-            Ok(unit) => return Some(unit),
+            Ok(unit) => return Some(Arc::new(unit)),
             Err(bad) => bad,
         };
         let span = self.span(pair);
@@ -373,11 +364,6 @@ impl Builder<'_> {
         self.sink.push(diagnostic);
         None
     }
-}
-
-fn doc(pair: &Pair<'_, Rule>, span: Span) -> Doc {
-    let text = pair.as_str().trim_start_matches('/').trim_end();
-    Doc { text: text.strip_prefix(' ').unwrap_or(text).to_owned(), span }
 }
 
 /// The unit that a misspelt one stands for: full names are sure, slips of the pen are guessed.
@@ -407,29 +393,4 @@ fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
     let case = UNITS.iter().find(|(name, _)| name.to_lowercase() == lower).map(|(name, _)| *name);
     let near = case.or_else(|| nearest(text, UNITS.iter().map(|(name, _)| *name)));
     full.map(|unit| (unit, Grade::Sure)).or(near.map(|unit| (unit, Grade::Guess)))
-}
-
-/// Resolves escapes; the grammar and the pre-scan let only known ones through.
-fn unescape(body: &str) -> String {
-    let mut out = String::with_capacity(body.len());
-    let mut chars = body.chars();
-    while let Some(c) = chars.next() {
-        if c != '\\' {
-            out.push(c);
-            continue;
-        }
-        match chars.next() {
-            Some('n') => out.push('\n'),
-            Some('t') => out.push('\t'),
-            Some('u') => {
-                let digits: String =
-                    chars.by_ref().skip(1).take_while(|digit| *digit != '}').collect();
-                let code = u32::from_str_radix(&digits, 16).ok().and_then(char::from_u32);
-                out.push(code.unwrap_or(char::REPLACEMENT_CHARACTER));
-            }
-            Some(other) => out.push(other),
-            None => {}
-        }
-    }
-    out
 }

@@ -6,9 +6,9 @@ use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, near};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category};
-use super::build::RESERVED;
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
+use super::make::RESERVED;
 use super::number;
 
 /// A mistake with what is needed to go on after it.

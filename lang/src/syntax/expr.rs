@@ -8,17 +8,10 @@ use pest::iterators::Pair;
 
 use super::Rule;
 use super::build::{Builder, parts, take};
+use super::make::{self, Inside};
 use super::number::{self, BadToken};
+use super::operators::{Operand, POSTFIX_LIMIT, are_too_many, join, prefix};
 use super::tree::{Arg, Comp, Expr, ExprNode, Form, Op};
-
-/// Calls, indices and members after one operand: more than any person writes.
-const POSTFIX_LIMIT: usize = 64;
-
-/// An operand with the signs before it.
-struct Operand {
-    prefixes: Vec<(Op, Span)>,
-    expr: Expr,
-}
 
 impl Builder<'_> {
     /// An expression or condition.
@@ -46,8 +39,7 @@ impl Builder<'_> {
                     operands.push(Operand { prefixes: std::mem::take(&mut prefixes), expr });
                 }
             }
-            let count = ops.len().max(prefixes.len() * self.budgets.operators / 8);
-            if count > self.budgets.operators {
+            if are_too_many(ops.len(), prefixes.len(), self.budgets.operators) {
                 excess = excess.or(Some(span));
             }
         }
@@ -60,7 +52,7 @@ impl Builder<'_> {
             );
             return Expr { span: whole, node: ExprNode::Broken };
         }
-        chain(operands, ops, 0)
+        join(operands.drain(..), ops.drain(..))
     }
 
     fn postfix(&mut self, of: Expr, pair: Pair<'_, Rule>) -> Expr {
@@ -73,7 +65,7 @@ impl Builder<'_> {
                 ExprNode::Index { of: of_box(of), at }
             }
             Rule::member => {
-                let name = self.name(&take(&mut pair.into_inner()));
+                let name = Box::new(self.name(&take(&mut pair.into_inner())));
                 ExprNode::Member { of: of_box(of), name }
             }
             _ => {
@@ -91,7 +83,7 @@ impl Builder<'_> {
     }
 
     /// What stands between the brackets of a call.
-    pub(super) fn args(&mut self, pair: Pair<'_, Rule>) -> Vec<Arg> {
+    pub(super) fn args(&mut self, pair: Pair<'_, Rule>) -> Box<[Arg]> {
         pair.into_inner().map(|arg| self.arg(arg)).collect()
     }
 
@@ -117,14 +109,7 @@ impl Builder<'_> {
             Rule::if_expr => self.if_expr(pair),
             Rule::record => ExprNode::Record(self.record(pair)),
             Rule::obj_expr => ExprNode::Object(Arc::new(self.object(&mut parts(pair)))),
-            _ => {
-                let path = self.path(take(&mut pair.into_inner()));
-                match (path.len(), &*path[0].text) {
-                    (1, "true") => ExprNode::Bool(true),
-                    (1, "false") => ExprNode::Bool(false),
-                    _ => ExprNode::Path(path),
-                }
-            }
+            _ => make::path(self.path(take(&mut pair.into_inner()))),
         };
         Expr { span, node }
     }
@@ -170,39 +155,31 @@ impl Builder<'_> {
                 },
             }
         }
-        let single = form == Form::Tuple && !comma;
-        match numbers {
-            Some(None) => ExprNode::Broken,
-            Some(Some((data, span))) if data.len() == 1 && single => {
-                let inner = Expr { span, node: ExprNode::Number(data[0], None) };
-                ExprNode::Paren { inner: Box::new(inner), unit }
-            }
-            Some(Some((data, _))) => ExprNode::Numbers { data: data.into(), unit, form },
-            None if items.len() == 1 && single => {
-                let inner = items.pop().expect("its length is one");
-                ExprNode::Paren { inner: Box::new(inner), unit }
-            }
-            None => ExprNode::Items { items, unit, form },
-        }
+        let inside = match numbers {
+            Some(None) => return ExprNode::Broken,
+            Some(Some((data, span))) => Inside::Numbers(data, span),
+            None => Inside::Items(items.into()),
+        };
+        make::bracketed(inside, comma, unit, form)
     }
 
     fn table(&mut self, pair: Pair<'_, Rule>) -> ExprNode {
         let mut parts = pair.into_inner();
         let data = self.numbers(&take(&mut parts));
-        let unit: Option<Option<Unit>> = parts.next().map(|unit| self.unit(&unit));
+        let unit: Option<Option<Arc<Unit>>> = parts.next().map(|unit| self.unit(&unit));
         match (data, unit) {
             (None, _) | (_, Some(None)) => ExprNode::Broken,
             (Some((data, _)), unit) => {
-                ExprNode::Numbers { data: data.into(), unit: unit.flatten(), form: Form::List }
+                ExprNode::Numbers { data, unit: unit.flatten(), form: Form::List }
             }
         }
     }
 
     /// Many literal numbers; `None` if one is bad, which is told.
-    fn numbers(&mut self, pair: &Pair<'_, Rule>) -> Option<(Vec<f64>, Span)> {
+    fn numbers(&mut self, pair: &Pair<'_, Rule>) -> Option<(Arc<[f64]>, Span)> {
         let span = self.span(pair);
         match number::parse_many(pair.as_str(), self.budgets.list) {
-            Ok(data) if data.len() <= self.budgets.list => Some((data, span)),
+            Ok(data) if data.len() <= self.budgets.list => Some((data.into(), span)),
             Ok(_) => {
                 let message = format!("a list of more than {} elements", self.budgets.list);
                 self.sink.push(Diagnostic::error("E0503", span, message));
@@ -252,59 +229,9 @@ impl Builder<'_> {
                 let cond = self.expr(take(&mut inner));
                 arms.push((cond, self.expr(take(&mut inner))));
             } else {
-                return ExprNode::If { arms, otherwise: Box::new(self.expr(part)) };
+                let otherwise = Box::new(self.expr(part));
+                return ExprNode::If { arms: arms.into(), otherwise };
             }
         }
     }
-}
-
-fn prefix(token: &str) -> Op {
-    if token == "-" { Op::Sub } else { Op::Not }
-}
-
-/// Joins operands by operators that bind at least as strongly as `level`.
-fn chain(mut operands: Vec<Operand>, mut ops: Vec<(Op, Span)>, level: usize) -> Expr {
-    if ops.is_empty() || level == 6 {
-        return power(operands, ops);
-    }
-    if !ops.iter().any(|(op, _)| op.strength() == level) {
-        return chain(operands, ops, level + 1);
-    }
-    // From the right, so that each part is split off the end of the lists.
-    let mut parts = vec![];
-    while let Some(at) = ops.iter().rposition(|(op, _)| op.strength() == level) {
-        let tail = chain(operands.split_off(at + 1), ops.split_off(at + 1), level + 1);
-        let (op, span) = ops.pop().expect("there is one at this place");
-        parts.push((op, span, tail));
-    }
-    let first = chain(operands, ops, level + 1);
-    parts.reverse();
-    let span = parts.last().map_or(first.span, |(_, _, last)| first.span.to(last.span));
-    Expr { span, node: ExprNode::Chain { first: Box::new(first), rest: parts } }
-}
-
-/// Joins operands by `^`. A sign before the first applies to the entire power: −2² is −4.
-fn power(operands: Vec<Operand>, ops: Vec<(Op, Span)>) -> Expr {
-    let mut operands = operands.into_iter();
-    let first = operands.next().expect("an expression has an operand");
-    let prefixes = first.prefixes;
-    let rest: Vec<_> = ops
-        .into_iter()
-        .zip(operands)
-        .map(|((op, span), operand)| (op, span, signed(operand.prefixes, operand.expr)))
-        .collect();
-    let base = first.expr;
-    if rest.is_empty() {
-        return signed(prefixes, base);
-    }
-    let span = rest.last().map_or(base.span, |(_, _, last)| base.span.to(last.span));
-    signed(prefixes, Expr { span, node: ExprNode::Chain { first: Box::new(base), rest } })
-}
-
-fn signed(prefixes: Vec<(Op, Span)>, mut expr: Expr) -> Expr {
-    for (op, span) in prefixes.into_iter().rev() {
-        let span = span.to(expr.span);
-        expr = Expr { span, node: ExprNode::Unary { op, inner: Box::new(expr) } };
-    }
-    expr
 }

@@ -3,8 +3,8 @@
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
 use super::around::{Around, Place, is_category};
-use super::build::RESERVED;
 use super::lex::TokenKind;
+use super::make::RESERVED;
 
 /// What is said of an object whose parameters do not stand in braces.
 const BRACES: &str = "an object has its parameters between `{` and `}`";

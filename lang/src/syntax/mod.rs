@@ -1,15 +1,20 @@
-//! Text to tree: the grammar, the tree, and the explanation of what cannot be read.
+//! Text to tree: the grammar and its second reader, the tree, and the explanation of what cannot be
+//! read.
 
+mod agree;
 mod around;
 mod build;
 #[cfg(any(test, feature = "fuzz"))]
 pub(crate) mod check;
 mod cut;
+mod direct;
 mod explain;
 mod expr;
 mod head;
 mod lex;
+mod make;
 mod number;
+mod operators;
 mod parse;
 #[cfg(test)]
 mod tests;
@@ -18,10 +23,11 @@ mod unopened;
 mod walk;
 mod weigh;
 
-pub(crate) use build::RESERVED;
+pub use agree::{Agreement, agree};
 pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
+pub(crate) use make::RESERVED;
 pub(crate) use parse::{Tree, cut, parse, parse_expr, read_head, read_piece};
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,

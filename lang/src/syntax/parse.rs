@@ -1,4 +1,5 @@
-//! From text to statements: cut by the pre-scan, each piece read by pest, mistakes explained.
+//! From text to statements: cut by the pre-scan, each piece read straight from its bytes or, if that
+//! gives up, by pest; mistakes explained.
 
 use std::ops::Range;
 
@@ -9,6 +10,7 @@ use pest::error::InputLocation;
 use super::around::Place;
 use super::build::Builder;
 use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
+use super::direct::{self, Words};
 use super::explain::explain;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
@@ -34,7 +36,7 @@ pub(crate) struct Tree {
 
 /// Reads one text; what cannot be read is told and leaves `StmtNode::Broken`.
 pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut Sink) -> Tree {
-    let mut reader = Reader { text, source, budgets, sink, out: Tree::default() };
+    let mut reader = Reader::new(text, source, budgets, sink);
     reader.file();
     reader.out
 }
@@ -44,7 +46,7 @@ pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut 
 pub(crate) fn read_head(text: &str, budgets: &Budgets) -> (Option<usize>, Vec<Diagnostic>) {
     let mut sink = Sink::new(budgets.diagnostics);
     let source = SourceId(0);
-    let from = Reader { text, source, budgets, sink: &mut sink, out: Tree::default() }.head();
+    let from = Reader::new(text, source, budgets, &mut sink).head();
     (from, sink.finish())
 }
 
@@ -63,8 +65,7 @@ pub(crate) fn cut(
         let found = region(text, from, budgets.brackets, is_known);
         let mut sink = Sink::new(budgets.diagnostics);
         let source = SourceId(0);
-        Reader { text, source, budgets, sink: &mut sink, out: Tree::default() }
-            .region_faults(from, &found);
+        Reader::new(text, source, budgets, &mut sink).region_faults(from, &found);
         out.unclosed.extend(found.unclosed);
         out.faults.extend(sink.finish());
         out.pieces.extend(found.pieces);
@@ -82,12 +83,27 @@ pub(crate) fn read_piece(
     budgets: &Budgets,
 ) -> (Vec<Stmt>, Vec<Diagnostic>) {
     let mut sink = Sink::new(budgets.diagnostics);
-    let mut reader = Reader { text, source, budgets, sink: &mut sink, out: Tree::default() };
+    let mut reader = Reader::new(text, source, budgets, &mut sink);
     if faulty {
         reader.broken(0..text.len());
     } else {
         reader.chunk(0..text.len(), Place::File);
     }
+    (reader.out.stmts, sink.finish())
+}
+
+/// Reads a statement straight from its bytes where that is possible, or by the grammar of record alone
+/// if there are no words.
+pub(super) fn read_as(
+    direct: Option<Words>,
+    text: &str,
+    piece: Range<usize>,
+    budgets: &Budgets,
+) -> (Vec<Stmt>, Vec<Diagnostic>) {
+    let mut sink = Sink::new(budgets.diagnostics);
+    let mut reader = Reader::new(text, SourceId(0), budgets, &mut sink);
+    reader.direct = direct;
+    reader.chunk(piece, Place::File);
     (reader.out.stmts, sink.finish())
 }
 
@@ -130,7 +146,15 @@ struct Reader<'a> {
     source: SourceId,
     budgets: &'a Budgets,
     sink: &'a mut Sink,
+    /// Words that were met, if statements are read straight from their bytes where that is possible.
+    direct: Option<Words>,
     out: Tree,
+}
+
+impl<'a> Reader<'a> {
+    fn new(text: &'a str, source: SourceId, budgets: &'a Budgets, sink: &'a mut Sink) -> Self {
+        Self { text, source, budgets, sink, direct: Some(Words::default()), out: Tree::default() }
+    }
 }
 
 impl Reader<'_> {
@@ -211,8 +235,7 @@ impl Reader<'_> {
             |piece| piece.range.len(),
             |pieces| {
                 let mut sink = empty.like();
-                let out = Tree::default();
-                let mut reader = Reader { text, source, budgets, sink: &mut sink, out };
+                let mut reader = Reader::new(text, source, budgets, &mut sink);
                 reader.pieces(pieces);
                 (reader.out.stmts, sink)
             },
@@ -319,6 +342,13 @@ impl Reader<'_> {
             if keep {
                 self.broken(chunk);
             }
+            return;
+        }
+        if let Some(words) = &mut self.direct
+            && let Some(stmt) =
+                direct::read(self.text, chunk.clone(), self.source, self.budgets, words)
+        {
+            self.out.stmts.extend(Some(stmt).filter(|_| keep));
             return;
         }
         match SceneParser::parse(Rule::one_stmt, text) {
@@ -431,6 +461,6 @@ impl Reader<'_> {
         let name = name.filter(|_| misspelt || DEFINING.contains(&first));
         let defines = name.map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
         let node = StmtNode::Broken { defines };
-        self.out.stmts.push(Stmt { span, docs: vec![], attrs: vec![], node });
+        self.out.stmts.push(Stmt { span, docs: Box::default(), attrs: Box::default(), node });
     }
 }

@@ -26,16 +26,16 @@ pub(crate) struct Doc {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Block {
     pub(crate) span: Span,
-    pub(crate) stmts: Vec<Stmt>,
+    pub(crate) stmts: Box<[Stmt]>,
 }
 
 /// A statement.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stmt {
     pub(crate) span: Span,
-    pub(crate) docs: Vec<Doc>,
+    pub(crate) docs: Box<[Doc]>,
     /// Attributes, without the `@`; the span includes it.
-    pub(crate) attrs: Vec<Name>,
+    pub(crate) attrs: Box<[Name]>,
     pub(crate) node: StmtNode,
 }
 
@@ -51,7 +51,7 @@ impl Stmt {
 pub(crate) enum StmtNode {
     Let {
         name: Name,
-        ty: Option<Ty>,
+        ty: Option<Box<Ty>>,
         value: Expr,
     },
     Param(Arc<ParamDef>),
@@ -59,16 +59,16 @@ pub(crate) enum StmtNode {
     For {
         index: Option<Name>,
         item: Name,
-        over: Expr,
-        body: Block,
+        over: Box<Expr>,
+        body: Box<Block>,
     },
     If {
-        arms: Vec<(Expr, Block)>,
-        otherwise: Option<Block>,
+        arms: Box<[(Expr, Block)]>,
+        otherwise: Option<Box<Block>>,
     },
     Include {
         path: Quoted,
-        with: Vec<Field>,
+        with: Box<[Field]>,
     },
     Import {
         path: Quoted,
@@ -79,12 +79,12 @@ pub(crate) enum StmtNode {
         version: Option<Quoted>,
     },
     Place {
-        what: Expr,
+        what: Box<Expr>,
         label: Option<Quoted>,
-        body: Option<Block>,
+        body: Option<Box<Block>>,
     },
     Set {
-        path: Vec<Name>,
+        path: Box<[Name]>,
         value: Expr,
     },
     Assert {
@@ -92,7 +92,7 @@ pub(crate) enum StmtNode {
         message: Quoted,
     },
     Expect(Arc<Expect>),
-    Units(Vec<Field>),
+    Units(Box<[Field]>),
     Field(Field),
     Object(Arc<Object>),
     Call(Expr),
@@ -116,7 +116,7 @@ pub(crate) struct ParamDef {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FnDef {
     pub(crate) name: Name,
-    pub(crate) params: Vec<FnParam>,
+    pub(crate) params: Box<[FnParam]>,
     pub(crate) body: FnBody,
 }
 
@@ -125,11 +125,11 @@ pub(crate) struct FnDef {
 pub(crate) struct Expect {
     pub(crate) what: Name,
     /// What stands between round brackets, and where they stand.
-    pub(crate) at: Option<(Span, Vec<Arg>)>,
+    pub(crate) at: Option<(Span, Box<[Arg]>)>,
     pub(crate) path: Option<Quoted>,
     /// The value and, perhaps, its tolerance; neither where a path stands.
     pub(crate) values: Vec<Expr>,
-    pub(crate) given: Vec<Field>,
+    pub(crate) given: Box<[Field]>,
 }
 
 /// A parameter of a function.
@@ -208,39 +208,39 @@ pub(crate) enum Form {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ExprNode {
     /// A number as it was written, times its unit.
-    Number(f64, Option<Unit>),
+    Number(f64, Option<Arc<Unit>>),
     /// Literal numbers between brackets, or a table.
     Numbers {
         data: Arc<[f64]>,
-        unit: Option<Unit>,
+        unit: Option<Arc<Unit>>,
         form: Form,
     },
     Text(Arc<str>),
     Bool(bool),
     /// Expressions between brackets; a single one between round brackets stands for itself.
     Items {
-        items: Vec<Expr>,
-        unit: Option<Unit>,
+        items: Box<[Expr]>,
+        unit: Option<Arc<Unit>>,
         form: Form,
     },
     /// `(x)`, perhaps with a unit.
     Paren {
         inner: Box<Expr>,
-        unit: Option<Unit>,
+        unit: Option<Arc<Unit>>,
     },
     Comp(Box<Comp>),
     If {
-        arms: Vec<(Expr, Expr)>,
+        arms: Box<[(Expr, Expr)]>,
         otherwise: Box<Expr>,
     },
     Object(Arc<Object>),
-    Record(Vec<Field>),
+    Record(Box<[Field]>),
     /// Words joined by dots.
-    Path(Vec<Name>),
+    Path(Box<[Name]>),
     /// Operands of equal precedence, joined by operators: flat, so that long chains need no stack.
     Chain {
         first: Box<Expr>,
-        rest: Vec<(Op, Span, Expr)>,
+        rest: Box<[(Op, Span, Expr)]>,
     },
     Unary {
         op: Op,
@@ -248,7 +248,7 @@ pub(crate) enum ExprNode {
     },
     Call {
         callee: Box<Expr>,
-        args: Vec<Arg>,
+        args: Box<[Arg]>,
     },
     Index {
         of: Box<Expr>,
@@ -256,11 +256,11 @@ pub(crate) enum ExprNode {
     },
     Member {
         of: Box<Expr>,
-        name: Name,
+        name: Box<Name>,
     },
     With {
         of: Box<Expr>,
-        fields: Vec<Field>,
+        fields: Box<[Field]>,
     },
     /// It could not be read; it was told.
     Broken,

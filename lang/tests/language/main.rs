@@ -7,6 +7,7 @@ mod damage;
 mod fenced;
 mod limits;
 mod plant;
+mod readers;
 mod registry;
 mod scenes;
 mod seeded;

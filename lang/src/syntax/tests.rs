@@ -1,12 +1,9 @@
 //! The grammar against the pre-scan, and mistakes in bulk.
 
-use super::parse::parse_whole;
 use super::*;
 use crate::Budgets;
-use crate::fmt::check::made;
 use crate::sink::Sink;
 use luxel_core::diag::SourceId;
-use proptest::prelude::*;
 
 const EXAMPLES: [&str; 3] = [
     include_str!("../../tests/scenes/cornell.scene"),
@@ -88,17 +85,4 @@ fn a_large_file_is_the_same_whoever_reads_its_parts() {
     let starts: Vec<usize> =
         sink.finish().iter().filter_map(|found| Some(found.span()?.range().start)).collect();
     assert!(starts.len() == 5 && starts.is_sorted(), "{starts:?}");
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..<_>::default() })]
-
-    #[test]
-    fn any_text_is_read_directly_and_as_pest_reads_it(scene in made::scene()) {
-        let text = scene.text();
-        match agree(&text, &Budgets::default()) {
-            Ok(found) => prop_assert_eq!((found.told, found.missed), (0, 0), "{}", text),
-            Err(why) => return Err(TestCaseError::fail(why)),
-        }
-    }
 }

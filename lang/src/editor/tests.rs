@@ -3,6 +3,7 @@
 use luxel_core::diag::{Diagnostic, SourceId};
 
 use super::Document;
+use super::check::{same, same_within};
 use crate::sink::Sink;
 use crate::{Budgets, eval, syntax};
 
@@ -50,27 +51,6 @@ const PASTES: [&str; 24] = [
     "for ",
     "é",
 ];
-
-fn same(edited: &Document, step: &str) {
-    same_within(edited, step, &Budgets::default());
-}
-
-fn same_within(edited: &Document, step: &str, budgets: &Budgets) {
-    let fresh = Document::new(edited.text(), budgets);
-    let pieces = |document: &Document| -> Vec<_> {
-        let of = |piece: &super::piece::Piece| {
-            (piece.start, piece.end, piece.faulty, piece.read.stmts.clone())
-        };
-        document.pieces().iter().map(of).collect()
-    };
-    assert_eq!(pieces(edited), pieces(&fresh), "{step}:\n{}", edited.text());
-    let sorted = |document: &Document| {
-        let mut found = document.diagnostics();
-        found.sort_by_key(|found| (found.span(), found.code));
-        found
-    };
-    assert_eq!(sorted(edited), sorted(&fresh), "{step}:\n{}", edited.text());
-}
 
 /// The next number of a sequence that looks random.
 fn next(state: &mut u64, below: usize) -> usize {

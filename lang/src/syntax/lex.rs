@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::prescan::block_comment;
+
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TokenKind {
@@ -79,7 +81,7 @@ fn next<'a>(text: &'a str, at: &mut usize) -> Option<Token<'a>> {
         } else if rest.starts_with("//") && !is_doc {
             *at += rest.find('\n').unwrap_or(rest.len());
         } else if rest.starts_with("/*") {
-            let end = rest.find("*/").map_or(rest.len(), |end| end + 2);
+            let end = block_comment(rest.as_bytes()).unwrap_or(rest.len());
             first_on_line |= rest[..end].contains('\n');
             *at += end;
         } else {
@@ -121,7 +123,7 @@ fn number(bytes: &[u8]) -> usize {
     loop {
         match bytes.get(at) {
             Some(b'0'..=b'9' | b'_') => at += 1,
-            Some(b'.') if bytes.get(at + 1) != Some(&b'.') => at += 1,
+            Some(b'.') if !bytes.get(at + 1).is_some_and(|b| is_range_or_member(*b)) => at += 1,
             Some(b'e' | b'E') => {
                 let signed = matches!(bytes.get(at + 1), Some(b'+' | b'-'));
                 let after = bytes.get(at + 1 + usize::from(signed));
@@ -134,6 +136,11 @@ fn number(bytes: &[u8]) -> usize {
             _ => return at,
         }
     }
+}
+
+/// Whether after this byte a `.` is no part of a number: `0..4`, `0.name`.
+fn is_range_or_member(after: u8) -> bool {
+    after == b'.' || after == b'_' || after.is_ascii_alphabetic()
 }
 
 fn string(rest: &str) -> usize {
@@ -154,14 +161,15 @@ mod tests {
 
     #[test]
     fn wrong_numbers_are_one_token() {
-        let text = "1.2.3 1e 5. 0..4 2e5 3em .5";
+        let text = "1.2.3 1e 5. 0..4 2e5 3em .5 6.x";
         let found: Vec<_> = tokens(text, 0..text.len()).map(|t| t.text).collect();
-        assert_eq!(found, ["1.2.3", "1e", "5.", "0", "..", "4", "2e5", "3", "em", ".5"]);
+        let expected = ["1.2.3", "1e", "5.", "0", "..", "4", "2e5", "3", "em", ".5", "6", ".", "x"];
+        assert_eq!(found, expected);
     }
 
     #[test]
     fn comments_are_left_out_and_lines_noted() {
-        let text = "a /* x\n */ b // c\n/// d";
+        let text = "a /* x\n */ b /*/ c */ // c\n/// d";
         let found: Vec<_> =
             tokens(text, 0..text.len()).map(|t| (t.text, t.first_on_line)).collect();
         assert_eq!(found, [("a", false), ("b", true), ("/// d", true)]);

@@ -4,10 +4,13 @@
 mod agree;
 mod around;
 mod build;
+#[cfg(any(test, feature = "fuzz"))]
+pub(crate) mod check;
 mod cut;
 mod direct;
 mod explain;
 mod expr;
+mod fault;
 mod head;
 mod lex;
 mod make;
@@ -26,10 +29,9 @@ pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use make::RESERVED;
-#[cfg(test)]
-pub(crate) use parse::parse_whole;
 pub(crate) use parse::{
-    Tree, Turns, cut, parse, parse_expr, parse_in_turns, read_at, read_head, read_piece,
+    Tree, Turns, cut, parse, parse_by_pest, parse_expr, parse_in_turns, read_at, read_head,
+    read_piece,
 };
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,

@@ -12,13 +12,14 @@ use super::build::Builder;
 use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
 use super::direct::{self, Words};
 use super::explain::explain;
+use super::fault;
 use super::lex::{TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
 use super::unopened::unopened;
 use super::weigh::too_large;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
-use crate::prescan::{Fault, scan};
+use crate::prescan::scan;
 use crate::shares;
 use crate::sink::Sink;
 
@@ -36,14 +37,17 @@ pub(crate) struct Tree {
 
 /// Reads one text; what cannot be read is told and leaves `StmtNode::Broken`.
 pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut Sink) -> Tree {
-    let mut out = Tree::default();
-    let mut take = |stmts| {
-        out.stmts.extend(stmts);
-        true
-    };
-    Reader::new(text, source, budgets, sink)
-        .file(&mut Turns { bytes: usize::MAX, take: &mut take });
-    out
+    Reader::new(text, source, budgets, sink).tree()
+}
+
+/// The same by the grammar of record alone.
+pub(crate) fn parse_by_pest(
+    text: &str,
+    source: SourceId,
+    budgets: &Budgets,
+    sink: &mut Sink,
+) -> Tree {
+    Reader { direct: None, ..Reader::new(text, source, budgets, sink) }.tree()
 }
 
 /// Who takes statements, some after others: what has been taken need not be kept.
@@ -54,7 +58,7 @@ pub(crate) struct Turns<'t> {
     pub(crate) take: &'t mut dyn FnMut(Vec<Stmt>) -> bool,
 }
 
-/// The same, in turns.
+/// The same as `parse`, in turns.
 pub(crate) fn parse_in_turns(
     text: &str,
     source: SourceId,
@@ -138,15 +142,14 @@ pub(super) fn read_as(
     budgets: &Budgets,
 ) -> (Vec<Stmt>, Vec<Diagnostic>) {
     let mut sink = Sink::new(budgets.diagnostics);
-    let mut reader = Reader::new(text, SourceId(0), budgets, &mut sink);
-    reader.direct = direct;
+    let mut reader = Reader { direct, ..Reader::new(text, SourceId(0), budgets, &mut sink) };
     reader.chunk(piece, Place::File);
     (reader.out.stmts, sink.finish())
 }
 
 /// Reads one text in one piece, without recovery: the oracle of `parse`.
-#[cfg(test)]
-pub(crate) fn parse_whole(
+#[cfg(any(test, feature = "fuzz"))]
+pub(super) fn parse_whole(
     text: &str,
     source: SourceId,
     budgets: &Budgets,
@@ -197,6 +200,16 @@ impl<'a> Reader<'a> {
 impl Reader<'_> {
     fn span(&self, range: Range<usize>) -> Span {
         Span::new(self.source, range.start, range.end)
+    }
+
+    fn tree(&mut self) -> Tree {
+        let mut stmts = vec![];
+        let mut take = |some| {
+            stmts.extend(some);
+            true
+        };
+        self.file(&mut Turns { bytes: usize::MAX, take: &mut take });
+        Tree { stmts }
     }
 
     fn file(&mut self, turns: &mut Turns<'_>) {
@@ -278,10 +291,11 @@ impl Reader<'_> {
     /// Reads the statements of some pieces on several threads; whether more are wanted.
     fn turn(&mut self, pieces: &[Cut], take: &mut dyn FnMut(Vec<Stmt>) -> bool) -> bool {
         let (text, source, budgets) = (self.text, self.source, self.budgets);
-        let empty = self.sink.like();
+        let (empty, is_direct) = (self.sink.like(), self.direct.is_some());
         let read = |pieces: &[Cut]| {
             let mut sink = empty.like();
-            let mut reader = Reader::new(text, source, budgets, &mut sink);
+            let direct = is_direct.then(Words::default);
+            let mut reader = Reader { direct, ..Reader::new(text, source, budgets, &mut sink) };
             reader.pieces(pieces);
             (reader.out.stmts, sink)
         };
@@ -311,7 +325,9 @@ impl Reader<'_> {
     /// Tells what is wrong with a region beside its statements.
     fn region_faults(&mut self, from: usize, found: &Region) {
         for fault in &found.faults {
-            self.tell(fault, found.resume);
+            let limit = self.budgets.brackets;
+            let told = fault::told(self.text, self.source, limit, fault, found.resume);
+            self.sink.push(told);
         }
         if !found.junk_told {
             self.before_first(from, found.first);
@@ -327,55 +343,11 @@ impl Reader<'_> {
             self.sink.push(Diagnostic::warning("E0022", span, message));
         } else if token.text == "else" {
             self.sink.push(Diagnostic::error("E0020", span, super::explain::LONE_ELSE));
-        } else if !matches!(token.text, "," | ";") {
+        } else {
             let found: String = token.text.chars().take(40).collect();
             let message = format!("`{found}` cannot begin a statement");
             self.sink.push(Diagnostic::error("E0023", span, message));
         }
-    }
-
-    fn tell(&mut self, fault: &Fault, resume: Option<usize>) {
-        let byte = |at: usize| char::from(self.text.as_bytes()[at]);
-        let diagnostic = match fault {
-            Fault::TooDeep { at } => {
-                let message = format!("more than {} nested brackets", self.budgets.brackets);
-                Diagnostic::error("E0011", self.span(*at..at + 1), message)
-                    .help("give an inner part a name with `let`")
-            }
-            Fault::Unclosed { open } => {
-                let message = format!("this `{}` is never closed", byte(*open));
-                let found = Diagnostic::error("E0008", self.span(*open..open + 1), message);
-                match resume {
-                    Some(at) => found.label(self.span(at..at), "it most likely closes before this"),
-                    None => found,
-                }
-            }
-            Fault::Mismatch { open, at } => {
-                let message = format!("`{}` is closed by `{}`", byte(*open), byte(*at));
-                Diagnostic::error("E0009", self.span(*at..at + 1), message)
-                    .label(self.span(*open..open + 1), "opened here")
-            }
-            Fault::Stray { at } => {
-                let message = format!("this `{}` closes nothing", byte(*at));
-                let span = self.span(*at..at + 1);
-                Diagnostic::error("E0010", span, message).guess(span, "")
-            }
-            Fault::String { at } => {
-                let message = "a string ends on its line with `\"`";
-                let end = self.span(at.end..at.end);
-                Diagnostic::error("E0005", self.span(at.clone()), message).guess(end, "\"")
-            }
-            Fault::Comment { at } => {
-                let message = "this comment is never closed by `*/`";
-                Diagnostic::error("E0006", self.span(*at..at + 2), message)
-            }
-            Fault::Escape { at } => {
-                let message = "an unknown escape";
-                Diagnostic::error("E0007", self.span(at.clone()), message)
-                    .help("known are \\\" \\\\ \\n \\t and \\u{…}; write a backslash as \\\\")
-            }
-        };
-        self.sink.push(diagnostic);
     }
 
     /// Reads one statement. Only one of the file itself becomes part of the tree.
@@ -425,7 +397,9 @@ impl Reader<'_> {
     fn is_too_large(&mut self, chunk: &Range<usize>) -> bool {
         let found = too_large(self.text, chunk, self.source, self.budgets);
         let is_found = found.is_some();
-        found.into_iter().for_each(|found| self.sink.push(found));
+        if let Some(found) = found {
+            self.sink.push(found);
+        }
         is_found
     }
 

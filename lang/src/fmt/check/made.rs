@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 /// What may stand before a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Gap {
+pub(crate) enum Gap {
     /// Blanks, lines and comments.
     Free,
     /// Blanks and comments that do not end the line.
@@ -22,8 +22,8 @@ pub(super) enum Gap {
 }
 
 /// A word of the language with what is before it.
-pub(super) type Word = (Gap, String);
-type Words = BoxedStrategy<Vec<Word>>;
+pub(crate) type Word = (Gap, String);
+pub(crate) type Words = BoxedStrategy<Vec<Word>>;
 
 /// Words that are apart by free gaps; `~` before one puts it on the same line, `_` after blanks, `!`
 /// nowhere.
@@ -264,7 +264,7 @@ fn statements(statement: Words) -> Words {
 }
 
 /// The statements of a file.
-pub(super) fn file() -> Words {
+pub(crate) fn file() -> Words {
     statements(statement())
 }
 
@@ -283,7 +283,7 @@ const FREE: [&str; 9] = [
 ];
 
 /// The text of a file, its gaps filled by `noise`.
-pub(super) fn text(words: &[Word], noise: &[u8]) -> String {
+pub(crate) fn text(words: &[Word], noise: &[u8]) -> String {
     let mut out = String::from("scene 1\n");
     let mut fillers = noise.iter().copied().cycle();
     for (gap, word) in words {

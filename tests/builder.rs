@@ -1,7 +1,6 @@
 //! Any bytes as a mesh and rays: the tree over all triangles meets what trees over one each meet.
 //!
-//! The seeded form runs here; `tests/fuzz` lets a fuzzer choose the bytes:
-//! `cargo fuzz run builder --fuzz-dir tests/fuzz`.
+//! The seeded form runs here; `tests/fuzz/run builder` lets a fuzzer choose the bytes.
 
 use glam::{DVec3, Vec3};
 use luxel_core::accel::{Direction, MeshBvh, MeshHit, Precision, Processor, Query};

@@ -30,6 +30,8 @@ mod features;
 #[path = "../lang/tests/language/fenced.rs"]
 mod fenced;
 #[cfg(test)]
+mod fuzz;
+#[cfg(test)]
 #[path = "../cli/src/verify/generated.rs"]
 mod generated;
 #[cfg(test)]

@@ -4,6 +4,8 @@
 //! `Files`), prints nothing, and knows no plugin: it meets them as entries of a `Registry`.
 #![forbid(unsafe_code)]
 
+#[cfg(any(test, feature = "fuzz"))]
+pub mod check;
 pub mod editor;
 pub mod manual;
 pub mod prescan;

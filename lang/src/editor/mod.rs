@@ -1,6 +1,8 @@
 //! What an editor asks of a text: pure functions over documents and a registry. Offsets are bytes; no
 //! protocol, no disk.
 
+#[cfg(any(test, feature = "fuzz"))]
+pub(crate) mod check;
 mod complete;
 mod context;
 mod define;

@@ -1,6 +1,7 @@
 //! An edited document is the document of the edited text.
 
 use super::Document;
+use super::check::same;
 use crate::Budgets;
 
 const START: &str = r#"//! A scene.
@@ -47,23 +48,6 @@ const PASTES: [&str; 24] = [
     "for ",
     "é",
 ];
-
-fn same(edited: &Document, step: &str) {
-    let fresh = Document::new(edited.text(), &Budgets::default());
-    let pieces = |document: &Document| -> Vec<_> {
-        let of = |piece: &super::piece::Piece| {
-            (piece.start, piece.end, piece.faulty, piece.read.stmts.clone())
-        };
-        document.pieces().iter().map(of).collect()
-    };
-    assert_eq!(pieces(edited), pieces(&fresh), "{step}:\n{}", edited.text());
-    let sorted = |document: &Document| {
-        let mut found = document.diagnostics();
-        found.sort_by_key(|found| (found.span(), found.code));
-        found
-    };
-    assert_eq!(sorted(edited), sorted(&fresh), "{step}:\n{}", edited.text());
-}
 
 /// The next number of a sequence that looks random.
 fn next(state: &mut u64, below: usize) -> usize {

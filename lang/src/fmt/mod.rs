@@ -7,6 +7,8 @@
 mod align;
 mod block;
 mod bracket;
+#[cfg(any(test, feature = "fuzz"))]
+pub(crate) mod check;
 mod layout;
 mod marks;
 mod measure;

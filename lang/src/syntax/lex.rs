@@ -123,7 +123,7 @@ fn number(bytes: &[u8]) -> usize {
     loop {
         match bytes.get(at) {
             Some(b'0'..=b'9' | b'_') => at += 1,
-            Some(b'.') if bytes.get(at + 1) != Some(&b'.') => at += 1,
+            Some(b'.') if !bytes.get(at + 1).is_some_and(|b| is_range_or_member(*b)) => at += 1,
             Some(b'e' | b'E') => {
                 let signed = matches!(bytes.get(at + 1), Some(b'+' | b'-'));
                 let after = bytes.get(at + 1 + usize::from(signed));
@@ -136,6 +136,11 @@ fn number(bytes: &[u8]) -> usize {
             _ => return at,
         }
     }
+}
+
+/// Whether after this byte a `.` is no part of a number: `0..4`, `0.name`.
+fn is_range_or_member(after: u8) -> bool {
+    after == b'.' || after == b'_' || after.is_ascii_alphabetic()
 }
 
 fn string(rest: &str) -> usize {
@@ -156,9 +161,10 @@ mod tests {
 
     #[test]
     fn wrong_numbers_are_one_token() {
-        let text = "1.2.3 1e 5. 0..4 2e5 3em .5";
+        let text = "1.2.3 1e 5. 0..4 2e5 3em .5 6.x";
         let found: Vec<_> = tokens(text, 0..text.len()).map(|t| t.text).collect();
-        assert_eq!(found, ["1.2.3", "1e", "5.", "0", "..", "4", "2e5", "3", "em", ".5"]);
+        let expected = ["1.2.3", "1e", "5.", "0", "..", "4", "2e5", "3", "em", ".5", "6", ".", "x"];
+        assert_eq!(found, expected);
     }
 
     #[test]

@@ -4,6 +4,8 @@
 mod agree;
 mod around;
 mod build;
+#[cfg(any(test, feature = "fuzz"))]
+pub(crate) mod check;
 mod cut;
 mod direct;
 mod explain;
@@ -26,8 +28,6 @@ pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use make::RESERVED;
-#[cfg(test)]
-pub(crate) use parse::parse_whole;
 pub(crate) use parse::{Tree, cut, parse, parse_by_pest, parse_expr, read_head, read_piece};
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,

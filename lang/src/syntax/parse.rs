@@ -119,8 +119,8 @@ pub(super) fn read_as(
 }
 
 /// Reads one text in one piece, without recovery: the oracle of `parse`.
-#[cfg(test)]
-pub(crate) fn parse_whole(
+#[cfg(any(test, feature = "fuzz"))]
+pub(super) fn parse_whole(
     text: &str,
     source: SourceId,
     budgets: &Budgets,
@@ -313,7 +313,7 @@ impl Reader<'_> {
             Fault::Unclosed { open } => {
                 let message = format!("this `{}` is never closed", byte(*open));
                 let found = Diagnostic::error("E0008", self.span(*open..open + 1), message);
-                match resume {
+                match resume.filter(|at| at > open) {
                     Some(at) => found.label(self.span(at..at), "it most likely closes before this"),
                     None => found,
                 }

@@ -3,6 +3,7 @@
 
 mod case;
 mod cases;
+mod damage;
 mod fenced;
 mod limits;
 mod plant;
@@ -10,3 +11,5 @@ mod readers;
 mod registry;
 mod scenes;
 mod seeded;
+#[path = "../../../tests/fuzz/src/targets/told.rs"]
+mod told;

@@ -1,0 +1,32 @@
+//! What fuzzing has found stays mended: `tests/fuzz/regressions` holds the inputs.
+#![expect(clippy::disallowed_methods, reason = "tests read the project's own files")]
+
+use std::path::Path;
+
+use super::{chunks, edits, format_keeps, made_keeps};
+
+type Judge = fn(&[u8]) -> bool;
+
+#[test]
+fn what_a_fuzzer_found_of_texts_stays_mended() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fuzz/regressions");
+    let targets: [(&str, Judge); 4] =
+        [("chunks", chunks), ("format", format_keeps), ("made", made_keeps), ("edits", edits)];
+    for (name, judge) in targets {
+        for entry in std::fs::read_dir(folder.join(name)).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            println!("{}", path.display());
+            judge(&std::fs::read(&path).unwrap());
+        }
+    }
+}
+
+#[test]
+fn judges_say_what_was_of_use() {
+    let scene = b"scene 1\nlet a = 1\nlet b = a\n";
+    assert!(chunks(scene) && format_keeps(scene));
+    assert!(!chunks(b"scene 1\nlet a = \n") && !format_keeps(b"scene 1\nlet = 1"));
+    assert!(!chunks(b"\xFF") && !format_keeps(b"\xFF"));
+    assert!(edits(b"scene 1\nlet a = 1\n\xFF\x80\0\x01}\xFF\0\0\x04") && !edits(scene));
+    assert!(made_keeps(&[7; 512]));
+}

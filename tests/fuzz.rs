@@ -16,8 +16,9 @@ use crate::plant::Dice;
 
 type Judge = fn(&[u8]) -> bool;
 
-const TARGETS: [(&str, Judge); 7] = [
+const TARGETS: [(&str, Judge); 8] = [
     ("bytes", targets::bytes::judge),
+    ("readers", targets::readers::judge),
     ("damage", targets::damage::judge),
     ("evaluate", targets::evaluate::judge),
     ("nested", targets::nested::judge),
@@ -83,7 +84,7 @@ fn judges_of_scenes_look_at_them() {
         camera perspective {\n  look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, \
         up = (0, 1, 0))\n  fov = 40 deg\n}\ninclude \"b\"\n// file: b\nscene 1\nlet a = 1\n";
     assert!(targets::bytes::judge(scene));
-    assert!(targets::damage::judge(scene));
+    assert!(targets::damage::judge(scene) && targets::readers::judge(scene));
     assert!(targets::evaluate::judge(scene));
     assert!(targets::nested::judge(b"group {\n~a = = 1\n~}\n"));
     let wrong: Vec<String> = (0..20).map(|i| format!("let a{i} = nope")).collect();

@@ -6,7 +6,7 @@
 mod tests;
 
 use crate::editor::{self, Document};
-use crate::fmt::check::{formatted, made};
+use crate::fmt::check;
 use crate::{Budgets, agree, format, syntax};
 
 /// Byte that no text holds: it parts a text from its edits.
@@ -32,7 +32,7 @@ pub fn format_keeps(bytes: &[u8]) -> bool {
     let Some(text) = text.filter(|text| format(text, &Budgets::default()).is_ok()) else {
         return false;
     };
-    formatted(text).unwrap_or_else(|why| panic!("{why}"));
+    check::formatted(text).unwrap_or_else(|why| panic!("{why}"));
     true
 }
 
@@ -42,8 +42,8 @@ pub fn format_keeps(bytes: &[u8]) -> bool {
 /// # Panics
 /// If it does not.
 pub fn made_keeps(bytes: &[u8]) -> bool {
-    let Some(scene) = made::chosen(bytes) else { return false };
-    made::judge(&scene).unwrap_or_else(|why| panic!("{why}"));
+    let Some(scene) = check::chosen(bytes) else { return false };
+    check::made_keeps(&scene).unwrap_or_else(|why| panic!("{why}"));
     true
 }
 

@@ -1,9 +1,12 @@
 //! What the formatter keeps: the tree, every comment, and its own output. Asked by tests and by
 //! `tests/fuzz`.
 
-pub(crate) mod made;
+mod made;
 
 use luxel_core::diag::SourceId;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
 use crate::sink::Sink;
 use crate::syntax::parse;
@@ -66,4 +69,44 @@ pub(crate) fn formatted(text: &str) -> Result<String, String> {
     let several = once.contains("/*") || once.split('\n').all(tidy);
     check(several && (once.ends_with('\n') || once.is_empty()), "untidy lines", "")?;
     Ok(once)
+}
+
+/// Noise that fills gaps with single blanks.
+const PLAIN: u8 = 3;
+
+/// A scene that no one wrote.
+#[derive(Clone, Debug)]
+pub(crate) struct Made {
+    words: Vec<made::Word>,
+    noise: Vec<u8>,
+}
+
+/// Scenes of any words, their gaps filled by any noise.
+pub(crate) fn scene() -> impl Strategy<Value = Made> {
+    let noise = prop::collection::vec(any::<u8>(), 1..200);
+    (made::file(), noise).prop_map(|(words, noise)| Made { words, noise })
+}
+
+/// The scene that these bytes choose, folded into 32. (Where proptest takes choices from given
+/// bytes it does not end once there are no more.)
+pub(crate) fn chosen(bytes: &[u8]) -> Option<Made> {
+    thread_local! {
+        static SCENE: BoxedStrategy<Made> = scene().boxed();
+    }
+    let mut seed = [0_u8; 32];
+    bytes.iter().zip((0..32).cycle()).for_each(|(byte, i)| seed[i] ^= byte);
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
+    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
+    SCENE.with(|scene| scene.new_tree(&mut runner)).ok().map(|tree| tree.current())
+}
+
+/// Holds a scene against what the formatter promises; its tree is that of its words alone.
+pub(crate) fn made_keeps(made: &Made) -> Result<(), String> {
+    let plain = made::text(&made.words, &[PLAIN]);
+    let text = made::text(&made.words, &made.noise);
+    let of_text = tree(&text).ok_or_else(|| format!("not a scene:\n{text}"))?;
+    if tree(&plain) != Some(of_text) {
+        return Err(format!("another tree\n{text}\n=>\n{plain}"));
+    }
+    formatted(&text).map(|_| ())
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
 
-use super::check::{formatted, made, tree};
+use super::check::{formatted, made_keeps, scene, tree};
 use crate::{Budgets, format};
 
 fn files_below(folder: &Path, out: &mut Vec<PathBuf>) {
@@ -114,8 +114,8 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..<_>::default() })]
 
     #[test]
-    fn any_text_keeps_its_tree_and_comments(scene in made::scene()) {
-        if let Err(why) = made::judge(&scene) {
+    fn any_text_keeps_its_tree_and_comments(scene in scene()) {
+        if let Err(why) = made_keeps(&scene) {
             return Err(TestCaseError::fail(why));
         }
     }

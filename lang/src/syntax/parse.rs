@@ -295,7 +295,7 @@ impl Reader<'_> {
             self.sink.push(Diagnostic::warning("E0022", span, message));
         } else if token.text == "else" {
             self.sink.push(Diagnostic::error("E0020", span, super::explain::LONE_ELSE));
-        } else if !matches!(token.text, "," | ";") {
+        } else {
             let found: String = token.text.chars().take(40).collect();
             let message = format!("`{found}` cannot begin a statement");
             self.sink.push(Diagnostic::error("E0023", span, message));

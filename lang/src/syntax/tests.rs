@@ -3,54 +3,8 @@
 use super::parse::parse_whole;
 use super::*;
 use crate::Budgets;
-use crate::fmt::check::made;
 use crate::sink::Sink;
 use luxel_core::diag::SourceId;
-use proptest::prelude::*;
-
-/// What is put into texts.
-const PIECES: [&str; 40] = [
-    "",
-    "",
-    "",
-    "",
-    " ",
-    "\n",
-    ",",
-    ";",
-    "{",
-    "}",
-    "(",
-    ")",
-    "[",
-    "]",
-    "#[1 2]",
-    "\"a\"",
-    "=",
-    "=>",
-    "!",
-    "-",
-    "+-",
-    "/",
-    "..",
-    ".x",
-    "// c\n",
-    "/// d\n",
-    "/* c */",
-    "/*/",
-    "*/",
-    "@off ",
-    "x",
-    "1",
-    "1e",
-    " m/s",
-    "if ",
-    "else ",
-    " in ",
-    " with { a = 1 }",
-    " where { a = 1 }",
-    "shape box {}",
-];
 
 const EXAMPLES: [&str; 3] = [
     include_str!("../../tests/scenes/cornell.scene"),
@@ -134,38 +88,4 @@ fn a_large_file_is_the_same_whoever_reads_its_parts() {
     let starts: Vec<usize> =
         sink.finish().iter().filter_map(|found| Some(found.span()?.range().start)).collect();
     assert!(starts.len() == 5 && starts.is_sorted(), "{starts:?}");
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..<_>::default() })]
-
-    #[test]
-    fn any_text_is_read_directly_and_as_pest_reads_it(scene in made::scene()) {
-        let text = scene.text();
-        match agree(&text, &Budgets::default()) {
-            Ok(found) => prop_assert_eq!((found.told, found.missed), (0, 0), "{}", text),
-            Err(why) => return Err(TestCaseError::fail(why)),
-        }
-    }
-
-    #[test]
-    fn any_edited_text_is_read_directly_as_pest_reads_it(
-        scene in made::scene(),
-        edits in prop::collection::vec(
-            (any::<prop::sample::Index>(), 0..4_usize, prop::sample::select(&PIECES[..])),
-            1..6,
-        ),
-    ) {
-        let mut text = scene.text();
-        for (place, length, piece) in edits {
-            let ends: Vec<usize> =
-                text.char_indices().map(|(at, _)| at).chain([text.len()]).collect();
-            let start = place.index(ends.len());
-            let end = (start + length).min(ends.len() - 1);
-            text.replace_range(ends[start]..ends[end], piece);
-            if let Err(why) = agree(&text, &Budgets::default()) {
-                return Err(TestCaseError::fail(why));
-            }
-        }
-    }
 }

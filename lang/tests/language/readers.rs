@@ -4,9 +4,14 @@
 use std::path::{Path, PathBuf};
 
 use luxel_lang::{Agreement, Budgets, agree};
+use proptest::prelude::*;
 
 use crate::fenced::SMALL;
 use crate::plant::Dice;
+
+/// Texts that no one wrote, as the formatter's tests make them.
+#[path = "../../src/fmt/check/made.rs"]
+mod made;
 
 /// What is put into texts: pieces of the language, and what is none.
 const PIECES: [&str; 96] = [
@@ -223,6 +228,37 @@ fn what_nests_without_end_is_read_alike() {
         ];
         for text in texts {
             agreed(&format!("scene 1\n{text}\n"), &Budgets::default());
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..<_>::default() })]
+
+    #[test]
+    fn any_text_is_read_directly_and_as_pest_reads_it(
+        words in made::file(),
+        noise in prop::collection::vec(any::<u8>(), 1..200),
+    ) {
+        let text = made::text(&words, &noise);
+        match agree(&text, &Budgets::default()) {
+            Ok(found) => prop_assert_eq!((found.told, found.missed), (0, 0), "{}", text),
+            Err(why) => return Err(TestCaseError::fail(why)),
+        }
+    }
+
+    #[test]
+    fn edited_texts_are_read_alike(
+        words in made::file(),
+        noise in prop::collection::vec(any::<u8>(), 1..200),
+        seed in any::<u64>(),
+    ) {
+        let (mut text, mut dice) = (made::text(&words, &noise), Dice(seed));
+        for _ in 0..4 {
+            edit(&mut text, &mut dice, 3);
+            if let Err(why) = agree(&text, &Budgets::default()) {
+                return Err(TestCaseError::fail(why));
+            }
         }
     }
 }

@@ -36,8 +36,9 @@ const fn target(
     Target { name, judge, seeds, words }
 }
 
-const TARGETS: [Target; 11] = [
+const TARGETS: [Target; 12] = [
     target("bytes", targets::bytes::judge, seeds::texts, 1),
+    target("readers", targets::readers::judge, seeds::texts, 3),
     target("chunks", check::chunks, seeds::texts, 3),
     target("format", check::format_keeps, seeds::texts, 3),
     target("made", check::made_keeps, seeds::noise, 0),

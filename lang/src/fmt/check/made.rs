@@ -1,8 +1,6 @@
 //! Scenes that no one wrote: every form of the grammar, blanks and comments wherever they may stand.
 
 use proptest::prelude::*;
-use proptest::strategy::ValueTree;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
 /// What may stand before a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +23,7 @@ pub(crate) enum Gap {
 
 /// A word of the language with what is before it.
 pub(crate) type Word = (Gap, String);
-type Words = BoxedStrategy<Vec<Word>>;
+pub(crate) type Words = BoxedStrategy<Vec<Word>>;
 
 /// Words that are apart by free gaps; `~` before one puts it on the same line, `_` after blanks, `!`
 /// nowhere.
@@ -265,52 +263,11 @@ fn statements(statement: Words) -> Words {
         .boxed()
 }
 
-/// A scene that no one wrote.
-#[derive(Clone, Debug)]
-pub(crate) struct Made {
-    words: Vec<Word>,
-    noise: Vec<u8>,
+/// The statements of a file.
+pub(crate) fn file() -> Words {
+    statements(statement())
 }
 
-impl Made {
-    /// Its text.
-    pub(crate) fn text(&self) -> String {
-        text(&self.words, &self.noise)
-    }
-}
-
-/// Scenes of any words, their gaps filled by any noise.
-pub(crate) fn scene() -> impl Strategy<Value = Made> {
-    let noise = prop::collection::vec(any::<u8>(), 1..200);
-    (statements(statement()), noise).prop_map(|(words, noise)| Made { words, noise })
-}
-
-/// The scene that these bytes choose, folded into 32. (Where proptest takes choices from given
-/// bytes it does not end once there are no more.)
-pub(crate) fn chosen(bytes: &[u8]) -> Option<Made> {
-    thread_local! {
-        static SCENE: BoxedStrategy<Made> = scene().boxed();
-    }
-    let mut seed = [0_u8; 32];
-    bytes.iter().zip((0..32).cycle()).for_each(|(byte, i)| seed[i] ^= byte);
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
-    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
-    SCENE.with(|scene| scene.new_tree(&mut runner)).ok().map(|tree| tree.current())
-}
-
-/// Holds a scene against what the formatter promises; its tree is that of its words alone.
-pub(crate) fn judge(made: &Made) -> Result<(), String> {
-    let plain = text(&made.words, &[PLAIN]);
-    let text = made.text();
-    let tree = super::tree(&text).ok_or_else(|| format!("not a scene:\n{text}"))?;
-    if super::tree(&plain) != Some(tree) {
-        return Err(format!("another tree\n{text}\n=>\n{plain}"));
-    }
-    super::formatted(&text).map(|_| ())
-}
-
-/// Noise that fills gaps with single blanks.
-const PLAIN: u8 = 3;
 const BLANKS: [&str; 4] = [" ", "  ", "\t", "     "];
 const INLINE: [&str; 3] = [" /* c */ ", " /**/", "   /* // */   "];
 const FREE: [&str; 9] = [
@@ -326,7 +283,7 @@ const FREE: [&str; 9] = [
 ];
 
 /// The text of a file, its gaps filled by `noise`.
-fn text(words: &[Word], noise: &[u8]) -> String {
+pub(crate) fn text(words: &[Word], noise: &[u8]) -> String {
     let mut out = String::from("scene 1\n");
     let mut fillers = noise.iter().copied().cycle();
     for (gap, word) in words {

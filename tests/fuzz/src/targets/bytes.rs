@@ -1,6 +1,6 @@
 //! Any bytes are read: without a panic, in bounded time, on a small stack.
 
-use luxel_lang::{Budgets, parse_only};
+use luxel_lang::Budgets;
 
 use super::{cost, load, on_stack, told};
 
@@ -13,10 +13,7 @@ const STEPS: u64 = 100_000;
 
 pub(crate) fn judge(bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
-    let read = || {
-        parse_only(&text, &Budgets::default());
-    };
-    cost::bounded(text.len(), || on_stack(READING, read));
+    on_stack(READING, || cost::bounded(&text, &Budgets::default()));
     let budgets = Budgets { steps: STEPS, ..Budgets::default() };
     told::holds(&on_stack(LOADING, || load(bytes, budgets)));
     true

@@ -1,44 +1,60 @@
-//! What reading a text may cost, measured against a text that has no mistake: so it holds on any
+//! What reading a text may cost, measured against other texts at the same time: so it holds on any
 //! machine and in any build.
 
 use std::time::{Duration, Instant};
 
 use luxel_lang::{Budgets, parse_only};
 
-/// So many times as long as a plain text of its length a text may take. That takes half a millisecond
-/// for each KiB; the design allows ten.
-const FACTOR: u32 = 20;
+/// So often each mistake that is told may have the text read again, and the text itself.
+const LOOKS: u32 = 2;
+/// So many times as long a text may take that is four times as long: linear with room for a busy
+/// machine, below the sixteen times of a quadratic.
+const GROWTH: u32 = 10;
 /// Any text may take so long: what is shorter tells nothing.
 const FLOOR: Duration = Duration::from_millis(50);
 /// So often it is tried: a machine that is busy is not so each time.
 const TRIES: usize = 5;
 const PLAIN: &str = "shape sphere { radius = 1 m, material = a }\n";
 
-/// Runs, and runs again while it took longer than a text of so many bytes may; gives the least time.
+/// Holds the time that a text takes against that of a plain one of its length.
 ///
 /// # Panics
 /// If it took too long each time.
-pub(crate) fn bounded(bytes: usize, run: impl Fn()) -> Duration {
-    let least = least(&run, FLOOR);
-    if least > FLOOR {
-        let plain = format!("scene 1\n{}", PLAIN.repeat(bytes.div_ceil(PLAIN.len())));
-        let plain = self::least(&|| drop(parse_only(&plain, &Budgets::default())), Duration::ZERO);
-        let limit = FLOOR + FACTOR * plain;
-        assert!(least <= limit, "{bytes} bytes took {least:?}; {limit:?} are allowed");
+pub(crate) fn bounded(text: &str, budgets: &Budgets) {
+    if time(text, budgets) > FLOOR {
+        let plain = format!("scene 1\n{}", PLAIN.repeat(text.len().div_ceil(PLAIN.len())));
+        let [plain, took] = least([&plain, text], budgets);
+        let mistakes = u32::try_from(budgets.diagnostics).unwrap_or(u32::MAX);
+        let limit = FLOOR + plain * LOOKS * (1 + mistakes);
+        assert!(took <= limit, "{} bytes took {took:?}; {limit:?} are allowed", text.len());
     }
-    least
 }
 
-/// The least time of several runs, or the first that is short enough.
-fn least(run: &dyn Fn(), enough: Duration) -> Duration {
-    let mut least = Duration::MAX;
+/// Holds the time that a text takes against that of one a quarter as long.
+///
+/// # Panics
+/// If it took too many times as long each time.
+pub(crate) fn linear(quarter: &str, text: &str, budgets: &Budgets) {
+    if time(text, budgets) > FLOOR {
+        let [quarter, took] = least([quarter, text], budgets);
+        let limit = FLOOR.max(quarter * GROWTH);
+        assert!(took <= limit, "{} bytes took {took:?}, a quarter {quarter:?}", text.len());
+    }
+}
+
+fn time(text: &str, budgets: &Budgets) -> Duration {
+    let start = Instant::now();
+    parse_only(text, budgets);
+    start.elapsed()
+}
+
+/// The least times of several turns, in which both are read.
+fn least(texts: [&str; 2], budgets: &Budgets) -> [Duration; 2] {
+    let mut out = [Duration::MAX; 2];
     for _ in 0..TRIES {
-        let start = Instant::now();
-        run();
-        least = least.min(start.elapsed());
-        if least <= enough {
-            break;
+        for (least, text) in out.iter_mut().zip(texts) {
+            *least = time(text, budgets).min(*least);
         }
     }
-    least
+    out
 }

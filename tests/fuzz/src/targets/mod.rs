@@ -8,6 +8,7 @@ pub(crate) mod evaluate;
 pub(crate) mod film;
 pub(crate) mod import;
 pub(crate) mod nested;
+pub(crate) mod readers;
 mod told;
 
 use std::path::Path;

@@ -7,20 +7,17 @@ mod tests;
 
 use crate::editor::{self, Document};
 use crate::fmt::check;
-use crate::{Budgets, agree, format, syntax};
+use crate::{Budgets, format, syntax};
 
 /// Byte that no text holds: it parts a text from its edits.
 const PART: u8 = 0xFF;
 
-/// Reading by statement is reading the file whole, and reading it straight from its bytes is reading it
-/// by the grammar of record.
+/// Reading by statement is reading the file whole.
 ///
 /// # Panics
 /// If one way reads what the other refuses, or something else.
 pub fn chunks(bytes: &[u8]) -> bool {
-    let Ok(text) = str::from_utf8(bytes) else { return false };
-    agree(text, &Budgets::default()).unwrap_or_else(|why| panic!("{why}"));
-    syntax::check::whole(text)
+    str::from_utf8(bytes).is_ok_and(syntax::check::whole)
 }
 
 /// Formatting keeps the tree and every comment, and changes nothing the second time.

@@ -1,25 +1,119 @@
-//! How fast scene text is read, evaluation left out.
+//! How fast scene text is read, evaluation left out, and what its tree holds: by the reader that is in
+//! use, and by pest, which is the grammar of record.
 
+use std::path::Path;
 use std::time::Instant;
 
-use luxel_lang::{Budgets, parse_only};
+use luxel_lang::{Budgets, parse_by_pest, parse_only};
 
+use crate::process;
 use crate::series::Series;
+
+/// The word that makes this program read a text once.
+const ONCE: &str = "parse-once";
+
+/// Processor seconds of one measurement.
+const LEAST: f64 = 0.4;
 
 const OBJECT: &str = "shape sphere \"ball\" { center = (1.2, 0.5, -3.25) m, radius = 50 cm, \
      material = material diffuse { reflectance = rgb.linear_srgb(0.5, 0.25, 0.125) } }\n";
 
-/// Prints megabytes per second for what large scenes are made of.
-pub(crate) fn run() {
-    println!("parse, MB/s of scene text on one call (goals: objects 2, lists and tables 150)");
-    let text = |body: String| format!("scene 1\n{body}\n");
-    report("objects", &text(OBJECT.repeat(20_000)));
-    report("table #[ ]", &text(format!("let t = #[{}1]", "0.2531 -12.25 ".repeat(500_000))));
-    report("list [ ]", &text(format!("let t = [{}1]", "0.25, ".repeat(1_000_000))));
+/// What large scenes are made of.
+struct Case {
+    name: &'static str,
+    text: fn() -> String,
+}
+
+const CASES: [Case; 6] = [
+    Case { name: "objects", text: || OBJECT.repeat(20_000) },
+    Case {
+        name: "placements",
+        text: || lines(60_000, |i| format!("place ball {{ transform = move(({i}, 0, 0) m) }}\n")),
+    },
+    Case {
+        name: "expressions",
+        text: || {
+            lines(30_000, |i| {
+                format!(
+                    "let x{i} = (a * (b + {i}) - sin(c / 2 m) ^ 2) * d.e[3] + if a > {i} {{ 1 }} else {{ 2 }}\n"
+                )
+            })
+        },
+    },
+    Case {
+        name: "deep lists",
+        text: || {
+            lines(6_000, |i| format!("let x{i} = {}a{}\n", "[".repeat(100), " + 1]".repeat(100)))
+        },
+    },
+    Case { name: "list [ ]", text: || format!("let t = [{}1]", "0.25, ".repeat(1_600_000)) },
+    Case {
+        name: "table #[ ]",
+        text: || format!("let t = #[{}1]", "0.2531 -12.25 ".repeat(700_000)),
+    },
+];
+
+fn lines(n: usize, line: impl Fn(usize) -> String) -> String {
+    (0..n).map(line).collect()
+}
+
+/// A way to read a text.
+struct Reader {
+    name: &'static str,
+    read: fn(&str),
+}
+
+const READERS: [Reader; 2] = [
+    Reader {
+        name: "ours",
+        read: |text| drop(std::hint::black_box(parse_only(text, &Budgets::default()))),
+    },
+    Reader {
+        name: "pest",
+        read: |text| drop(std::hint::black_box(parse_by_pest(text, &Budgets::default()))),
+    },
+];
+
+/// Prints megabytes per second of processor time, and what is held at most for a byte of text.
+///
+/// # Errors
+/// This program does not start anew.
+pub(crate) fn run() -> Result<(), String> {
+    println!(
+        "parse, MB/s of scene text per second of processor time (goals: objects 10, lists and tables 150)"
+    );
+    for case in &CASES {
+        let text = format!("scene 1\n{}\n", (case.text)());
+        print!("  {:12} {:5.1} MB", case.name, text.len() as f64 / 1e6);
+        for reader in &READERS {
+            let series = Series::of(5, || rate(&text, reader));
+            let held = peak(case, reader)? / text.len() as f64;
+            print!(
+                "   {} {:6.1} MB/s (spread {:2.0} %), {held:4.1} bytes a byte",
+                reader.name,
+                series.median(),
+                series.spread()
+            );
+        }
+        println!();
+    }
+    mistake();
+    Ok(())
+}
+
+/// How long a mistake inside many objects takes, on the wall.
+fn mistake() {
     let depth = 100;
-    let nested = format!("let a = {}5 +{}", "material x { b = ".repeat(depth), " }".repeat(depth));
-    let text = text(nested);
-    let series = Series::of(9, || once(&text) * 1e3);
+    let nested = format!(
+        "scene 1\nlet a = {}5 +{}\n",
+        "material x { b = ".repeat(depth),
+        " }".repeat(depth)
+    );
+    let series = Series::of(9, || {
+        let start = Instant::now();
+        std::hint::black_box(parse_only(&nested, &Budgets::default()));
+        start.elapsed().as_secs_f64() * 1e3
+    });
     println!(
         "  error inside {depth} objects: {:.2} ms (spread {:.0} %), goal 5",
         series.median(),
@@ -27,20 +121,54 @@ pub(crate) fn run() {
     );
 }
 
-fn report(name: &str, text: &str) {
-    let megabytes = text.len() as f64 / 1e6;
-    let series = Series::of(7, || megabytes / once(text));
-    println!(
-        "  {name:12} {megabytes:5.1} MB {:8.1} MB/s (spread {:.0} %)",
-        series.median(),
-        series.spread()
-    );
+/// Megabytes per second of processor time, all threads together.
+fn rate(text: &str, reader: &Reader) -> f64 {
+    let (start, mut read) = (processor_seconds(), 0.0);
+    loop {
+        (reader.read)(text);
+        read += text.len() as f64 / 1e6;
+        let seconds = processor_seconds() - start;
+        // Where the system does not tell, it is not a number and one reading is enough.
+        if seconds.is_nan() || seconds >= LEAST {
+            return read / seconds;
+        }
+    }
 }
 
-/// Seconds for one reading.
-fn once(text: &str) -> f64 {
-    let budgets = Budgets::default();
-    let start = Instant::now();
-    std::hint::black_box(parse_only(text, &budgets));
-    start.elapsed().as_secs_f64()
+/// Seconds of processor time that this process took, in steps of 10 ms; not a number where the system
+/// does not tell.
+fn processor_seconds() -> f64 {
+    let told = process::read(Path::new("/proc/self/stat")).unwrap_or_default();
+    let told = String::from_utf8_lossy(&told);
+    // User and system, counted from behind the program's name.
+    let numbers = told.rsplit(')').next().unwrap_or_default().split_whitespace();
+    let ticks: Vec<f64> = numbers.skip(11).take(2).filter_map(|n| n.parse().ok()).collect();
+    if ticks.len() == 2 { (ticks[0] + ticks[1]) / 100.0 } else { f64::NAN }
+}
+
+/// The bytes that a reading holds at most, the text left out, measured in a process of its own.
+fn peak(case: &Case, reader: &Reader) -> Result<f64, String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let words = |reader: &str| [program.clone(), ONCE.into(), case.name.into(), reader.into()];
+    let held = |reader: &str| {
+        let took = process::timed(&words(reader))?;
+        Ok::<_, String>(took.megabytes.unwrap_or(f64::NAN) * f64::from(1 << 20))
+    };
+    Ok(held(reader.name)? - held("none")?)
+}
+
+/// Reads a text once, if this program was started for that.
+pub(crate) fn once() -> bool {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [first, name, what] = &words[..] else { return false };
+    let Some(case) = CASES.iter().find(|case| first == ONCE && case.name == name) else {
+        return false;
+    };
+    let mut text = String::with_capacity(16 << 20);
+    text.push_str("scene 1\n");
+    text.push_str(&(case.text)());
+    if let Some(reader) = READERS.iter().find(|reader| reader.name == what) {
+        (reader.read)(&text);
+    }
+    true
 }

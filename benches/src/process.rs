@@ -63,7 +63,10 @@ impl Luxel {
 }
 
 /// Runs a program that succeeds; `words` begins with it.
-fn timed(words: &[PathBuf]) -> Result<Took, String> {
+///
+/// # Errors
+/// The program did not start or failed; its words.
+pub(crate) fn timed(words: &[PathBuf]) -> Result<Took, String> {
     let (took, succeeded, told) = ran(words)?;
     if !succeeded {
         return Err(format!("{} failed: {told}", words[0].display()));

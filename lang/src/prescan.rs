@@ -130,6 +130,12 @@ pub fn scan_until(
     scanner.out
 }
 
+/// The bytes of the block comment with which a text begins; `None` if it never ends. The `*` that
+/// begins it does not end it too: `/*/` goes on.
+pub(crate) fn block_comment(text: &[u8]) -> Option<usize> {
+    memchr::memmem::find(text.get(2..)?, b"*/").map(|end| end + 4)
+}
+
 #[expect(clippy::struct_excessive_bools, reason = "five independent facts about the place")]
 struct Scanner<'a> {
     bytes: &'a [u8],

@@ -197,7 +197,7 @@ fn is_closed(string: &str) -> bool {
 /// Whether what stands between tokens ends in a comment.
 fn is_comment(gap: &str) -> bool {
     let line = gap.rsplit('\n').next().unwrap_or_default();
-    let block = gap.rfind("/*").is_some_and(|open| !gap[open..].contains("*/"));
+    let block = gap.rfind("/*").is_some_and(|open| !gap[open + 2..].contains("*/"));
     block || line.contains("//")
 }
 

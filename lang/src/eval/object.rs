@@ -379,12 +379,14 @@ impl Evaluator<'_> {
                 let message = format!("`{a}` and `{b}` are both given; only one can be");
                 let found = Diagnostic::error("E0406", second.span, message);
                 self.tell(found.label(first.span, "first given here"));
-            } else if chosen.is_empty()
-                && !members.contains(&"scale")
-                && !members.iter().any(|member| meant.contains(member))
-            {
+            } else if chosen.is_empty() && !members.iter().any(|member| meant.contains(member)) {
                 let message = format!("one of `{}` is wanted", missing(&members));
-                self.tell(Diagnostic::error("E0403", head.class.span, message));
+                let found = Diagnostic::error("E0403", head.class.span, message);
+                self.tell(if members.contains(&"scale") {
+                    found.help("`scale = 1` takes the spectrum as it is")
+                } else {
+                    found
+                });
             }
         }
     }

@@ -34,7 +34,7 @@ fn comments(text: &str) -> Vec<String> {
         let line = rest.find('\n').unwrap_or(rest.len());
         let length = match rest.get(..2) {
             Some("//") => line,
-            Some("/*") => rest.find("*/").map_or(rest.len(), |end| end + 2),
+            Some("/*") => rest[2..].find("*/").map_or(rest.len(), |end| end + 4),
             _ if rest.starts_with('"') => {
                 // The first quote that has an even number of backslashes before it.
                 let ends = |end: &usize| {

@@ -3,6 +3,7 @@
 use std::iter::Peekable;
 
 use super::marks::Marks;
+use crate::prescan::block_comment;
 use crate::syntax::{Op, Token, TokenKind, tokens};
 
 /// What a piece is.
@@ -162,7 +163,7 @@ impl<'a> Cutter<'a, '_> {
                 b'/' => {
                     let block = rest.starts_with("/*");
                     let end = if block {
-                        rest.find("*/").map(|end| end + 2)
+                        block_comment(rest.as_bytes())
                     } else {
                         memchr::memchr(b'\n', rest.as_bytes())
                     };

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::prescan::block_comment;
+
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TokenKind {
@@ -79,7 +81,7 @@ fn next<'a>(text: &'a str, at: &mut usize) -> Option<Token<'a>> {
         } else if rest.starts_with("//") && !is_doc {
             *at += rest.find('\n').unwrap_or(rest.len());
         } else if rest.starts_with("/*") {
-            let end = rest.find("*/").map_or(rest.len(), |end| end + 2);
+            let end = block_comment(rest.as_bytes()).unwrap_or(rest.len());
             first_on_line |= rest[..end].contains('\n');
             *at += end;
         } else {
@@ -167,7 +169,7 @@ mod tests {
 
     #[test]
     fn comments_are_left_out_and_lines_noted() {
-        let text = "a /* x\n */ b // c\n/// d";
+        let text = "a /* x\n */ b /*/ c */ // c\n/// d";
         let found: Vec<_> =
             tokens(text, 0..text.len()).map(|t| (t.text, t.first_on_line)).collect();
         assert_eq!(found, [("a", false), ("b", true), ("/// d", true)]);

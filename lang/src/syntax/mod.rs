@@ -28,7 +28,7 @@ pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use make::RESERVED;
-pub(crate) use parse::{Tree, cut, parse, parse_expr, read_head, read_piece};
+pub(crate) use parse::{Tree, cut, parse, parse_by_pest, parse_expr, read_head, read_piece};
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
     ParamDef, Stmt, StmtNode, Ty, children,

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::prescan::block_comment;
+
 /// A token of a table that is not a number, by its bytes and its place in the order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct BadToken {
@@ -100,7 +102,7 @@ fn skip_comment(text: &str, at: &mut usize) -> bool {
     let length = if rest.starts_with("//") {
         rest.find('\n').unwrap_or(rest.len())
     } else if rest.starts_with("/*") {
-        rest.find("*/").map_or(rest.len(), |end| end + 2)
+        block_comment(rest.as_bytes()).unwrap_or(rest.len())
     } else {
         return false;
     };
@@ -135,6 +137,7 @@ mod tests {
         let bad = BadToken { start: 5, end: 6, index: 2, overflow: false };
         assert_eq!(parse_many(" 1 2 x 3", 9), Err(bad));
         assert_eq!(parse_many("1, 2 // c\n/* x */3", 9), Ok(vec![1.0, 2.0, 3.0]));
+        assert_eq!(parse_many("1 /*/ 2 */ 3", 9), Ok(vec![1.0, 3.0]));
         assert_eq!(parse_many("1 2 3 x", 1), Ok(vec![1.0, 2.0]));
         assert!(parse_many("1 1e999", 9).is_err_and(|bad| bad.overflow));
     }

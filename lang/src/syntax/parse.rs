@@ -41,6 +41,18 @@ pub(crate) fn parse(text: &str, source: SourceId, budgets: &Budgets, sink: &mut 
     reader.out
 }
 
+/// The same by the grammar of record alone.
+pub(crate) fn parse_by_pest(
+    text: &str,
+    source: SourceId,
+    budgets: &Budgets,
+    sink: &mut Sink,
+) -> Tree {
+    let mut reader = Reader { direct: None, ..Reader::new(text, source, budgets, sink) };
+    reader.file();
+    reader.out
+}
+
 /// What stands before the first statement of a text: where reading goes on, if it is of use, and what
 /// is wrong so far.
 pub(crate) fn read_head(text: &str, budgets: &Budgets) -> (Option<usize>, Vec<Diagnostic>) {
@@ -101,8 +113,7 @@ pub(super) fn read_as(
     budgets: &Budgets,
 ) -> (Vec<Stmt>, Vec<Diagnostic>) {
     let mut sink = Sink::new(budgets.diagnostics);
-    let mut reader = Reader::new(text, SourceId(0), budgets, &mut sink);
-    reader.direct = direct;
+    let mut reader = Reader { direct, ..Reader::new(text, SourceId(0), budgets, &mut sink) };
     reader.chunk(piece, Place::File);
     (reader.out.stmts, sink.finish())
 }
@@ -229,13 +240,14 @@ impl Reader<'_> {
         unopened(self.text, &mut found);
         self.region_faults(from, &found);
         let (text, source, budgets) = (self.text, self.source, self.budgets);
-        let empty = self.sink.like();
+        let (empty, is_direct) = (self.sink.like(), self.direct.is_some());
         let shares = shares::map(
             &found.pieces,
             |piece| piece.range.len(),
             |pieces| {
                 let mut sink = empty.like();
-                let mut reader = Reader::new(text, source, budgets, &mut sink);
+                let direct = is_direct.then(Words::default);
+                let mut reader = Reader { direct, ..Reader::new(text, source, budgets, &mut sink) };
                 reader.pieces(pieces);
                 (reader.out.stmts, sink)
             },

@@ -31,6 +31,8 @@ fn reading_by_statement_is_reading_the_file_whole() {
         assert_eq!(mistakes, []);
         assert!(cut.stmts.len() > 10 && sink.finish().is_empty());
         assert_eq!(cut, whole);
+        let mut sink = Sink::new(100);
+        assert_eq!(cut, parse_by_pest(text, SourceId(0), &Budgets::default(), &mut sink));
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::prescan::block_comment;
+
 /// Reads a text byte by byte.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'a> {
@@ -83,7 +85,7 @@ impl<'a> Cursor<'a> {
         let length = match rest {
             [b'/', b'/', ..] if self.is_doc() => None,
             [b'/', b'/', ..] => Some(memchr::memchr(b'\n', rest).unwrap_or(rest.len())),
-            [b'/', b'*', inside @ ..] => memchr::memmem::find(inside, b"*/").map(|end| end + 4),
+            [b'/', b'*', ..] => block_comment(rest),
             _ => None,
         };
         self.at += length.unwrap_or(0);

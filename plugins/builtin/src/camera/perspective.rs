@@ -6,7 +6,7 @@ use luxel_sdk::kind::{Camera, CameraRay, Raster};
 use luxel_sdk::num::Ray;
 use luxel_sdk::params::{Fault, Look};
 
-use super::view::{FovAxis, Lens, Plane, Vignetting, axes};
+use super::view::{Back, FovAxis, Plane, Vignetting, axes};
 
 /// A pinhole camera: straight lines stay straight and everything is sharp. State either `fov` or
 /// `focal_length` with the `sensor` behind it.
@@ -52,9 +52,9 @@ pub(crate) struct Perspective {
 }
 
 impl Perspective {
-    fn lens(&self) -> Lens {
-        let Self { fov, focal_length, sensor, fov_axis: axis, .. } = *self;
-        Lens { fov, focal_length, sensor, axis }
+    fn back(&self) -> Back {
+        let Self { fov, focal_length: distance, sensor, fov_axis: axis, .. } = *self;
+        Back { fov, distance, sensor, axis }
     }
 
     fn plane(&self) -> Plane {
@@ -65,11 +65,11 @@ impl Perspective {
 impl Camera for Perspective {
     fn prepare(&mut self) {
         self.axes = axes(&self.look);
-        self.tan_half = self.lens().tan_half();
+        self.tan_half = self.back().tan_half();
     }
 
     fn check(&self) -> Result<(), Fault> {
-        self.lens().check()
+        self.back().check()
     }
 
     fn ray(&self, raster: Raster, p: DVec2, _lens: [f32; 2]) -> Option<CameraRay> {

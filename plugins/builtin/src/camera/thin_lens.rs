@@ -7,7 +7,7 @@ use luxel_sdk::num::Ray;
 use luxel_sdk::params::{Fault, Look};
 use luxel_sdk::sampling::disk_concentric;
 
-use super::view::{FovAxis, Lens, Plane, Vignetting, axes};
+use super::view::{Back, FovAxis, Plane, Vignetting, axes};
 
 /// A camera with a lens: sharp at the distance `focus`, blurred before and behind. State `fov` or
 /// `focal_length`, and `f_number` or `aperture`.
@@ -30,7 +30,8 @@ pub(crate) struct ThinLens {
         group = "view"
     )]
     fov: f64,
-    /// Focal length of the lens.
+    /// Focal length of the lens; the nearer the focus, the farther the sensor is behind it, and the
+    /// less it shows.
     #[param(optional, unit = "m", min = f64::MIN_POSITIVE, group = "view")]
     focal_length: f64,
     /// Width and height of the sensor; full frame by default. With `fov` it says how long, and so
@@ -62,9 +63,17 @@ pub(crate) struct ThinLens {
 }
 
 impl ThinLens {
-    fn lens(&self) -> Lens {
-        let Self { fov, focal_length, sensor, fov_axis: axis, .. } = *self;
-        Lens { fov, focal_length, sensor, axis }
+    /// What is sharp at `focus` is so on the sensor: 1/f = 1/focus + 1/distance.
+    fn back(&self) -> Back {
+        let Self { fov, sensor, fov_axis: axis, .. } = *self;
+        let given = self.focal_length > 0.0;
+        let distance = if given { 1.0 / (1.0 / self.focal_length - 1.0 / self.focus) } else { 0.0 };
+        Back { fov, distance, sensor, axis }
+    }
+
+    /// Of the lens, metres.
+    fn focal_length(&self) -> f64 {
+        1.0 / (1.0 / self.back().distance() + 1.0 / self.focus)
     }
 
     fn plane(&self) -> Plane {
@@ -73,25 +82,25 @@ impl ThinLens {
 
     /// Radius of the lens, metres.
     fn radius(&self) -> f64 {
-        if self.f_number > 0.0 {
-            0.5 * self.lens().focal_length() / self.f_number
-        } else {
-            self.aperture
-        }
+        if self.f_number > 0.0 { 0.5 * self.focal_length() / self.f_number } else { self.aperture }
     }
 }
 
 impl Camera for ThinLens {
     fn prepare(&mut self) {
         self.axes = axes(&self.look);
-        self.tan_half = self.lens().tan_half();
+        self.tan_half = self.back().tan_half();
     }
 
     fn check(&self) -> Result<(), Fault> {
         if self.focus <= 0.0 {
             return Err(Fault::range("focus", "the picture is sharp at a distance above 0"));
         }
-        self.lens().check()
+        if self.focal_length > 0.0 && self.focus <= self.focal_length {
+            let message = "a lens makes nothing sharp that is nearer than its focal length";
+            return Err(Fault::range("focus", message));
+        }
+        self.back().check()
     }
 
     fn ray(&self, raster: Raster, p: DVec2, lens: [f32; 2]) -> Option<CameraRay> {
@@ -154,7 +163,24 @@ mod tests {
     #[test]
     fn a_focus_at_the_lens_is_refused() {
         let mut camera = camera();
-        camera.focus = 0.0;
-        assert_eq!(camera.check().unwrap_err().field, "focus");
+        assert!(camera.check().is_ok());
+        for focus in [0.0, 0.05] {
+            camera.focus = focus;
+            assert_eq!(camera.check().unwrap_err().field, "focus");
+        }
+    }
+
+    #[test]
+    fn a_near_focus_shows_less_and_an_angle_of_view_says_the_same_lens() {
+        let near = camera();
+        // The sensor is 50 mm · 4 m/(4 m − 50 mm) behind the lens.
+        let tan = 0.5 * 0.024 / (0.05 * 4.0 / 3.95);
+        // Half an ulp of the sensor's side, which is f32.
+        assert!((near.tan_half / tan - 1.0).abs() < 6e-8);
+        let fov = 2.0 * near.tan_half.atan();
+        let mut same = ThinLens { fov, focal_length: 0.0, ..near };
+        same.prepare();
+        assert!((same.radius() / near.radius() - 1.0).abs() < 1e-14);
+        assert!((near.radius() / 0.0125 - 1.0).abs() < 1e-14);
     }
 }

@@ -29,20 +29,20 @@ pub(crate) enum Vignetting {
     Natural,
 }
 
-/// Angle of view as a scene gives it: `fov` (radians) or `focal_length` (metres) with `sensor`
+/// Angle of view as a scene gives it: `fov` (radians) or how far the `sensor` is behind the opening
 /// (metres); what is absent is 0.
 #[derive(Clone, Copy)]
-pub(crate) struct Lens {
+pub(crate) struct Back {
     pub(crate) fov: f64,
-    pub(crate) focal_length: f64,
+    pub(crate) distance: f64,
     pub(crate) sensor: Vec2,
     pub(crate) axis: FovAxis,
 }
 
-impl Lens {
+impl Back {
     /// Rejects what gives no picture.
     pub(crate) fn check(&self) -> Result<(), Fault> {
-        if self.focal_length > 0.0 {
+        if self.distance > 0.0 {
             return Ok(());
         }
         if self.fov > 0.0 && self.fov < std::f64::consts::PI {
@@ -56,20 +56,12 @@ impl Lens {
 
     /// Tangent of half the angle of view along `axis`.
     pub(crate) fn tan_half(&self) -> f64 {
-        if self.focal_length > 0.0 {
-            0.5 * self.side() / self.focal_length
-        } else {
-            (0.5 * self.fov).tan()
-        }
+        if self.distance > 0.0 { 0.5 * self.side() / self.distance } else { (0.5 * self.fov).tan() }
     }
 
-    /// Focal length in metres: given, or what fits the sensor into the angle of view.
-    pub(crate) fn focal_length(&self) -> f64 {
-        if self.focal_length > 0.0 {
-            self.focal_length
-        } else {
-            0.5 * self.side() / self.tan_half()
-        }
+    /// How far the sensor is behind the opening, metres: given, or what fits it into the angle of view.
+    pub(crate) fn distance(&self) -> f64 {
+        if self.distance > 0.0 { self.distance } else { 0.5 * self.side() / self.tan_half() }
     }
 
     /// The sensor's side along `axis`, metres.

@@ -4,6 +4,7 @@ mod blackman_harris;
 mod r#box;
 mod gaussian;
 mod profile;
+mod triangle;
 
 use luxel_sdk::abi::Class;
 
@@ -12,4 +13,5 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::filter::<blackman_harris::BlackmanHarris<'static>>("blackman_harris"),
     Class::filter::<gaussian::Gaussian<'static>>("gaussian"),
     Class::filter::<r#box::BoxFilter>("box"),
+    Class::filter::<triangle::Triangle<'static>>("triangle"),
 ];

@@ -1,6 +1,6 @@
-// `luxel view` in a real browser. By hand, not part of `cargo test`:
+// `luxel view` in a real browser. Not part of `cargo test`; in `.ci/run`, or:
 //
-//   cargo build && cd tests/browser && npm ci && npm test
+//   tests/browser/test
 //
 // LUXEL is the program (default: target/debug/luxel of this tree), CHROMIUM the browser (default:
 // `chromium`). Pictures of the page are left in SHOTS (default: tests/browser/shots). An argument

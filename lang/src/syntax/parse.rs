@@ -13,7 +13,7 @@ use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
 use super::direct::{self, Words};
 use super::explain::explain;
 use super::fault;
-use super::lex::{TokenKind, tokens};
+use super::lex::{Token, TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
 use super::unopened::unopened;
 use super::weigh::too_large;
@@ -336,9 +336,11 @@ impl Reader<'_> {
 
     /// What stands before the first statement must be nothing.
     fn before_first(&mut self, from: usize, first: usize) {
-        let Some(token) = tokens(self.text, from..first).next() else { return };
+        let is_doc = |token: &Token<'_>| token.kind == TokenKind::Doc;
+        let all = || tokens(self.text, from..first);
+        let Some(token) = all().find(|it| !is_doc(it)).or_else(|| all().next()) else { return };
         let span = self.span(token.start..token.end());
-        if token.kind == TokenKind::Doc {
+        if is_doc(&token) {
             let message = "this doc comment is attached to nothing";
             self.sink.push(Diagnostic::warning("E0022", span, message));
         } else if token.text == "else" {

@@ -289,7 +289,9 @@ pub(crate) fn text(words: &[Word], noise: &[u8]) -> String {
     for (gap, word) in words {
         let n = usize::from(fillers.next().unwrap_or(0));
         let joins = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '"' | '.' | '-' | '+');
-        let merges = out.ends_with(joins) && word.starts_with(joins);
+        // `5 m^2` is a unit's power, `5 m ^ 2` a number's.
+        let power = word == "^" && out.ends_with(|c: char| c.is_ascii_alphabetic());
+        let merges = power || out.ends_with(joins) && word.starts_with(joins);
         let filler = match gap {
             Gap::Tight => "",
             Gap::Unit => ["", " ", "  "][n % 3],

@@ -39,6 +39,12 @@ impl<'a> Bench<'a> {
         self.run.film((Path::new(&path), &stage), &options)
     }
 
+    /// A scene that is given as a text, ready.
+    pub(super) fn of_text(&self, text: &str) -> Result<Stage, Failure> {
+        let files = MemoryFiles::default().with("unit.scene", text.as_bytes());
+        self.stage("unit.scene", &files, &[])
+    }
+
     /// A scene, ready.
     pub(super) fn stage(
         &self,

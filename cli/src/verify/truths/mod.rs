@@ -3,10 +3,14 @@
 
 mod bench;
 mod colour;
+mod estimators;
 mod list;
+mod photometry;
+mod rays;
 mod scene;
 mod texts;
 mod unit;
+mod walks;
 
 use luxel_core::accel::Precision;
 use luxel_core::stage::Stage;

@@ -1,17 +1,16 @@
 //! Truths about single functions and objects, through the same doors as everyone's.
 
 use glam::{DVec3, UVec2, Vec3};
-use luxel_core::files::MemoryFiles;
 use luxel_core::object::{Scratch, Site};
 use luxel_core::stage::Stage;
 use luxel_sdk::color::{
-    K_CD, Observer, RgbSpace, Spectrum, blackbody, glass, illuminant, srgb_decode, srgb_encode,
-    xyz_to_xy,
+    Observer, RgbSpace, Spectrum, blackbody, glass, illuminant, srgb_decode, srgb_encode, xyz_to_xy,
 };
 use luxel_sdk::kind::{Phase, Raster};
 use luxel_sdk::scattering::{conductor_reflectance, dielectric_reflectance, refract};
 
 use super::bench::Bench;
+use super::{estimators, photometry, rays, walks};
 use crate::exit::Failure;
 use crate::verify::row::Row;
 
@@ -27,11 +26,14 @@ pub(super) fn rows(bench: &Bench<'_>) -> Result<Vec<Row>, Failure> {
         bk7(),
         whites(),
         planckian(),
-        photometry(),
+        photometry::rows(),
         transfer(),
         matrix(),
         pinhole(&stage),
         phase(&stage),
+        estimators::rows(bench)?,
+        walks::rows(bench)?,
+        rays::rows(bench)?,
     ]
     .concat())
 }
@@ -160,16 +162,6 @@ fn whites() -> Vec<Row> {
     ]
 }
 
-/// Lumens of one watt at one wavelength.
-fn photometry() -> Vec<Row> {
-    let cases = [(555, 683.0), (532, 604.4293192), (589, 525.3326600999997), (633, 160.7333952)];
-    let row = |(nm, expected): (u16, f64)| {
-        let measured = K_CD * f64::from(Observer::Cie1931.xyz_bar(f32::from(nm)).y);
-        Row::exact("photometry.monochrom", &format!("{nm} nm"), (expected, measured), (1e-4, 0.0))
-    };
-    cases.map(row).to_vec()
-}
-
 fn transfer() -> Vec<Row> {
     let row = |case, expected, measured| {
         Row::exact("srgb.transfer", case, (expected, measured), (1e-5, 0.0))
@@ -218,14 +210,14 @@ fn planckian() -> Vec<Row> {
 
 /// The stage of a scene with a camera at the origin and a medium all around.
 fn stage(bench: &Bench<'_>) -> Result<Stage, Failure> {
-    let text = "scene 1
+    bench.of_text(
+        "scene 1
         camera perspective {
             look = look_at(from = (0, 0, 0) m, to = (0, 0, -1) m, up = (0, 1, 0)), fov = 60 deg
         }
         film rgb { resolution = (1920, 1080) }
-        medium homogeneous { sigma_t = 1 / (1 m), phase = phase henyey_greenstein { g = 0.7 } }";
-    let files = MemoryFiles::default().with("unit.scene", text.as_bytes());
-    bench.stage("unit.scene", &files, &[])
+        medium homogeneous { sigma_t = 1 / (1 m), phase = phase henyey_greenstein { g = 0.7 } }",
+    )
 }
 
 fn pinhole(stage: &Stage) -> Vec<Row> {

@@ -230,16 +230,16 @@ solid! {
     Union, Union, "One closed shape.", "The other one."
 }
 solid! {
-    /// What two closed shapes have in common: of two spheres a lens, whose edge is exact.
+    /// What two closed shapes have in common: of two balls a lens, whose edge is exact.
     ///
     /// The parts have their own `transform`; material and interior are those of the whole. Parts may
     /// be solids of parts themselves. As a lamp it is found by chance alone.
     ///
     /// ```scene
-    /// shape intersection "lens" {
-    ///   a        = shape sphere { center = (0, 0, 9) cm, radius = 10 cm }
-    ///   b        = shape sphere { center = (0, 0, -9) cm, radius = 10 cm }
-    ///   material = material dielectric {}
+    /// shape intersection "lentil" {
+    ///   a        = shape sphere { center = (0, 9, 0) cm, radius = 10 cm }
+    ///   b        = shape sphere { center = (0, -9, 0) cm, radius = 10 cm }
+    ///   material = wood
     /// }
     /// ```
     Intersection, Intersection, "One closed shape.", "The other one."

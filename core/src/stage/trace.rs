@@ -158,11 +158,10 @@ impl<'a> Local<'a> {
         time: f64,
         room: &'a mut Option<Carried>,
     ) -> Self {
-        *room = placement.place.at(time, &mut None).map(|transform| {
-            let ray = transform.inverse_ray(world.ray);
-            (ray, Direction::new(ray.d))
-        });
-        room.as_ref().map_or(world, Self::from)
+        let mut moved = None;
+        let Some(transform) = placement.place.at(time, &mut moved) else { return world };
+        let ray = transform.inverse_ray(world.ray);
+        Self::from(&*room.insert((ray, Direction::new(ray.d))))
     }
 
     /// Where the ray enters the geometry of a placement whose box in the world it enters at `t_enter`:

@@ -9,7 +9,7 @@ use super::cost;
 /// So deep brackets may be, with room for those of one part.
 const DEPTH: usize = 112;
 /// Bytes of the longest text.
-const LENGTH: usize = 16 << 10;
+const LENGTH: usize = 8 << 10;
 /// Mistakes that are told: each may cost another look at all that follows, and so few are in the shorter
 /// of two texts as well.
 const MISTAKES: usize = 10;

@@ -69,7 +69,7 @@ impl Builder<'_> {
             ("indices", ImportValue::Table(self.triangles(primitive, n_points)?)),
             ("material", ImportValue::Node(material.node)),
         ];
-        if let Some(at) = points.iter().position(|x| !x.is_finite()) {
+        if let Some(at) = odd(&points) {
             return Err(Refusal::Fault(format!("point {} is not finite", at / 3)));
         }
         params.push(("points", ImportValue::Table(points)));
@@ -81,6 +81,9 @@ impl Builder<'_> {
             if table.len() / width != n_points {
                 let n = table.len() / width;
                 return Err(Refusal::Fault(format!("{n} {param} for {n_points} points")));
+            }
+            if let Some(at) = odd(&table) {
+                return Err(Refusal::Fault(format!("{} of {param} is not finite", at / width)));
             }
             params.push((param, ImportValue::Table(table)));
         }
@@ -174,4 +177,9 @@ impl From<String> for Refusal {
     fn from(message: String) -> Self {
         Self::Fault(message)
     }
+}
+
+/// Where the first number stands that is not finite.
+fn odd(table: &[f64]) -> Option<usize> {
+    table.iter().position(|x| !x.is_finite())
 }

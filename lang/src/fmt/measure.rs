@@ -125,10 +125,10 @@ fn gap(pieces: &[Piece<'_>], i: usize) -> u8 {
         (Kind::Open, Kind::Close) => true,
         (Kind::Open, _) => before.text != "{",
         (_, Kind::Close) => piece.text != "}",
-        // `- 1` in a list is an expression, `-1` a number.
-        (Kind::Prefix, Kind::Number) => piece.blanks == 0 && piece.newlines == 0,
-        // `a .b` is a member of a value, `a.b` a path.
-        (Kind::Word, Kind::Dot) => piece.blanks == 0 && piece.newlines == 0,
+        // `- 1` in a list is an expression, `-1` a number; `a .b` is a member of a value, `a.b` a path.
+        (Kind::Prefix, Kind::Number) | (Kind::Word, Kind::Dot) => {
+            piece.blanks == 0 && piece.newlines == 0
+        }
         (Kind::Dot | Kind::At | Kind::Range | Kind::Prefix, _) | (_, Kind::Dot | Kind::Range) => {
             true
         }

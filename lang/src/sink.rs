@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::diag::{Diagnostic, Severity, Span};
 
 /// Characters of one line that is told: a name may be as long as a file.
 const LONGEST: usize = 4000;
@@ -24,14 +24,18 @@ pub(crate) struct Sink {
     seen: HashSet<(&'static str, Option<Span>)>,
     limit: usize,
     errors: usize,
-    dropped: usize,
+    /// Errors and warnings of the list: each have the limit for themselves.
+    kept: [usize; 2],
+    /// Those that are not in it.
+    dropped: [usize; 2],
     stop: Option<Arc<AtomicBool>>,
 }
 
 impl Sink {
-    /// Keeps at most `limit` diagnostics.
+    /// Keeps at most `limit` errors, and as many warnings.
     pub(crate) fn new(limit: usize) -> Self {
-        Self { list: vec![], seen: HashSet::new(), limit, errors: 0, dropped: 0, stop: None }
+        let (list, seen) = (vec![], HashSet::new());
+        Self { list, seen, limit, errors: 0, kept: [0; 2], dropped: [0; 2], stop: None }
     }
 
     /// The same, full as soon as `stop` is set.
@@ -56,11 +60,13 @@ impl Sink {
             return;
         }
         self.errors += usize::from(diagnostic.is_error());
-        if self.list.len() < self.limit {
+        let sort = usize::from(!diagnostic.is_error());
+        if self.kept[sort] < self.limit {
+            self.kept[sort] += 1;
             std::iter::once(&mut diagnostic.message).chain(&mut diagnostic.help).for_each(shorten);
             self.list.push(diagnostic);
         } else {
-            self.dropped += 1;
+            self.dropped[sort] += 1;
         }
     }
 
@@ -71,7 +77,7 @@ impl Sink {
 
     /// An empty one for a part of which it keeps all that the other one keeps.
     pub(crate) fn rest(&self) -> Self {
-        Self::new(self.limit.saturating_sub(self.list.len())).until(self.stop.clone())
+        Self::new(self.limit - self.kept[0]).until(self.stop.clone())
     }
 
     /// Changes each diagnostic that is kept.
@@ -82,20 +88,21 @@ impl Sink {
     /// Counts errors that it would not keep.
     pub(crate) fn count(&mut self, errors: usize) {
         self.errors += errors;
-        self.dropped += errors;
+        self.dropped[0] += errors;
     }
 
     /// Takes in what was told of a part.
     pub(crate) fn absorb(&mut self, part: Self) {
         let kept = part.list.iter().filter(|found| found.is_error()).count();
         self.errors += part.errors - kept;
-        self.dropped += part.dropped;
+        self.dropped[0] += part.dropped[0];
+        self.dropped[1] += part.dropped[1];
         part.list.into_iter().for_each(|found| self.push(found));
     }
 
     /// Whether nothing was told.
     pub(crate) fn is_empty(&self) -> bool {
-        self.list.is_empty() && self.dropped == 0
+        self.list.is_empty() && self.dropped == [0; 2]
     }
 
     /// How many errors there were, dropped ones included.
@@ -103,16 +110,22 @@ impl Sink {
         self.errors
     }
 
-    /// Whether no more diagnostics are kept: going on is of no use.
+    /// Whether no more errors are kept: going on is of no use. Warnings end nothing.
     pub(crate) fn is_full(&self) -> bool {
-        self.list.len() >= self.limit || self.is_stopped()
+        self.kept[0] >= self.limit || self.is_stopped()
     }
 
-    /// The diagnostics; the last one says how many were dropped.
+    /// The diagnostics; the last ones say how many were dropped.
     pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
-        if self.dropped > 0 {
-            let message = format!("{} more mistakes are not shown", self.dropped);
+        let [errors, warnings] = self.dropped;
+        if errors > 0 {
+            let message = format!("{errors} more mistakes are not shown");
             self.list.push(Diagnostic::unplaced("E0508", message));
+        }
+        if warnings > 0 {
+            let message = format!("{warnings} more warnings are not shown");
+            let told = Diagnostic::unplaced("E0508", message);
+            self.list.push(Diagnostic { severity: Severity::Warning, ..told });
         }
         self.list
     }

@@ -20,7 +20,7 @@ impl Evaluator<'_> {
         }
         self.expectations_fit();
         let errors = self.sink.errors();
-        let scene = (errors == 0 && !self.damaged).then(|| {
+        let scene = (errors == 0 && !self.damaged && !self.stopped).then(|| {
             self.scene.root = self.open_groups.pop().unwrap_or_default().group;
             self.scene.compact();
             self.scene

@@ -32,7 +32,7 @@ impl Evaluator<'_> {
             return None;
         }
         let (from, _) = syntax::read_head(text, &self.budgets);
-        let pieces = syntax::cut(text, from?, &self.budgets, &mut |_| false).pieces;
+        let pieces = syntax::cut_whole(text, from?, &self.budgets);
         let mut out = Tree::default();
         for piece in pieces.iter().filter(|piece| !piece.faulty) {
             let part = &text[piece.range.clone()];
@@ -58,8 +58,8 @@ impl Evaluator<'_> {
         declared: &Tree,
         set: &[(String, String)],
     ) {
-        let overrides = self.settings(declared, set);
         let units = self.units(&declared.stmts);
+        let overrides = self.settings(declared, set);
         let env = Self::file_env(path, units, overrides, true);
         let mut body = Body::new(Place::File);
         let budgets = self.budgets;
@@ -85,11 +85,8 @@ impl Evaluator<'_> {
             names.tell(text, &mut told);
         }
         self.apply_sets();
-        if told.is_full() {
-            self.stopped = true;
-        } else {
-            told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
-        }
+        self.stopped |= told.is_full();
+        told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;
     }
 }

@@ -56,14 +56,7 @@ pub fn format(text: &str, budgets: &Budgets) -> Result<String, Vec<Diagnostic>> 
 
 /// The tree of a text, and what is wrong with it.
 fn read(text: &str, budgets: &Budgets) -> (Tree, Sink) {
-    let mut limit = budgets.diagnostics.max(1);
-    loop {
-        let mut sink = Sink::new(limit);
-        let tree = syntax::parse(text, SourceId(0), budgets, &mut sink);
-        // Reading ends where no more can be told; for warnings alone it is not to.
-        if sink.errors() > 0 || !sink.is_full() {
-            return (tree, sink);
-        }
-        limit = limit.saturating_mul(16);
-    }
+    let mut sink = Sink::new(budgets.diagnostics.max(1));
+    let tree = syntax::parse(text, SourceId(0), budgets, &mut sink);
+    (tree, sink)
 }

@@ -30,8 +30,8 @@ pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use make::RESERVED;
 pub(crate) use parse::{
-    Tree, Turns, cut, parse, parse_by_pest, parse_expr, parse_in_turns, read_at, read_head,
-    read_piece,
+    Tree, Turns, cut, cut_whole, parse, parse_by_pest, parse_expr, parse_in_turns, read_at,
+    read_head, read_piece,
 };
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,

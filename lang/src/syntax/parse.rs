@@ -103,6 +103,20 @@ pub(crate) fn cut(
     out
 }
 
+/// The bytes of the statements from `from` on, as `parse` reads them.
+pub(crate) fn cut_whole(text: &str, from: usize, budgets: &Budgets) -> Vec<Cut> {
+    let mut pieces = vec![];
+    let mut next = Some(from);
+    for _ in 0..RESUME_LIMIT {
+        let Some(from) = next else { break };
+        let mut found = region(text, from, budgets.brackets, &mut |_| false);
+        unopened(text, &mut found);
+        pieces.extend(found.pieces);
+        next = found.next.filter(|next| *next > from);
+    }
+    pieces
+}
+
 /// Reads the statement of a piece; spans count from its first byte.
 pub(crate) fn read_piece(
     text: &str,

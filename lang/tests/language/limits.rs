@@ -124,6 +124,60 @@ fn a_large_file_gives_the_scene_of_a_small_one() {
     assert_eq!(large.scene.expect("it has no mistake"), small.scene.expect("it has no mistake"));
 }
 
+/// The same, so long that its lines are read in different turns.
+fn padded(text: &str) -> String {
+    let padding = format!("//{}\n", "x".repeat((3 << 20) / text.lines().count()));
+    text.lines().flat_map(|line| [line, "\n", &padding]).collect()
+}
+
+#[test]
+fn the_lines_of_a_large_file_mean_what_they_mean_in_a_small_one() {
+    let mixed = "scene 1\nfn double(x: length) = x * 2\nlet size = double(3)\n\
+        set ball.radius = size * 2\nlet other = shape sphere { radius = size }\n\
+        units { length = mm }\nshape sphere \"ball\" { radius = size }\n\
+        @off shape sphere \"ball\" { radius = 1 }\n\
+        for i in 0..3 { group \"g\" { shape sphere { radius = size * (i + 1) } } }\nplace other\n\
+        camera perspective {\nlook = look_at(from = (0, 0, 5), to = (0, 0, 0), up = (0, 1, 0))\n\
+        fov = 40 deg\n}\n";
+    let texts = [
+        mixed,
+        &mixed.replace("size * 2", "nope").replace("3 {", "3\n"),
+        include_str!("../scenes/parametric.scene"),
+        include_str!("../scenes/glass_fog.scene"),
+        include_str!("../scenes/cornell.scene"),
+    ];
+    let mut n_scenes = 0;
+    for text in texts {
+        let [small, large] = [text.to_owned(), padded(text)]
+            .map(|text| load_bytes(text.into_bytes(), Budgets::default()));
+        let said = |loaded: &Loaded| -> Vec<_> {
+            loaded.diagnostics.iter().map(|d| (d.code, d.message.clone())).collect()
+        };
+        assert_eq!(said(&large), said(&small), "{text}");
+        let hash = |loaded: &Loaded| loaded.scene.as_ref().map(luxel_core::scene::Scene::hash);
+        assert_eq!(hash(&large), hash(&small), "{text}");
+        n_scenes += usize::from(small.scene.is_some());
+    }
+    assert_eq!(n_scenes, 2);
+}
+
+#[test]
+fn any_number_of_warnings_ends_nothing() {
+    let warned = format!("scene 1\n{}", "group {\n/// d\n}\n".repeat(150));
+    for (rest, n_errors) in [("", 0), ("let a = 1 m + 1 deg\n", 1)] {
+        let text = format!(
+            "{warned}{rest}camera perspective {{ look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }}\n"
+        );
+        for text in [padded(&text), text] {
+            let loaded = load_bytes(text.into_bytes(), Budgets::default());
+            let errors = loaded.diagnostics.iter().filter(|found| found.is_error());
+            assert_eq!(errors.count(), n_errors);
+            let n_items = loaded.scene.map(|scene| scene.root.items.len());
+            assert_eq!(n_items, (n_errors == 0).then_some(150));
+        }
+    }
+}
+
 #[test]
 fn shared_groups_count_as_often_as_they_stand() {
     let mut text = "let g0 = group { shape sphere { radius = 1 m } }\n".to_owned();

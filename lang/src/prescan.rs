@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use memchr::{memchr, memchr_iter, memchr3};
+use memchr::{memchr, memchr3};
 
 /// What is wrong with the brackets, strings or comments of a text; offsets are bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -311,15 +311,13 @@ impl Scanner<'_> {
 
     fn block_comment(&mut self) {
         let start = self.at;
-        let inside = &self.bytes[start + 2..];
-        let end = memchr_iter(b'*', inside).find(|&i| inside.get(i + 1) == Some(&b'/'));
-        let end = end.map(|i| start + 2 + i);
+        let end = block_comment(&self.bytes[start..]).map(|length| start + length);
         if end.is_none() {
             self.out.faults.push(Fault::Comment { at: start });
         }
         let stop = end.unwrap_or(self.bytes.len());
         self.newline |= memchr(b'\n', &self.bytes[start..stop]).is_some();
-        self.at = end.map_or(stop, |end| end + 2);
+        self.at = stop;
     }
 
     fn table(&mut self) {

@@ -6,6 +6,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 
 use super::lex::tokens;
 use crate::budgets::Budgets;
+use crate::prescan::block_comment;
 
 /// What is to be told of a statement that would take too much to read.
 pub(super) fn too_large(
@@ -56,8 +57,7 @@ fn weigh(text: &str, limit: usize) -> Weight {
                 continue;
             }
             b'/' if bytes.get(at) == Some(&b'*') => {
-                let end = memchr::memmem::find(&bytes[at + 1..], b"*/");
-                at = end.map_or(bytes.len(), |end| at + 1 + end + 2);
+                at = block_comment(&bytes[start..]).map_or(bytes.len(), |length| start + length);
                 continue;
             }
             b'#' if bytes.get(at) == Some(&b'[') => {

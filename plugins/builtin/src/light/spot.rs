@@ -1,6 +1,6 @@
 //! A lamp that throws a cone of light.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec3;
 use luxel_sdk::Params;
@@ -71,8 +71,15 @@ const PIECES: u8 = 32;
 ///
 /// # Source
 /// By parts: ∫ s'·`within` dθ with s' = 6t(1 − t), by Gauss–Legendre with five points on each of some
-/// pieces. Where `width` is 0 all of them are at the edge.
+/// pieces, on either side of 90 degrees, where `within` bends. Where `width` is 0 all of them are at the edge.
 fn edge((outer, width): (f64, f64), n: f64) -> f64 {
+    let bends = n > 0.0 && width > 0.0;
+    let bend = if bends { ((outer - FRAC_PI_2) / width).clamp(0.0, 1.0) } else { 0.0 };
+    part((outer, width), n, [0.0, bend]) + part((outer, width), n, [bend, 1.0])
+}
+
+/// The part of `edge` between two places within the soft edge, 0 at its outer end and 1 at its inner one.
+fn part((outer, width): (f64, f64), n: f64, [from, to]: [f64; 2]) -> f64 {
     const NODES: [(f64, f64); 5] = [
         (0.0, 0.568_888_888_888_888_9),
         (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
@@ -80,9 +87,9 @@ fn edge((outer, width): (f64, f64), n: f64) -> f64 {
         (0.906_179_845_938_664, 0.236_926_885_056_189_1),
         (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
     ];
-    let piece = 1.0 / f64::from(PIECES);
+    let piece = (to - from) / f64::from(PIECES);
     let term = |i: u8, (x, weight): (f64, f64)| {
-        let t = (f64::from(i) + 0.5 * (1.0 + x)) * piece;
+        let t = from + (f64::from(i) + 0.5 * (1.0 + x)) * piece;
         let slope = 6.0 * t * (1.0 - t);
         0.5 * weight * piece * slope * within(outer - width * t, n)
     };
@@ -163,7 +170,13 @@ mod tests {
     fn power_is_intensity_over_all_directions() {
         let even = [(1e-3, 5e-4), (0.2, 0.0), (0.5, 0.5), (2.5, 0.7), (PI, PI)];
         let even = even.map(|(cone, falloff)| (cone, falloff, 0.0));
-        let gathered = [(1e-3, 5e-4, 9.0), (0.5 * PI, 0.0, 4.0), (PI, PI, 1.5), (0.2, 0.2, 1000.0)];
+        let gathered = [
+            (1e-3, 5e-4, 9.0),
+            (0.5 * PI, 0.0, 4.0),
+            (PI, PI, 1.5),
+            (0.2, 0.2, 1000.0),
+            (PI, 3.0, 0.1),
+        ];
         for (cone, falloff, exponent) in even.into_iter().chain(gathered) {
             let spot = spot(cone, falloff, exponent);
             // Midpoint rule: relative error of the order of (1/n)² and of a jump 1/n.

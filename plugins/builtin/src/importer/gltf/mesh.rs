@@ -83,7 +83,10 @@ impl Builder<'_> {
                 return Err(Refusal::Fault(format!("{n} {param} for {n_points} points")));
             }
             if let Some(at) = odd(&table) {
-                return Err(Refusal::Fault(format!("{} of {param} is not finite", at / width)));
+                return Err(Refusal::Fault(format!(
+                    "{param}: that of point {} is not finite",
+                    at / width
+                )));
             }
             params.push((param, ImportValue::Table(table)));
         }

@@ -72,6 +72,7 @@ fn noise_buys_no_pass_and_more_samples_end_it() {
     let folder = Folder::new("noisy").with("a.scene", &said);
     let few = folder.luxel(&["verify", "a.scene"]);
     assert!(few.code == 1 && row(&few, "a.scene").ends_with("NOISY"), "{few:?}");
+    assert!(few.out.contains(" too noisy to tell\n") && !few.out.contains("hold"), "{few:?}");
     let many = folder.luxel(&["verify", "a.scene", "--spp", "256"]);
     assert!(many.code == 0 && row(&many, "a.scene").ends_with("ok"), "{many:?}");
 }

@@ -146,10 +146,14 @@ fn tell(args: &Args, rows: &[Row], untested: usize) -> Result<(), Failure> {
     if rows.is_empty() {
         return Ok(());
     }
-    let off = rows.iter().filter(|row| row.verdict != Verdict::Holds).count();
-    let verdict = match off {
-        0 => format!("all {} hold", rows.len()),
-        _ => format!("{off} of {} do not hold", rows.len()),
+    let of = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    let noisy = of(Verdict::Noisy);
+    let off = rows.len() - of(Verdict::Holds) - noisy;
+    let verdict = match (off, noisy) {
+        (0, 0) => format!("all {} hold", rows.len()),
+        (_, 0) => format!("{off} of {} do not hold", rows.len()),
+        (0, _) => format!("{noisy} of {} are too noisy to tell", rows.len()),
+        _ => format!("{off} of {} do not hold, {noisy} are too noisy to tell", rows.len()),
     };
     let rest = match untested {
         0 => String::new(),

@@ -70,6 +70,15 @@ fn names_are_mended_beside_what_cannot_be_read() {
 }
 
 #[test]
+fn more_mistakes_than_are_told_at_once_are_mended_in_one_run() {
+    let wrong = format!("{SCENE}{}", "shape sphre { radius = 1 m }\n".repeat(1700));
+    let folder = Folder::new("fix-many").with("a.scene", &wrong);
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert_eq!((done.code, &*done.out), (0, "a.scene: fine\n"));
+    assert_eq!(text(&folder, "a.scene"), wrong.replace("sphre", "sphere"));
+}
+
+#[test]
 fn what_is_no_scene_is_never_changed() {
     let mesh = "# a mesh\nv 0.1 0.2 0.3\nv 1 2 3\n";
     let scene = format!("{SCENE}include \"m.obj\"\n");

@@ -16,8 +16,9 @@ use crate::load::{self, Course, Text};
 use crate::output::{replace, unwritable};
 use crate::report::{self, Form};
 
-/// How often a scene is read again: what one mend uncovers the next may mend.
-const ROUNDS: usize = 16;
+/// How often a scene is read again: what one mend uncovers the next may mend, and of many mistakes a hundred
+/// are told each time.
+const ROUNDS: usize = 256;
 
 /// Mends a scene and the files that it includes, and tells what was changed.
 ///
@@ -39,7 +40,7 @@ pub(super) fn mended(
         let mut found = mend(diagnostics, sources, may);
         found.retain(|mended| is_better(mended, sources));
         if found.is_empty() {
-            break;
+            return Ok(());
         }
         for mended in &found {
             let path = Path::new(sources.name(mended.source));
@@ -48,6 +49,7 @@ pub(super) fn mended(
             tell(mended, sources, form)?;
         }
     }
+    report::note(&format!("{}: mended {ROUNDS} times over; run it again", scene.display()));
     Ok(())
 }
 

@@ -77,7 +77,9 @@ impl Server {
     }
 
     /// Of what came of a scene, leaves what open files do not tell by themselves at any time.
+    /// How many more there are counts those too, and is left out.
     pub(super) fn without_own(&self, mut judged: Judged) -> Judged {
+        judged.told.retain(|told| told.code != "E0508");
         for (path, open) in &self.files.open {
             let own = open.document.diagnostics();
             judged.told.retain(|told| {

@@ -4,6 +4,7 @@
 #[path = "fuzz/src/targets/mod.rs"]
 mod targets;
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use glam::UVec2;
@@ -33,10 +34,16 @@ fn read(path: &Path) -> Vec<u8> {
 
 #[test]
 fn what_a_fuzzer_found_stays_mended() {
-    for (name, judge) in TARGETS {
-        for path in files_below(&root().join("tests/fuzz/regressions").join(name), "seed") {
-            println!("{}", path.display());
-            judge(&read(&path));
+    // The others are judged where the inside of the language is seen.
+    const ELSEWHERE: [&str; 4] = ["chunks", "format", "made", "edits"];
+    let found = files_below(&root().join("tests/fuzz/regressions"), "seed");
+    assert!(found.len() > 10, "{found:?}");
+    for path in found {
+        println!("{}", path.display());
+        let target = path.parent().and_then(Path::file_name).and_then(OsStr::to_str).unwrap();
+        match TARGETS.iter().find(|(name, _)| *name == target) {
+            Some((_, judge)) => drop(judge(&read(&path))),
+            None => assert!(ELSEWHERE.contains(&target), "{target} is no target"),
         }
     }
 }

@@ -362,7 +362,9 @@ impl Reader<'_> {
         } else {
             let found: String = token.text.chars().take(40).collect();
             let message = format!("`{found}` cannot begin a statement");
-            self.sink.push(Diagnostic::error("E0023", span, message));
+            let told = Diagnostic::error("E0023", span, message);
+            let parts = matches!(token.text, "," | ";");
+            self.sink.push(if parts { told.fix(span, "") } else { told });
         }
     }
 

@@ -1,5 +1,6 @@
 //! Blocks whose `{` is missing: one mistake, not one at each end.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use super::cut::Region;
@@ -12,11 +13,15 @@ use crate::prescan::Fault;
 /// That head tells the mistake. What stands between is the block: it cannot be read without its head.
 pub(super) fn unopened(text: &str, found: &mut Region) {
     let pieces = &mut found.pieces;
+    // Each statement is looked through once, however many braces are asked about.
+    let mut known = HashMap::new();
     found.faults.retain(|fault| {
         let Fault::Stray { at } = fault else { return true };
         let after = pieces.partition_point(|piece| piece.range.start < *at);
         let first = after.saturating_sub(LOOKED_AT);
-        let is_head = |i: &usize| lacks_block(text, pieces[*i].range.clone());
+        let mut is_head = |i: &usize| {
+            *known.entry(*i).or_insert_with(|| lacks_block(text, pieces[*i].range.clone()))
+        };
         let Some(head) = (first..after).rev().find(is_head) else { return true };
         // A head on the line of its block ends in the brace itself.
         pieces[head].faulty = false;

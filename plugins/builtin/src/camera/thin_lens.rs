@@ -53,7 +53,7 @@ pub(crate) struct ThinLens {
     /// Radius of the lens; 0 is a pinhole.
     #[param(optional, unit = "m", min = 0, group = "opening")]
     aperture: f64,
-    /// Distance along the view at which the picture is sharp.
+    /// Distance along the view at which the picture is sharp; farther than the focal length.
     #[param(required, unit = "m", min = f64::MIN_POSITIVE)]
     focus: f64,
     #[param(derived)]
@@ -97,7 +97,9 @@ impl Camera for ThinLens {
             return Err(Fault::range("focus", "the picture is sharp at a distance above 0"));
         }
         if self.focal_length > 0.0 && self.focus <= self.focal_length {
-            let message = "a lens makes nothing sharp that is nearer than its focal length";
+            let mm = self.focal_length * 1e3;
+            let message =
+                format!("only what is farther than `focal_length`, {mm} mm, becomes sharp");
             return Err(Fault::range("focus", message));
         }
         self.back().check()

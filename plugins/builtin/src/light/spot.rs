@@ -170,13 +170,7 @@ mod tests {
     fn power_is_intensity_over_all_directions() {
         let even = [(1e-3, 5e-4), (0.2, 0.0), (0.5, 0.5), (2.5, 0.7), (PI, PI)];
         let even = even.map(|(cone, falloff)| (cone, falloff, 0.0));
-        let gathered = [
-            (1e-3, 5e-4, 9.0),
-            (0.5 * PI, 0.0, 4.0),
-            (PI, PI, 1.5),
-            (0.2, 0.2, 1000.0),
-            (PI, 3.0, 0.1),
-        ];
+        let gathered = [(1e-3, 5e-4, 9.0), (0.5 * PI, 0.0, 4.0), (PI, PI, 1.5), (0.2, 0.2, 1000.0)];
         for (cone, falloff, exponent) in even.into_iter().chain(gathered) {
             let spot = spot(cone, falloff, exponent);
             // Midpoint rule: relative error of the order of (1/n)² and of a jump 1/n.
@@ -193,6 +187,23 @@ mod tests {
                 "{cone} {falloff} {exponent} {sum}"
             );
             assert!((spot.power(0.0, 1.0) / 10.0 - 1.0).abs() <= 4.0 * f32::EPSILON);
+        }
+    }
+
+    #[test]
+    fn power_is_right_where_cosines_end_within_the_soft_edge() {
+        for (cone, falloff, exponent) in [(PI, 3.0, 0.1), (3.0, 2.9, 1e-4), (1.7, 0.3, 0.01)] {
+            let spot = spot(cone, falloff, exponent);
+            // Midpoint rule in s, θ = (1 − s⁴)·π/2, which is smooth where cosines end.
+            let n = 4000;
+            let term = |i: i32| {
+                let s = (f64::from(i) + 0.5) / f64::from(n);
+                let theta = FRAC_PI_2 * (1.0 - s.powi(4));
+                let d = DVec3::new(theta.sin(), -theta.cos(), 0.0);
+                spot.shape(d) * TAU * theta.sin() * TAU * s.powi(3) / f64::from(n)
+            };
+            let sum: f64 = (0..n).map(term).sum();
+            assert!((spot.solid_angle / sum - 1.0).abs() < 1e-6, "{cone} {falloff} {exponent}");
         }
     }
 

@@ -19,7 +19,7 @@ pub(super) fn unopened(text: &str, found: &mut Region) {
         let Fault::Stray { at } = fault else { return true };
         let after = pieces.partition_point(|piece| piece.range.start < *at);
         let first = after.saturating_sub(LOOKED_AT);
-        let mut is_head = |i: &usize| {
+        let is_head = |i: &usize| {
             *known.entry(*i).or_insert_with(|| lacks_block(text, pieces[*i].range.clone()))
         };
         let Some(head) = (first..after).rev().find(is_head) else { return true };

@@ -34,7 +34,7 @@ impl Known {
         if let Some(number) = self.numbers.get(name) {
             return *number;
         }
-        let number = u32::try_from(self.names.len()).expect("a text is shorter than 2^32 bytes");
+        let number = u32::try_from(self.names.len()).expect("fewer than 2^32 names are typed");
         self.names.push(name.clone());
         self.numbers.insert(name.clone(), number);
         number

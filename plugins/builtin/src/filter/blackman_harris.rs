@@ -3,10 +3,9 @@
 use std::f64::consts::PI;
 
 use luxel_sdk::Params;
-use luxel_sdk::kind::Filter;
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::profile::Profile;
+use super::profile::{Profile, separable};
 
 /// A bell that ends smoothly at `radius` (Harris 1978): clean edges without ringing, the usual
 /// choice for pictures.
@@ -37,19 +36,7 @@ impl Build<Profile> for BlackmanHarris<'_> {
     }
 }
 
-impl Filter for BlackmanHarris<'_> {
-    fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    fn eval(&self, offset: [f32; 2]) -> f32 {
-        self.profile.eval(offset[0]) * self.profile.eval(offset[1])
-    }
-
-    fn sample(&self, u: [f32; 2]) -> [f32; 2] {
-        u.map(|u| self.profile.sample(u))
-    }
-}
+separable!(BlackmanHarris);
 
 #[cfg(test)]
 mod tests {

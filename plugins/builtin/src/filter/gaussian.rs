@@ -1,10 +1,9 @@
 //! The bell curve, cut off.
 
 use luxel_sdk::Params;
-use luxel_sdk::kind::Filter;
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::profile::Profile;
+use super::profile::{Profile, separable};
 
 /// A bell curve, cut off at `radius`: smooth edges, slightly soft.
 ///
@@ -31,16 +30,4 @@ impl Build<Profile> for Gaussian<'_> {
     }
 }
 
-impl Filter for Gaussian<'_> {
-    fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    fn eval(&self, offset: [f32; 2]) -> f32 {
-        self.profile.eval(offset[0]) * self.profile.eval(offset[1])
-    }
-
-    fn sample(&self, u: [f32; 2]) -> [f32; 2] {
-        u.map(|u| self.profile.sample(u))
-    }
-}
+separable!(Gaussian);

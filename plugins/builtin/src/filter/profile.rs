@@ -72,6 +72,26 @@ impl Profile {
     }
 }
 
+/// Makes a class with a `radius` and a `profile` a filter, that of the profile along both axes.
+macro_rules! separable {
+    ($class:ident) => {
+        impl luxel_sdk::kind::Filter for $class<'_> {
+            fn radius(&self) -> f32 {
+                self.radius
+            }
+
+            fn eval(&self, offset: [f32; 2]) -> f32 {
+                self.profile.eval(offset[0]) * self.profile.eval(offset[1])
+            }
+
+            fn sample(&self, u: [f32; 2]) -> [f32; 2] {
+                u.map(|u| self.profile.sample(u))
+            }
+        }
+    };
+}
+pub(crate) use separable;
+
 #[cfg(test)]
 mod tests {
     use super::*;

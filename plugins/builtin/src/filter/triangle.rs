@@ -1,10 +1,9 @@
 //! The straight slope.
 
 use luxel_sdk::Params;
-use luxel_sdk::kind::Filter;
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::profile::Profile;
+use super::profile::{Profile, separable};
 
 /// Samples count less in proportion to how far they are from the middle, and nothing from `radius` on:
 /// with a radius of 1, what lies between two pixels is shared between them.
@@ -28,16 +27,4 @@ impl Build<Profile> for Triangle<'_> {
     }
 }
 
-impl Filter for Triangle<'_> {
-    fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    fn eval(&self, offset: [f32; 2]) -> f32 {
-        self.profile.eval(offset[0]) * self.profile.eval(offset[1])
-    }
-
-    fn sample(&self, u: [f32; 2]) -> [f32; 2] {
-        u.map(|u| self.profile.sample(u))
-    }
-}
+separable!(Triangle);

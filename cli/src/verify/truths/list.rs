@@ -35,8 +35,8 @@ pub(super) enum Region {
 pub(super) enum Quantity {
     /// Mean luminance times a factor.
     Luminance(f64),
-    /// Variance of one sample's luminance, times a factor.
-    Variance(f64),
+    /// Variance of one sample's luminance.
+    Variance,
 }
 
 /// Every case.
@@ -59,9 +59,8 @@ fn case(line: &str) -> Option<Case> {
     let quantity = match quantity.split_once(' ') {
         Some(("pi", "Y")) => Quantity::Luminance(PI),
         Some((factor, "Y")) => Quantity::Luminance(factor.parse().ok()?),
-        Some((factor, "variance")) => Quantity::Variance(factor.parse().ok()?),
         None if quantity == "Y" => Quantity::Luminance(1.0),
-        None if quantity == "variance" => Quantity::Variance(1.0),
+        None if quantity == "variance" => Quantity::Variance,
         _ => return None,
     };
     Some(Case {

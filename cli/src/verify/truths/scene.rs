@@ -47,7 +47,7 @@ fn picture(case: &Case, bench: &Bench<'_>) -> Result<Film, Failure> {
 fn measure(film: &Film, case: &Case) -> Measured {
     let (of, factor): (fn(&Pixel) -> f64, f64) = match case.quantity {
         Quantity::Luminance(factor) => (|pixel| luminance(pixel.mean), factor),
-        Quantity::Variance(factor) => (|pixel| pixel.variance().y, factor),
+        Quantity::Variance => (|pixel| pixel.variance().y, 1.0),
     };
     let Measured { value, error } = if case.region == Region::Whole {
         let (mean, error) = film.mean();

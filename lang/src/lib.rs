@@ -12,6 +12,8 @@ pub mod prescan;
 
 mod budgets;
 mod catalogue;
+#[cfg(test)]
+mod chance;
 mod eval;
 mod fmt;
 mod shares;

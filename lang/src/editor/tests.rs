@@ -4,6 +4,7 @@ use luxel_core::diag::{Diagnostic, SourceId};
 
 use super::Document;
 use super::check::{same, same_within};
+use crate::chance::next;
 use crate::sink::Sink;
 use crate::{Budgets, eval, syntax};
 
@@ -51,12 +52,6 @@ const PASTES: [&str; 24] = [
     "for ",
     "é",
 ];
-
-/// The next number of a sequence that looks random.
-fn next(state: &mut u64, below: usize) -> usize {
-    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-    usize::try_from(*state >> 33).unwrap() % below.max(1)
-}
 
 #[test]
 fn an_edited_document_is_the_document_of_the_edited_text() {

@@ -172,6 +172,7 @@ mod tests {
     use luxel_core::registry::Registry;
 
     use super::*;
+    use crate::chance::next;
     use crate::{Budgets, Loaded, Settings, eval};
 
     /// Lines that depend on others, in all ways.
@@ -209,11 +210,6 @@ mod tests {
         diagnostics
     }
 
-    fn next(state: &mut u64, below: usize) -> usize {
-        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        usize::try_from(*state >> 33).unwrap() % below
-    }
-
     #[test]
     fn what_is_read_in_turns_is_told_as_what_is_read_as_a_whole() {
         let mut told = 0;
@@ -221,7 +217,8 @@ mod tests {
             let mut state = seed;
             let lines: Vec<_> = (0..20).map(|_| LINES[next(&mut state, LINES.len())]).collect();
             let text = format!("scene 1\n{}\n", lines.join("\n"));
-            let set = [vec![], vec![("p".to_owned(), "3".to_owned())]][next(&mut state, 2)].clone();
+            let set = ["", "3", "3 +"][next(&mut state, 3)];
+            let set = if set.is_empty() { vec![] } else { vec![("p".to_owned(), set.to_owned())] };
             let diagnostics = [3, 100][next(&mut state, 2)];
             let budgets = Budgets { diagnostics, ..Budgets::default() };
             let settings = Settings { set, budgets, ..Settings::default() };

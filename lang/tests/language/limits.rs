@@ -142,6 +142,7 @@ fn the_lines_of_a_large_file_mean_what_they_mean_in_a_small_one() {
     let texts = [
         mixed,
         &mixed.replace("size * 2", "nope").replace("3 {", "3\n"),
+        "scene 1\nfor i in 0..3\nunits { length = mm }\n}\nlet a: length = 5\n",
         include_str!("../scenes/parametric.scene"),
         include_str!("../scenes/glass_fog.scene"),
         include_str!("../scenes/cornell.scene"),

@@ -99,7 +99,7 @@ impl Camera for ThinLens {
         if self.focal_length > 0.0 && self.focus <= self.focal_length {
             let mm = self.focal_length * 1e3;
             let message =
-                format!("only what is farther than `focal_length`, {mm} mm, becomes sharp");
+                format!("only what is farther than `focal_length`, {mm:.1} mm, becomes sharp");
             return Err(Fault::range("focus", message));
         }
         self.back().check()
@@ -170,6 +170,8 @@ mod tests {
             camera.focus = focus;
             assert_eq!(camera.check().unwrap_err().field, "focus");
         }
+        let told = "only what is farther than `focal_length`, 50.0 mm, becomes sharp";
+        assert_eq!(camera.check().unwrap_err().message, told);
     }
 
     #[test]

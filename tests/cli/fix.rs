@@ -79,6 +79,17 @@ fn more_mistakes_than_are_told_at_once_are_mended_in_one_run() {
 }
 
 #[test]
+fn mends_that_come_one_after_another_end_and_may_be_gone_on_with() {
+    // Of several missing commas the first is told.
+    let wrong = format!("{SCENE}let a = [1{}]\n", " 1".repeat(300));
+    let folder = Folder::new("fix-rounds").with("a.scene", &wrong);
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert!(done.code == 1 && done.err.contains("a.scene: mended 256 times over; run it again"));
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert_eq!((done.code, &*done.out), (0, "a.scene: fine\n"));
+}
+
+#[test]
 fn what_is_no_scene_is_never_changed() {
     let mesh = "# a mesh\nv 0.1 0.2 0.3\nv 1 2 3\n";
     let scene = format!("{SCENE}include \"m.obj\"\n");

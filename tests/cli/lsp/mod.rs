@@ -48,6 +48,20 @@ fn mistakes_are_told_as_they_are_typed_and_taken_back() {
 }
 
 #[test]
+fn more_mistakes_than_are_shown_are_forgotten_once_they_are_mended() {
+    let folder = Folder::new("lsp-many");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    let uses = "shape sphere { radius = big }\n".repeat(150);
+    let told = client.open(&uri, &format!("{}let bigg = 1 m\n{uses}", scene()));
+    assert_eq!(codes(&told).iter().filter(|code| **code == "E0508").count(), 1);
+    // Once more after the scene has been evaluated.
+    client.told(&uri);
+    let line = scene().lines().count() as u64;
+    let told = client.edit(&uri, 2, span(line, 4, 8), "big");
+    assert_eq!(codes(&told), Vec::<&str>::new());
+}
+
+#[test]
 fn mistakes_of_included_files_are_told_of_them_and_open_ones_are_read() {
     let folder = Folder::new("lsp in 100%")
         .with("lib a.scene", "scene 1\nshape sphere { radus = 1 m }\n")

@@ -1,6 +1,7 @@
 //! Scenes that are meant to hurt: what each costs before it is refused.
 
 use crate::process::{self, Luxel};
+use crate::scene::lines;
 
 /// A scene, and files beside it.
 struct Attack {
@@ -15,10 +16,6 @@ fn attack(name: &'static str, body: impl AsRef<str>) -> Attack {
 
 /// Bytes of the largest texts.
 const MUCH: usize = 60 << 20;
-
-fn lines(n: usize, line: impl Fn(usize) -> String) -> String {
-    (0..n).map(line).collect()
-}
 
 /// What is spent in evaluation.
 fn evaluated() -> Vec<Attack> {

@@ -10,7 +10,7 @@ use luxel_core::files::MemoryFiles;
 use luxel_lang::{Budgets, Settings, load, parse_only};
 
 use crate::process;
-use crate::scene::linked;
+use crate::scene::{lines, linked};
 use crate::series::Series;
 
 /// The word that makes this program measure once.
@@ -87,10 +87,6 @@ const CASES: [Case; 7] = [
     },
 ];
 
-fn lines(n: usize, line: impl Fn(usize) -> String) -> String {
-    (0..n).map(line).collect()
-}
-
 /// Prints what each costs.
 ///
 /// # Errors
@@ -135,11 +131,9 @@ struct Measured {
 
 impl Measured {
     fn of(case: &Case, what: &str) -> Result<Self, String> {
-        let program = std::env::current_exe().map_err(|error| error.to_string())?;
-        let words = [program, ONCE.into(), case.name.into(), what.into()];
         let (mut processor, mut clock, mut megabytes) = (vec![], vec![], vec![]);
         for _ in 0..3 {
-            let (took, told) = process::told(&words)?;
+            let (took, told) = process::again(ONCE, case.name, what)?;
             let printed = told.lines().next().and_then(|line| line.parse().ok());
             clock.push(printed.ok_or_else(|| told.clone())?);
             processor.push(took.cpu);
@@ -152,11 +146,8 @@ impl Measured {
 
 /// Measures once and prints seconds, if this program was started for that.
 pub(crate) fn once() -> bool {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let [first, name, what] = &words[..] else { return false };
-    let Some(case) = CASES.iter().find(|case| first == ONCE && case.name == name) else {
-        return false;
-    };
+    let Some((name, what)) = process::asked(ONCE) else { return false };
+    let Some(case) = CASES.iter().find(|case| case.name == name) else { return false };
     let text = format!("{HEAD}{}", (case.text)(case.n));
     let seconds = if what == "read" { read(&text) } else { loaded(text) };
     report(&seconds);

@@ -7,6 +7,7 @@ use std::time::Instant;
 use luxel_lang::{Budgets, parse_by_pest, parse_only};
 
 use crate::process;
+use crate::scene::lines;
 use crate::series::Series;
 
 /// The word that makes this program read a text once.
@@ -52,10 +53,6 @@ const CASES: [Case; 6] = [
         text: || format!("let t = #[{}1]", "0.2531 -12.25 ".repeat(700_000)),
     },
 ];
-
-fn lines(n: usize, line: impl Fn(usize) -> String) -> String {
-    (0..n).map(line).collect()
-}
 
 /// A way to read a text.
 struct Reader {
@@ -148,10 +145,8 @@ fn processor_seconds() -> f64 {
 
 /// The bytes that a reading holds at most, the text left out, measured in a process of its own.
 fn peak(case: &Case, reader: &Reader) -> Result<f64, String> {
-    let program = std::env::current_exe().map_err(|error| error.to_string())?;
-    let words = |reader: &str| [program.clone(), ONCE.into(), case.name.into(), reader.into()];
     let held = |reader: &str| {
-        let took = process::timed(&words(reader))?;
+        let (took, _) = process::again(ONCE, case.name, reader)?;
         Ok::<_, String>(took.megabytes.unwrap_or(f64::NAN) * f64::from(1 << 20))
     };
     Ok(held(reader.name)? - held("none")?)
@@ -159,11 +154,8 @@ fn peak(case: &Case, reader: &Reader) -> Result<f64, String> {
 
 /// Reads a text once, if this program was started for that.
 pub(crate) fn once() -> bool {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let [first, name, what] = &words[..] else { return false };
-    let Some(case) = CASES.iter().find(|case| first == ONCE && case.name == name) else {
-        return false;
-    };
+    let Some((name, what)) = process::asked(ONCE) else { return false };
+    let Some(case) = CASES.iter().find(|case| case.name == name) else { return false };
     let mut text = String::with_capacity(16 << 20);
     text.push_str("scene 1\n");
     text.push_str(&(case.text)());

@@ -66,7 +66,7 @@ impl Luxel {
 ///
 /// # Errors
 /// The program did not start or failed; its words.
-pub(crate) fn timed(words: &[PathBuf]) -> Result<Took, String> {
+fn timed(words: &[PathBuf]) -> Result<Took, String> {
     told(words)
         .map(|(took, _)| took)
         .map_err(|told| format!("{} failed: {told}", words[0].display()))
@@ -91,11 +91,28 @@ fn ran(words: &[PathBuf]) -> Result<(Took, bool, String), String> {
     Ok((took, output.status.success(), told))
 }
 
+/// Starts this program anew to measure one thing, in memory that nothing else has used; what it took and
+/// what it told.
+///
+/// # Errors
+/// It did not start or failed; its words.
+pub(crate) fn again(once: &str, case: &str, what: &str) -> Result<(Took, String), String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    told(&[program, once.into(), case.into(), what.into()])
+}
+
+/// The case and what is wanted of it, if this program was started so.
+pub(crate) fn asked(once: &str) -> Option<(String, String)> {
+    let words: [String; 3] = std::env::args().skip(1).collect::<Vec<_>>().try_into().ok()?;
+    let [first, case, what] = words;
+    (first == once).then_some((case, what))
+}
+
 /// Runs a program that succeeds; what it took and what it told.
 ///
 /// # Errors
 /// The program did not start or failed; its words.
-pub(crate) fn told(words: &[PathBuf]) -> Result<(Took, String), String> {
+fn told(words: &[PathBuf]) -> Result<(Took, String), String> {
     let (took, succeeded, told) = ran(words)?;
     if succeeded { Ok((took, told)) } else { Err(told) }
 }

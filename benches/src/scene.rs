@@ -1,4 +1,4 @@
-//! Scenes as stages of this program.
+//! Scenes as texts, and as stages of this program.
 
 use std::path::Path;
 
@@ -6,6 +6,11 @@ use luxel_core::files::MemoryFiles;
 use luxel_core::registry::Registry;
 use luxel_core::scene::Scene;
 use luxel_core::stage::{self, Stage};
+
+/// A text of so many lines.
+pub(crate) fn lines(n: usize, line: impl Fn(usize) -> String) -> String {
+    (0..n).map(line).collect()
+}
 
 /// The built-ins.
 pub(crate) fn linked() -> Registry {

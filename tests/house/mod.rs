@@ -65,10 +65,10 @@ const ROOMS: [(&str, &[&str]); 17] = [
     ("pest::", &["lang/src/"]),
     ("tobj::", &["plugins/builtin/src/"]),
     ("obvhs::", &["core/src/accel/"]),
-    ("std::arch", &["core/src/accel/"]),
+    ("std::arch", &["core/src/accel/", "plugins/sdk/src/sampling/sobol/"]),
     ("core::arch", &["core/src/accel/"]),
-    ("is_x86_feature_detected", &["core/src/accel/", "plugins/sdk/src/sampling/sobol.rs"]),
-    ("target_feature", &["core/src/accel/", "plugins/sdk/src/sampling/sobol.rs"]),
+    ("is_x86_feature_detected", &["core/src/accel/", "plugins/sdk/src/sampling/sobol/"]),
+    ("target_feature", &["core/src/accel/", "plugins/sdk/src/sampling/sobol/"]),
     ("rayon::", &["core/src/accel/", "core/src/render/"]),
     ("libloading", &["core/src/registry/dynamic"]),
     (
@@ -79,7 +79,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "plugins/sdk/src/wire/",
             "plugins/sdk/src/params/",
             // Points with what the processor has.
-            "plugins/sdk/src/sampling/sobol.rs",
+            "plugins/sdk/src/sampling/sobol/",
             // It writes the unsafe implementation that `params` asks for.
             "plugins/sdk-derive/src/",
             "core/src/object/",

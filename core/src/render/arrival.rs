@@ -297,8 +297,11 @@ impl Numbers {
     #[inline(always)]
     fn draw(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
         if wants.has(Wants::DIRECT) && wants.has(Wants::SCATTER) {
-            let choice = samples.next_1d_if(stage.features.light_choice());
-            let [[u, v], scatter] = samples.next_2d_pair();
+            let (choice, [[u, v], scatter]) = if stage.features.light_choice() {
+                samples.next_1d_and_2d_pair()
+            } else {
+                (samples.next_1d_if(false), samples.next_2d_pair())
+            };
             return Self { light: [choice, u, v], scatter };
         }
         let mut numbers = Self { light: [0.0; 3], scatter: [0.0; 2] };

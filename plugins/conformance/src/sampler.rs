@@ -106,8 +106,12 @@ fn is_even(sampler: &dyn Sampler, set: &Set, n: u32, judge: &mut Judge) {
             let again = sampler.get_2d(at(k)).map(f32::to_bits) == two.map(f32::to_bits);
             judge.holds("the same each time", again, || format!("{}: {:?}", set.label, at(k)));
             let pairs = [two, sampler.get_2d(next(at(k), 2))];
-            let at_once = sampler.get_2d_pair(at(k)) == pairs;
-            judge.holds("two pairs at once", at_once, || format!("{}: {:?}", set.label, at(k)));
+            let after = [sampler.get_2d(next(at(k), 1)), sampler.get_2d(next(at(k), 3))];
+            let at_once = sampler.get_2d_pair(at(k)) == pairs
+                && sampler.get_1d_and_2d_pair(at(k)) == (one, after);
+            judge.holds("several numbers at once", at_once, || {
+                format!("{}: {:?}", set.label, at(k))
+            });
         }
     }
 }

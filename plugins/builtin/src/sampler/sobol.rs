@@ -2,7 +2,9 @@
 
 use luxel_sdk::Params;
 use luxel_sdk::kind::{SampleAt, Sampler};
-use luxel_sdk::sampling::{sobol_owen_1d, sobol_owen_2d, sobol_owen_2d_pair};
+use luxel_sdk::sampling::{
+    sobol_owen_1d, sobol_owen_1d_and_2d_pair, sobol_owen_2d, sobol_owen_2d_pair,
+};
 
 /// Well-spread numbers: each pair of dimensions is a scrambled (0, 2)-sequence (Owen 1997, Burley
 /// 2020), so that the error often falls faster than with independent ones. Powers of two are best.
@@ -40,6 +42,10 @@ impl Sampler for Sobol {
 
     fn get_2d_pair(&self, at: SampleAt) -> [[f32; 2]; 2] {
         sobol_owen_2d_pair(at.index, [seed(at), seed(at) + 2])
+    }
+
+    fn get_1d_and_2d_pair(&self, at: SampleAt) -> (f32, [[f32; 2]; 2]) {
+        sobol_owen_1d_and_2d_pair(at.index, [0, 1, 3].map(|next| seed(at) + next))
     }
 }
 

@@ -44,6 +44,12 @@ pub trait Sampler: Send + Sync {
         let next = SampleAt { dimension: at.dimension + 2, ..at };
         [self.get_2d(at), self.get_2d(next)]
     }
+
+    /// One number and two such pairs: the same numbers as three calls, perhaps sooner.
+    fn get_1d_and_2d_pair(&self, at: SampleAt) -> (f32, [[f32; 2]; 2]) {
+        let next = SampleAt { dimension: at.dimension + 1, ..at };
+        (self.get_1d(at), self.get_2d_pair(next))
+    }
 }
 
 impl<S: Sampler + ?Sized> Sampler for &S {
@@ -61,6 +67,9 @@ impl<S: Sampler + ?Sized> Sampler for &S {
     }
     fn get_2d_pair(&self, at: SampleAt) -> [[f32; 2]; 2] {
         (**self).get_2d_pair(at)
+    }
+    fn get_1d_and_2d_pair(&self, at: SampleAt) -> (f32, [[f32; 2]; 2]) {
+        (**self).get_1d_and_2d_pair(at)
     }
 }
 
@@ -104,6 +113,13 @@ impl<'a> Samples<'a> {
     pub fn next_2d_pair(&mut self) -> [[f32; 2]; 2] {
         let u = self.source.get_2d_pair(self.at);
         self.at.dimension += 4;
+        u
+    }
+
+    /// The next five numbers, as a call of `next_1d` and one of `next_2d_pair` would give them.
+    pub fn next_1d_and_2d_pair(&mut self) -> (f32, [[f32; 2]; 2]) {
+        let u = self.source.get_1d_and_2d_pair(self.at);
+        self.at.dimension += 5;
         u
     }
 

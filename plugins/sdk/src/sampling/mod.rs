@@ -26,7 +26,7 @@ pub use mis::{balance_heuristic, power_heuristic};
 pub use piecewise::{Piecewise1, Piecewise1Sample};
 pub use piecewise2::{Piecewise2, Piecewise2Sample};
 pub use rng::Rng;
-pub use sobol::{sobol_owen_1d, sobol_owen_2d, sobol_owen_2d_pair};
+pub use sobol::{sobol_owen_1d, sobol_owen_1d_and_2d_pair, sobol_owen_2d, sobol_owen_2d_pair};
 pub use sphere::{
     HEMISPHERE_PDF, SPHERE_PDF, cosine_hemisphere, cosine_hemisphere_pdf, one_minus_cos,
     one_minus_cos_from_sin2, uniform_cone, uniform_cone_pdf, uniform_hemisphere, uniform_sphere,

@@ -2,7 +2,8 @@
 //!
 //! Burley 2020, "Practical Hash-based Owen Scrambling", with the Laine–Karras hash as improved by
 //! Vegdahl 2021. Higher dimensions are padded: one seed for each pair of dimensions of a path.
-#![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
+
+mod wide;
 
 use super::hash::{hash32, hash64, u32_to_unit};
 
@@ -36,39 +37,21 @@ pub fn sobol_owen_2d(index: u32, seed: u64) -> [f32; 2] {
 /// with what the processor has for products of several numbers and for the order of bits.
 #[inline]
 pub fn sobol_owen_2d_pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
-    #[cfg(target_arch = "x86_64")]
-    if is_x86_feature_detected!("gfni")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512vl")
-    {
-        let [a, b] = seeds;
-        // SAFETY: the processor was asked.
-        return unsafe { pair_in_avx512(index, a, b) };
+    let [a, b] = seeds;
+    if let Some([x, y]) = wide::four(index, a, b, b, b) {
+        return [[x[0], y[0]], [x[1], y[1]]];
     }
-    pair(index, seeds)
+    seeds.map(|seed| sobol_owen_2d(index, seed))
 }
 
-/// The seeds come one by one, in registers: read as one right after they were written as two, they
-/// would be waited for.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "gfni,avx512dq,avx512vl")]
-fn pair_in_avx512(index: u32, a: u64, b: u64) -> [[f32; 2]; 2] {
-    pair(index, [a, b])
-}
-
-/// Written so that the compiler finds the four lanes.
-#[inline(always)]
-fn pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
-    let [(shuffle_a, a), (shuffle_b, b)] = seeds.map(hash64).map(halves);
-    let index = index.reverse_bits();
-    let [i, j] = [owen_reversed(index, shuffle_a), owen_reversed(index, shuffle_b)];
-    let [i, j] = [i, j].map(u32::reverse_bits);
-    let points = [i, j, pascal(i), pascal(j)];
-    let scrambles = [a, b, hash32(a), hash32(b)];
-    let [xa, xb, ya, yb] = std::array::from_fn(|lane| {
-        u32_to_unit(owen_reversed(points[lane], scrambles[lane]).reverse_bits())
-    });
-    [[xa, ya], [xb, yb]]
+/// A number of the first seed and the points of two more, for the price of those two.
+#[inline]
+pub fn sobol_owen_1d_and_2d_pair(index: u32, seeds: [u64; 3]) -> (f32, [[f32; 2]; 2]) {
+    let [a, b, c] = seeds;
+    if let Some([x, y]) = wide::four(index, a, b, c, c) {
+        return (x[0], [[x[1], y[1]], [x[2], y[2]]]);
+    }
+    (sobol_owen_1d(index, a), [b, c].map(|seed| sobol_owen_2d(index, seed)))
 }
 
 /// The upper and the lower half.
@@ -149,13 +132,19 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_is_two_points() {
+    fn what_comes_at_once_is_what_comes_one_by_one() {
         let mut rng = Rng::new(8);
         for _ in 0..1000 {
             let (index, seeds) = (rng.u32(), [u64::from(rng.u32()), u64::from(rng.u32())]);
             assert_eq!(
                 sobol_owen_2d_pair(index, seeds),
                 seeds.map(|seed| sobol_owen_2d(index, seed))
+            );
+            let first = rng.u32().into();
+            let [a, b] = seeds;
+            assert_eq!(
+                sobol_owen_1d_and_2d_pair(index, [first, a, b]),
+                (sobol_owen_1d(index, first), seeds.map(|seed| sobol_owen_2d(index, seed)))
             );
         }
     }

@@ -4,6 +4,9 @@
 /// standard deviations by less than (n/256)²/8: 3e-5 of its peak for 4.
 const STEPS: usize = 256;
 
+/// Parts of [0, 1) whose first step is known: so many that few hold the ends of two.
+const PARTS: usize = 1024;
+
 /// An even, piecewise-linear density on [−radius, radius].
 pub(crate) struct Profile {
     radius: f32,
@@ -12,7 +15,7 @@ pub(crate) struct Profile {
     /// Share of [0, x] at each step, of both sides together: from 0 to 1.
     cumulative: [f32; STEPS + 1],
     /// For each of as many equal parts of [0, 1): the first step that ends beyond its beginning.
-    guide: [u16; STEPS],
+    guide: [u16; PARTS],
 }
 
 impl Profile {
@@ -32,7 +35,7 @@ impl Profile {
         let total = sums[STEPS];
         let cumulative = sums.map(|s| (s / total) as f32);
         let first = |part: usize| {
-            let begin = part as f32 / STEPS as f32;
+            let begin = part as f32 / PARTS as f32;
             cumulative[1..].iter().position(|&c| c > begin).unwrap_or(STEPS - 1) as u16
         };
         Self {
@@ -57,8 +60,11 @@ impl Profile {
     /// A place with density `eval`; `u` in [0, 1). Increasing in `u`.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [0, STEPS)")]
     pub(crate) fn sample(&self, u: f32) -> f32 {
-        let (sign, u) = if u < 0.5 { (-1.0, 1.0 - 2.0 * u) } else { (1.0, 2.0 * u - 1.0) };
-        let mut i = usize::from(self.guide[(u * STEPS as f32) as usize & (STEPS - 1)]);
+        let centred = 2.0 * u - 1.0;
+        let u = centred.abs();
+        let mut i = usize::from(self.guide[((u * PARTS as f32) as usize).min(PARTS - 1)]);
+        // Added, where a jump would be guessed wrongly every fourth time.
+        i += usize::from(i + 1 < STEPS && self.cumulative[i + 1] <= u);
         while i + 1 < STEPS && self.cumulative[i + 1] <= u {
             i += 1;
         }
@@ -68,7 +74,7 @@ impl Profile {
         let (a, b) = (self.density[i], self.density[i + 1]);
         let root = (a * a + v * (b * b - a * a)).max(0.0).sqrt();
         let within = if a + root > 0.0 { v * (a + b) / (a + root) } else { 0.0 };
-        sign * (i as f32 + within.min(1.0)) * self.radius / STEPS as f32
+        ((i as f32 + within.min(1.0)) * self.radius / STEPS as f32).copysign(centred)
     }
 }
 

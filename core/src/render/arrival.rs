@@ -6,7 +6,7 @@ use luxel_sdk::kind::{
     Arrival, ArrivalKind, Direct, Lobe, Material, Needs, Phase, Sample, Samples, Scatter, Sight,
     Surface, Wants,
 };
-use luxel_sdk::num::{Frame, Ray, unit_and_length};
+use luxel_sdk::num::{Frame, Ray, unit_again, unit_and_length};
 
 use super::path::{Path, Standing};
 use crate::cast::narrow;
@@ -360,7 +360,7 @@ impl Local {
 
     #[inline(always)]
     fn to_world(&self, local: Vec3) -> Option<DVec3> {
-        let (wi, _) = unit_and_length(self.frame.to_world(local).as_dvec3());
+        let wi = unit_again(self.frame.to_world(local).as_dvec3());
         (!wi.is_nan() && self.sides_agree(wi, local)).then_some(wi)
     }
 

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec2, DVec3, Vec2};
 use luxel_sdk::Params;
 use luxel_sdk::kind::{Camera, CameraRay, Raster};
-use luxel_sdk::num::Ray;
+use luxel_sdk::num::{Ray, unit_and_length};
 use luxel_sdk::params::{Fault, Look};
 
 use super::view::{Back, FovAxis, Plane, Vignetting, axes};
@@ -73,7 +73,7 @@ impl Camera for Perspective {
     }
 
     fn ray(&self, raster: Raster, p: DVec2, _lens: [f32; 2]) -> Option<CameraRay> {
-        let d = self.plane().at_depth_1(raster, p).normalize();
+        let (d, _) = unit_and_length(self.plane().at_depth_1(raster, p));
         let weight = self.vignetting.weight(-d.z);
         Some(CameraRay { ray: Ray::new(self.look.from, self.axes * d), weight })
     }

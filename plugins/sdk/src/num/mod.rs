@@ -22,4 +22,4 @@ pub use quadratic::{quadratic_roots, sphere_roots};
 pub use ray::Ray;
 pub use sum::{Moments, Sum};
 pub use transform::Transform;
-pub use unit::unit_and_length;
+pub use unit::{unit_again, unit_and_length};

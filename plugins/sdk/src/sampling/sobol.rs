@@ -6,6 +6,7 @@
 mod wide;
 
 use super::hash::{hash32, hash64, u32_to_unit};
+pub use wide::{sobol_owen_1d_and_2d_pair, sobol_owen_2d_pair};
 
 /// Number `index` of a scrambled van der Corput sequence, in [0, 1).
 ///
@@ -31,27 +32,6 @@ pub fn sobol_owen_2d(index: u32, seed: u64) -> [f32; 2] {
     let x = owen_reversed(index, scramble);
     let y = owen_reversed(pascal(index), hash32(scramble));
     [x, y].map(u32::reverse_bits).map(u32_to_unit)
-}
-
-/// The points of two seeds, for less than twice the price: both go through every step side by side,
-/// with what the processor has for products of several numbers and for the order of bits.
-#[inline]
-pub fn sobol_owen_2d_pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
-    let [a, b] = seeds;
-    if let Some([x, y]) = wide::four(index, a, b, b, b) {
-        return [[x[0], y[0]], [x[1], y[1]]];
-    }
-    seeds.map(|seed| sobol_owen_2d(index, seed))
-}
-
-/// A number of the first seed and the points of two more, for the price of those two.
-#[inline]
-pub fn sobol_owen_1d_and_2d_pair(index: u32, seeds: [u64; 3]) -> (f32, [[f32; 2]; 2]) {
-    let [a, b, c] = seeds;
-    if let Some([x, y]) = wide::four(index, a, b, c, c) {
-        return (x[0], [[x[1], y[1]], [x[2], y[2]]]);
-    }
-    (sobol_owen_1d(index, a), [b, c].map(|seed| sobol_owen_2d(index, seed)))
 }
 
 /// The upper and the lower half.

@@ -1,27 +1,47 @@
-//! Points of four seeds side by side, where a processor multiplies several numbers of 64 bits and turns
-//! the order of bits at once. Each function does to every lane what its namesake does to one number.
+//! Points of several seeds side by side, where a processor multiplies several numbers of 64 bits and
+//! turns the order of bits at once.
 
-#[cfg(target_arch = "x86_64")]
-pub(super) use x86::four;
+#![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
 
-/// The first and the second coordinates; `None` on every processor of another kind.
-#[cfg(not(target_arch = "x86_64"))]
-pub(super) fn four(_: u32, _: u64, _: u64, _: u64, _: u64) -> Option<[[f32; 4]; 2]> {
-    None
+use super::{sobol_owen_1d, sobol_owen_2d};
+
+/// The points of two seeds, perhaps for less than twice the price.
+#[inline]
+pub fn sobol_owen_2d_pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
+    #[cfg(target_arch = "x86_64")]
+    if x86::is_there() {
+        let [a, b] = seeds;
+        // SAFETY: the processor was asked.
+        return unsafe { x86::pair(index, a, b) };
+    }
+    seeds.map(|seed| sobol_owen_2d(index, seed))
 }
 
+/// A number of the first seed and the points of two more, perhaps for the price of those.
+#[inline]
+pub fn sobol_owen_1d_and_2d_pair(index: u32, seeds: [u64; 3]) -> (f32, [[f32; 2]; 2]) {
+    let [a, b, c] = seeds;
+    #[cfg(target_arch = "x86_64")]
+    if x86::is_there() {
+        // SAFETY: the processor was asked.
+        return unsafe { x86::three(index, a, b, c) };
+    }
+    (sobol_owen_1d(index, a), [b, c].map(|seed| sobol_owen_2d(index, seed)))
+}
+
+/// Each function does to every lane what its namesake does to one number.
 #[cfg(target_arch = "x86_64")]
-#[expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
 mod x86 {
     use std::arch::x86_64::{
-        __m128i, __m256, __m256i, _mm_and_si128, _mm_mullo_epi32, _mm_set_epi8, _mm_set1_epi32,
-        _mm_srli_epi32, _mm_xor_si128, _mm256_add_epi32, _mm256_add_epi64,
-        _mm256_broadcastsi128_si256, _mm256_castsi256_si128, _mm256_cmpge_epu32_mask,
-        _mm256_cvtepi32_ps, _mm256_cvtepi64_epi32, _mm256_gf2p8affine_epi64_epi8,
-        _mm256_mask_blend_ps, _mm256_mask_srli_epi32, _mm256_mul_ps, _mm256_mullo_epi32,
-        _mm256_mullo_epi64, _mm256_or_si256, _mm256_set_epi64x, _mm256_set_m128i,
-        _mm256_set1_epi32, _mm256_set1_epi64x, _mm256_set1_ps, _mm256_shuffle_epi8,
-        _mm256_srli_epi32, _mm256_srli_epi64, _mm256_storeu_ps, _mm256_xor_si256,
+        __m128, __m128i, __m256, __m256i, _mm_and_si128, _mm_cvtss_f32, _mm_movehl_ps,
+        _mm_mullo_epi32, _mm_set_epi8, _mm_set1_epi32, _mm_srli_epi32, _mm_storeu_ps,
+        _mm_unpacklo_ps, _mm_xor_si128, _mm256_add_epi32, _mm256_add_epi64,
+        _mm256_broadcastsi128_si256, _mm256_castps256_ps128, _mm256_castsi256_si128,
+        _mm256_cmpge_epu32_mask, _mm256_cvtepi32_ps, _mm256_cvtepi64_epi32, _mm256_extractf128_ps,
+        _mm256_gf2p8affine_epi64_epi8, _mm256_mask_blend_ps, _mm256_mask_srli_epi32, _mm256_mul_ps,
+        _mm256_mullo_epi32, _mm256_mullo_epi64, _mm256_or_si256, _mm256_set_epi64x,
+        _mm256_set_m128i, _mm256_set1_epi32, _mm256_set1_epi64x, _mm256_set1_ps,
+        _mm256_shuffle_epi8, _mm256_srli_epi32, _mm256_srli_epi64, _mm256_xor_si256,
     };
 
     /// The matrix that turns eight bits round.
@@ -30,28 +50,44 @@ mod x86 {
     /// 2⁻³².
     const UNIT: f32 = 1.0 / (1u64 << 32) as f32;
 
-    /// The first and the second coordinates; `None` where the processor lacks what it takes.
+    /// Whether the processor has all that this takes.
     #[inline]
-    pub(in super::super) fn four(
-        index: u32,
-        a: u64,
-        b: u64,
-        c: u64,
-        d: u64,
-    ) -> Option<[[f32; 4]; 2]> {
-        let is_there = is_x86_feature_detected!("gfni")
+    pub(super) fn is_there() -> bool {
+        is_x86_feature_detected!("gfni")
             && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        // SAFETY: the processor was asked.
-        is_there.then(|| unsafe { lanes(index, a, b, c, d) })
+            && is_x86_feature_detected!("avx512vl")
     }
 
     /// The seeds come one by one, in registers: read as one right after they were written apart, they
     /// would be waited for.
     #[target_feature(enable = "gfni,avx512dq,avx512vl")]
-    fn lanes(index: u32, a: u64, b: u64, c: u64, d: u64) -> [[f32; 4]; 2] {
-        let [a, b, c, d] = [a, b, c, d].map(u64::cast_signed);
-        let hashes = hash64(_mm256_set_epi64x(d, c, b, a));
+    pub(super) fn pair(index: u32, a: u64, b: u64) -> [[f32; 2]; 2] {
+        let (x, y) = points(index, a, b, b);
+        stored(_mm_unpacklo_ps(x, y))
+    }
+
+    /// See [`pair`].
+    #[target_feature(enable = "gfni,avx512dq,avx512vl")]
+    pub(super) fn three(index: u32, a: u64, b: u64, c: u64) -> (f32, [[f32; 2]; 2]) {
+        let (x, y) = points(index, b, c, a);
+        (_mm_cvtss_f32(_mm_movehl_ps(x, x)), stored(_mm_unpacklo_ps(x, y)))
+    }
+
+    #[inline]
+    #[target_feature(enable = "gfni,avx512dq,avx512vl")]
+    fn stored(points: __m128) -> [[f32; 2]; 2] {
+        let mut out = [[0.0; 2]; 2];
+        // SAFETY: four numbers fit.
+        unsafe { _mm_storeu_ps(out.as_mut_ptr().cast(), points) };
+        out
+    }
+
+    /// The first and the second coordinates of three points.
+    #[inline]
+    #[target_feature(enable = "gfni,avx512dq,avx512vl")]
+    fn points(index: u32, a: u64, b: u64, c: u64) -> (__m128, __m128) {
+        let [a, b, c] = [a, b, c].map(u64::cast_signed);
+        let hashes = hash64(_mm256_set_epi64x(c, c, b, a));
         let shuffles = both(_mm256_cvtepi64_epi32(_mm256_srli_epi64::<32>(hashes)));
         let scrambles = _mm256_cvtepi64_epi32(hashes);
         let index = reverse_bits(_mm256_set1_epi32(index.cast_signed()));
@@ -59,10 +95,7 @@ mod x86 {
         let x = _mm256_set_m128i(pascal(x), x);
         let scrambles = _mm256_set_m128i(hash32(scrambles), scrambles);
         let points = u32_to_unit(reverse_bits(owen_reversed(x, scrambles)));
-        let mut out = [[0.0; 4]; 2];
-        // SAFETY: eight numbers fit.
-        unsafe { _mm256_storeu_ps(out.as_mut_ptr().cast(), points) };
-        out
+        (_mm256_castps256_ps128(points), _mm256_extractf128_ps::<1>(points))
     }
 
     #[inline]

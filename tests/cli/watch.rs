@@ -66,6 +66,24 @@ fn comments_and_mistakes_leave_a_render_in_hand_alone() {
 }
 
 #[test]
+fn a_mistake_that_is_taken_back_is_told_to_be_gone() {
+    let folder = Folder::new("watch-taken-back").with("a.scene", SCENE);
+    let mut watching = folder.start(&["watch", "a.scene"]);
+    until("the picture", || !folder.read("a.exr").is_empty());
+    folder.write("a.scene", &SCENE.replace("radius", "radus"));
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    folder.write("a.scene", SCENE);
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    // The file is as it was before, which is no news.
+    folder.write("a.scene", &format!("{SCENE}// as it was\n"));
+    std::thread::sleep(std::time::Duration::from_millis(800));
+    watching.interrupt();
+    let done = watching.end();
+    let (_, after) = done.err.split_once("E0402").unwrap_or_else(|| panic!("{done:?}"));
+    assert_eq!(after.matches("nothing made anew · ").count(), 1, "{done:?}");
+}
+
+#[test]
 fn another_exposure_shows_what_was_measured_in_another_way() {
     let folder = Folder::new("watch-exposure").with("a.scene", SCENE);
     let mut watching = folder.start(&["watch", "a.scene", "--json"]);

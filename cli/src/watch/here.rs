@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
 use luxel_core::render::Control;
+use luxel_core::stage::Anew;
 
 use super::Args;
 use super::audience::Audience;
@@ -84,6 +85,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
             shown: None,
             impatient: true,
             is_good: false,
+            has_told: false,
             press: Press::start(scope, args, &audience),
         };
         let ended = watching.rounds(&mut session, &surroundings);
@@ -117,6 +119,8 @@ struct Watching<'scope, 'env> {
     impatient: bool,
     /// Whether the last load gave a scene.
     is_good: bool,
+    /// Whether mistakes were told for which there is no scene yet.
+    has_told: bool,
     press: Press<'scope, 'env>,
 }
 
@@ -196,6 +200,10 @@ impl Watching<'_, '_> {
             let Subject { warnings, read, .. } = &*subject;
             let told = [(&text.diagnostics, &text.sources), (warnings, &read.sources)];
             self.audience.page().inspect(|page| page.problems(&told));
+            if std::mem::take(&mut self.has_told) {
+                let edit = Edit::new(vec![], Anew::default(), begun.elapsed().as_secs_f64());
+                self.tell(&edit);
+            }
             return Ok(Next::Wait);
         }
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
@@ -216,6 +224,7 @@ impl Watching<'_, '_> {
                 self.audience.page().inspect(|page| page.begins());
             }
             self.audience.page().inspect(|page| page.problems(&told));
+            self.has_told = loaded.stage.is_none();
         }
         let Loaded { scene, stage, files, sources, mut diagnostics, anew } = loaded;
         if let (Some(stage), Some(scene)) = (stage, scene) {
@@ -225,9 +234,7 @@ impl Watching<'_, '_> {
                 edit::changes((&before.scene, &before.files), (&scene, &watched), &texts)
             });
             let edit = Edit::new(changes, anew, begun.elapsed().as_secs_f64());
-            if !self.args.quiet && !self.args.json {
-                report::aside(&edit.words());
-            }
+            self.tell(&edit);
             self.audience.page().inspect(|page| page.changed(edit.words()));
             let (scene, stage) = (Arc::new(scene), Arc::new(stage));
             let read = Arc::new(Read { files, sources });
@@ -235,6 +242,13 @@ impl Watching<'_, '_> {
             self.turn_to(Subject { scene, stage, read, files: watched, texts, warnings }, edit);
         }
         Ok(Next::Wait)
+    }
+
+    /// Says what a save changed, to people at a terminal.
+    fn tell(&self, edit: &Edit) {
+        if !self.args.quiet && !self.args.json {
+            report::aside(&edit.words());
+        }
     }
 
     /// Makes a scene ready, unless a save comes between.

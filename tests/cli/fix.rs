@@ -90,6 +90,14 @@ fn mends_that_come_one_after_another_end_and_may_be_gone_on_with() {
 }
 
 #[test]
+fn statements_on_one_line_are_put_on_their_own() {
+    let folder = Folder::new("fix-lines").with("a.scene", &format!("{SCENE}let a = 1 let b = 2\n"));
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert!(done.code == 0 && done.err.contains(": E0023: a line begun"), "{done:?}");
+    assert_eq!(text(&folder, "a.scene"), format!("{SCENE}let a = 1\nlet b = 2\n"));
+}
+
+#[test]
 fn what_is_no_scene_is_never_changed() {
     let mesh = "# a mesh\nv 0.1 0.2 0.3\nv 1 2 3\n";
     let scene = format!("{SCENE}include \"m.obj\"\n");

@@ -113,6 +113,7 @@ fn tell(mended: &Mended, sources: &Sources, form: Form) -> Result<(), Failure> {
 fn change(old: &str, fix: &Fix) -> String {
     let new = fix.replacement.trim();
     match (old, new) {
+        (old, "") if old.trim().is_empty() => "a line begun".to_owned(),
         ("", new) => format!("`{new}` added"),
         (old, "") => format!("`{old}` taken out"),
         (old, new) => format!("`{old}` → `{new}`"),

@@ -8,7 +8,7 @@ use luxel_sdk::params::Unit;
 use super::around::{Around, Place, is_category};
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
-use super::make::RESERVED;
+use super::make::{RESERVED, STATEMENTS};
 use super::number;
 
 /// A mistake with what is needed to go on after it.
@@ -205,7 +205,7 @@ impl<'a> Around<'a> {
                 ")" | "]" | "}" => depth = depth.saturating_sub(1),
                 _ => {}
             }
-            depth == 0 && token.first_on_line && RESERVED[..13].contains(&token.text)
+            depth == 0 && token.first_on_line && STATEMENTS.contains(&token.text)
         })
     }
 
@@ -312,6 +312,9 @@ impl<'a> Around<'a> {
             };
             return Diagnostic::error("E0023", span, "the statement ends too soon");
         };
+        if let Some(found) = head::second(self) {
+            return found;
+        }
         let first = self.tokens.iter().position(|t| t.kind != TokenKind::Doc).unwrap_or(self.at);
         let word = self.word(first);
         if let Some(near) = near(word, RESERVED).filter(|near| near.name != word) {

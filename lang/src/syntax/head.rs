@@ -4,7 +4,7 @@ use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
 use super::around::{Around, Place, is_category};
 use super::lex::TokenKind;
-use super::make::RESERVED;
+use super::make::{RESERVED, STATEMENTS};
 
 /// What is said of an object whose parameters do not stand in braces.
 const BRACES: &str = "an object has its parameters between `{` and `}`";
@@ -91,6 +91,19 @@ fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
         }
         _ => None,
     }
+}
+
+/// `shape sphere { … } shape box { … }`: a statement on the line on which another one ends.
+pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
+    let (current, before) = (around.current()?, around.before(1)?);
+    let begins = is_category(current.text) || STATEMENTS.contains(&current.text);
+    let apart = around.open.is_empty() && around.place == Place::File;
+    if !begins || !apart || current.first_on_line || !before.ends_operand() {
+        return None;
+    }
+    let gap = Span::new(around.source, before.end(), current.start);
+    let message = format!("`{}` begins a statement, which wants a line of its own", current.text);
+    Some(around.error("E0023", current, message).fix(gap, "\n"))
 }
 
 /// `plcae ball`, `includ "a.scene"`, `const x = 3`: by what follows the word.

@@ -9,9 +9,12 @@ use super::tree::{Doc, Expr, ExprNode, Form, ListTy, Name, Ty};
 
 /// Names that no definition may take.
 pub(crate) const RESERVED: [&str; 19] = [
-    "let", "param", "fn", "for", "if", "else", "include", "import", "use", "place", "set",
-    "assert", "expect", "units", "with", "as", "in", "true", "false",
+    "let", "param", "fn", "for", "if", "include", "import", "use", "place", "set", "assert",
+    "expect", "units", "else", "with", "as", "in", "true", "false",
 ];
+
+/// Those that begin a statement.
+pub(super) const STATEMENTS: &[&str] = RESERVED.split_at(13).0;
 
 /// A doc comment, its slashes included.
 pub(super) fn doc(text: &str, span: Span) -> Doc {

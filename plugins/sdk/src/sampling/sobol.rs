@@ -34,6 +34,22 @@ pub fn sobol_owen_2d(index: u32, seed: u64) -> [f32; 2] {
     [x, y].map(u32::reverse_bits).map(u32_to_unit)
 }
 
+/// The points of two seeds: both go through every step side by side, written so that the compiler
+/// finds the four lanes.
+#[inline(always)]
+fn pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
+    let [(shuffle_a, a), (shuffle_b, b)] = seeds.map(hash64).map(halves);
+    let index = index.reverse_bits();
+    let [i, j] = [owen_reversed(index, shuffle_a), owen_reversed(index, shuffle_b)];
+    let [i, j] = [i, j].map(u32::reverse_bits);
+    let points = [i, j, pascal(i), pascal(j)];
+    let scrambles = [a, b, hash32(a), hash32(b)];
+    let [xa, xb, ya, yb] = std::array::from_fn(|lane| {
+        u32_to_unit(owen_reversed(points[lane], scrambles[lane]).reverse_bits())
+    });
+    [[xa, ya], [xb, yb]]
+}
+
 /// The upper and the lower half.
 #[expect(clippy::cast_possible_truncation, reason = "the number is split into its two halves")]
 #[inline]
@@ -120,6 +136,7 @@ mod tests {
                 sobol_owen_2d_pair(index, seeds),
                 seeds.map(|seed| sobol_owen_2d(index, seed))
             );
+            assert_eq!(pair(index, seeds), seeds.map(|seed| sobol_owen_2d(index, seed)));
             let first = rng.u32().into();
             let [a, b] = seeds;
             assert_eq!(

@@ -3,7 +3,7 @@
 
 #![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
 
-use super::{sobol_owen_1d, sobol_owen_2d};
+use super::{pair, sobol_owen_1d};
 
 /// The points of two seeds, perhaps for less than twice the price.
 #[inline]
@@ -14,7 +14,7 @@ pub fn sobol_owen_2d_pair(index: u32, seeds: [u64; 2]) -> [[f32; 2]; 2] {
         // SAFETY: the processor was asked.
         return unsafe { x86::pair(index, a, b) };
     }
-    seeds.map(|seed| sobol_owen_2d(index, seed))
+    pair(index, seeds)
 }
 
 /// A number of the first seed and the points of two more, perhaps for the price of those.
@@ -26,7 +26,7 @@ pub fn sobol_owen_1d_and_2d_pair(index: u32, seeds: [u64; 3]) -> (f32, [[f32; 2]
         // SAFETY: the processor was asked.
         return unsafe { x86::three(index, a, b, c) };
     }
-    (sobol_owen_1d(index, a), [b, c].map(|seed| sobol_owen_2d(index, seed)))
+    (sobol_owen_1d(index, a), pair(index, [b, c]))
 }
 
 /// Each function does to every lane what its namesake does to one number.

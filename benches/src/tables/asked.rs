@@ -26,7 +26,7 @@ const DARK: f64 = 0.1;
 
 /// Name, file, and the files that it reads.
 const SCENES: [(&str, &str, &[&str]); 2] = [
-    ("Cornell box", "cornell.scene", &[]),
+    ("Cornell box", "cornell.scene", &["cornell/reflectance.csv"]),
     (
         "Spot",
         "spot.scene",

@@ -96,12 +96,15 @@ fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
 /// `shape sphere { … } shape box { … }`: a statement on the line on which another one ends.
 pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
     let (current, before) = (around.current()?, around.before(1)?);
-    let begins = is_category(current.text) || STATEMENTS.contains(&current.text);
+    let is_object = is_category(current.text) && around.is_word(around.at + 1);
+    let begins = is_object || STATEMENTS.contains(&current.text);
     let apart = around.open.is_empty() && around.place == Place::File;
     if !begins || !apart || current.first_on_line || !before.ends_operand() {
         return None;
     }
-    let gap = Span::new(around.source, before.end(), current.start);
+    // A comment between the two stays where it is.
+    let blank = around.text[..current.start].trim_end().len();
+    let gap = Span::new(around.source, blank, current.start);
     let message = format!("`{}` begins a statement, which wants a line of its own", current.text);
     Some(around.error("E0023", current, message).fix(gap, "\n"))
 }

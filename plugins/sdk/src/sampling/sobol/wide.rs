@@ -1,7 +1,9 @@
 //! Points of several seeds side by side, where a processor multiplies several numbers of 64 bits and
 //! turns the order of bits at once.
-
-#![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
+#![cfg_attr(
+    target_arch = "x86_64",
+    expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")
+)]
 
 use super::{pair, sobol_owen_1d};
 
@@ -164,8 +166,8 @@ mod x86 {
     fn u32_to_unit(x: __m256i) -> __m256 {
         let is_large = _mm256_cmpge_epu32_mask(x, _mm256_set1_epi32(1 << 24));
         let kept = _mm256_mask_srli_epi32::<8>(x, is_large, x);
-        let unit =
+        let one =
             _mm256_mask_blend_ps(is_large, _mm256_set1_ps(UNIT), _mm256_set1_ps(256.0 * UNIT));
-        _mm256_mul_ps(_mm256_cvtepi32_ps(kept), unit)
+        _mm256_mul_ps(_mm256_cvtepi32_ps(kept), one)
     }
 }

@@ -3,14 +3,14 @@
 use std::io::{self, Write};
 use std::sync::Arc;
 
-use glam::{DVec3, UVec2};
+use glam::{DVec3, UVec2, Vec3};
 
 use super::{Film, Holds, Layer, Pixel, Rect};
 
 /// What every saved film begins with; the digit counts layouts.
-const MAGIC: &[u8; 8] = b"luxfilm3";
+const MAGIC: &[u8; 8] = b"luxfilm4";
 /// Bytes of a pixel.
-const PIXEL: usize = 8 + 7 * 24;
+const PIXEL: usize = 8 + 5 * 24 + 2 * 12;
 
 /// Bytes that are no film, with what is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,9 +98,13 @@ fn bytes(pixel: &Pixel) -> [u8; PIXEL] {
     let mut out = [0; PIXEL];
     out[..4].copy_from_slice(&n.to_le_bytes());
     out[4..8].copy_from_slice(&bad.to_le_bytes());
-    let vectors = [mean, rest, m2, open, block_mean, block_m2, before];
-    let numbers = vectors.into_iter().flat_map(|v| v.to_array());
-    for (place, x) in out[8..].chunks_exact_mut(8).zip(numbers) {
+    let (double, single) = out[8..].split_at_mut(5 * 24);
+    let numbers = [mean, m2, open, block_mean, block_m2].into_iter().flat_map(|v| v.to_array());
+    for (place, x) in double.chunks_exact_mut(8).zip(numbers) {
+        place.copy_from_slice(&x.to_le_bytes());
+    }
+    let numbers = [rest, before].into_iter().flat_map(|v| v.to_array());
+    for (place, x) in single.chunks_exact_mut(4).zip(numbers) {
         place.copy_from_slice(&x.to_le_bytes());
     }
     out
@@ -132,17 +136,22 @@ impl Reader<'_> {
         Ok(DVec3::new(number()?, number()?, number()?))
     }
 
+    fn single(&mut self) -> Result<Vec3, Unreadable> {
+        let mut number = || self.take().map(f32::from_le_bytes);
+        Ok(Vec3::new(number()?, number()?, number()?))
+    }
+
     fn pixel(&mut self) -> Result<Pixel, Unreadable> {
         Ok(Pixel {
             n: self.u32()?,
             bad: self.u32()?,
             mean: self.vector()?,
-            rest: self.vector()?,
             m2: self.vector()?,
             open: self.vector()?,
             block_mean: self.vector()?,
             block_m2: self.vector()?,
-            before: self.vector()?,
+            rest: self.single()?,
+            before: self.single()?,
         })
     }
 }

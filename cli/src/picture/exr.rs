@@ -2,10 +2,17 @@
 
 use std::io::{self, Seek, Write};
 
-use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, Text};
+use exr::block::lines::LineRefMut;
+use exr::compression::Compression;
+use exr::image::Blocks;
+use exr::image::write::samples::{SamplesWriter, WritableSamples};
+use exr::math::RoundingMode;
+use exr::meta::attribute::{
+    AttributeValue, Chromaticities, IntegerBounds, LevelMode, LineOrder, SampleType, Text,
+};
+use exr::meta::header::Header;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, Vec2,
-    WritableImage,
+    AnyChannel, AnyChannels, Encoding, Image, Layer, LayerAttributes, Vec2, WritableImage,
 };
 use glam::UVec2;
 use luxel_core::film::{Film, Pixel, Rect};
@@ -28,29 +35,25 @@ pub(crate) struct Notes {
 #[expect(clippy::cast_possible_truncation, reason = "the file holds 32 bits")]
 #[expect(clippy::cast_sign_loss, reason = "numbers of things are not negative")]
 pub(super) fn write(to: impl Write + Seek, film: &Film, notes: &Notes) -> io::Result<()> {
-    let floats = |name: &str, value: &dyn Fn(&Pixel) -> f64| {
-        let samples = film.pixels().map(|(_, pixel)| value(pixel) as f32).collect();
-        (name.to_owned(), Plane::Floats(samples))
-    };
-    let counts = film.pixels().map(|(_, pixel)| pixel.n).collect();
+    let floats = |name: &str, value| (name.to_owned(), Source::Pixels(film, value));
     let layers = film.channels().into_iter().map(|(channel, values)| {
         let plane = if channel.is_number() {
             Plane::Counts(values.iter().map(|v| *v as u32).collect())
         } else {
             Plane::Floats(values.iter().map(|v| *v as f32).collect())
         };
-        (channel.name.into_owned(), plane)
+        (channel.name.into_owned(), Source::Plane(plane))
     });
     let planes = [
-        floats("R", &|pixel| pixel.mean.x),
-        floats("G", &|pixel| pixel.mean.y),
-        floats("B", &|pixel| pixel.mean.z),
-        floats("SE.R", &|pixel| pixel.standard_error().x),
-        floats("SE.G", &|pixel| pixel.standard_error().y),
-        floats("SE.B", &|pixel| pixel.standard_error().z),
-        ("N".to_owned(), Plane::Counts(counts)),
+        floats("R", |pixel| pixel.mean.x),
+        floats("G", |pixel| pixel.mean.y),
+        floats("B", |pixel| pixel.mean.z),
+        floats("SE.R", |pixel| pixel.standard_error().x),
+        floats("SE.G", |pixel| pixel.standard_error().y),
+        floats("SE.B", |pixel| pixel.standard_error().z),
+        ("N".to_owned(), Source::Samples(film)),
     ];
-    write_planes(to, (film.size, film.window), planes.into_iter().chain(layers), &notes.json)
+    write_sources(to, (film.size, film.window), planes.into_iter().chain(layers), &notes.json)
 }
 
 /// The values of a channel, row by row.
@@ -60,6 +63,65 @@ pub(crate) enum Plane {
     Floats(Vec<f32>),
     /// Whole numbers.
     Counts(Vec<u32>),
+}
+
+/// Where the values of a channel come from.
+enum Source<'f> {
+    Plane(Plane),
+    /// From each pixel of a film, as it is written.
+    Pixels(&'f Film, fn(&Pixel) -> f64),
+    /// The samples of each pixel of a film.
+    Samples(&'f Film),
+}
+
+impl<'s> WritableSamples<'s> for Source<'_> {
+    type Writer = Lines<'s>;
+
+    fn sample_type(&self) -> SampleType {
+        match self {
+            Self::Plane(Plane::Floats(_)) | Self::Pixels(..) => SampleType::F32,
+            Self::Plane(Plane::Counts(_)) | Self::Samples(_) => SampleType::U32,
+        }
+    }
+
+    fn infer_level_modes(&self) -> (LevelMode, RoundingMode) {
+        (LevelMode::Singular, RoundingMode::Down)
+    }
+
+    fn create_samples_writer(&'s self, header: &Header) -> Lines<'s> {
+        Lines { source: self, width: header.layer_size.width() }
+    }
+}
+
+/// Thirty-two lines at a time, which take a quarter of the memory that the usual squares of 256 pixels take.
+const ENCODING: Encoding = Encoding {
+    compression: Compression::PIZ,
+    blocks: Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
+
+/// The lines of a channel.
+struct Lines<'s> {
+    source: &'s Source<'s>,
+    width: usize,
+}
+
+impl SamplesWriter for Lines<'_> {
+    #[expect(clippy::cast_possible_truncation, reason = "the file holds 32 bits")]
+    fn extract_line(&self, line: LineRefMut<'_>) {
+        let Vec2(x, y) = line.location.position;
+        let at = |i: usize| y * self.width + x + i;
+        let corner = UVec2::new(x as u32, y as u32);
+        let pixel =
+            |film: &Film, i: usize| *film.pixel(film.window.min + corner + UVec2::X * i as u32);
+        let written = match self.source {
+            Source::Plane(Plane::Floats(values)) => line.write_samples(|i| values[at(i)]),
+            Source::Plane(Plane::Counts(values)) => line.write_samples(|i| values[at(i)]),
+            Source::Pixels(film, value) => line.write_samples(|i| value(&pixel(film, i)) as f32),
+            Source::Samples(film) => line.write_samples(|i| pixel(film, i).n),
+        };
+        written.expect("a line has room for its samples");
+    }
 }
 
 /// Writes channels by name, in the part `window` of a picture of that size, with what is said about
@@ -73,14 +135,18 @@ pub(crate) fn write_planes(
     planes: impl IntoIterator<Item = (String, Plane)>,
     json: &str,
 ) -> io::Result<()> {
-    let channel = |(name, plane): (String, Plane)| {
-        let samples = match plane {
-            Plane::Floats(values) => FlatSamples::F32(values),
-            Plane::Counts(values) => FlatSamples::U32(values),
-        };
-        AnyChannel::new(name.as_str(), samples)
-    };
-    let channels = AnyChannels::sort(planes.into_iter().map(channel).collect());
+    let sources = planes.into_iter().map(|(name, plane)| (name, Source::Plane(plane)));
+    write_sources(to, (size, window), sources, json)
+}
+
+fn write_sources<'f>(
+    to: impl Write + Seek,
+    (size, window): (UVec2, Rect),
+    sources: impl Iterator<Item = (String, Source<'f>)>,
+    json: &str,
+) -> io::Result<()> {
+    let channel = |(name, source): (String, Source<'f>)| AnyChannel::new(name.as_str(), source);
+    let channels = AnyChannels::sort(sources.map(channel).collect());
     let corner = |v: UVec2| (v.x as usize, v.y as usize);
     let min = window.min.as_ivec2();
     let about = LayerAttributes {
@@ -88,14 +154,15 @@ pub(crate) fn write_planes(
         software_name: Some(Text::from("luxel")),
         ..LayerAttributes::default()
     };
-    let layer = Layer::new(corner(window.size), about, Encoding::SMALL_FAST_LOSSLESS, channels);
+    let layer = Layer::new(corner(window.size), about, ENCODING, channels);
     let mut image = Image::from_layer(layer);
     image.attributes.display_window = IntegerBounds::new((0, 0), corner(size));
     image.attributes.chromaticities = Some(srgb());
     let json = Text::new_or_none(ascii(json)).ok_or_else(|| io::Error::other("odd notes"))?;
     let json = AttributeValue::Text(json);
     image.layer_data.attributes.other.insert(Text::from("luxel"), json);
-    image.write().to_buffered(to).map_err(|error| match error {
+    // One block after the other: all at once they are the picture a second time.
+    image.write().non_parallel().to_buffered(to).map_err(|error| match error {
         exr::error::Error::Io(error) => error,
         other => io::Error::other(other.to_string()),
     })

@@ -80,7 +80,7 @@ fn a_mistake_that_is_taken_back_is_told_to_be_gone() {
     watching.interrupt();
     let done = watching.end();
     let (_, after) = done.err.split_once("E0402").unwrap_or_else(|| panic!("{done:?}"));
-    assert_eq!(after.matches("nothing made anew · ").count(), 1, "{done:?}");
+    assert_eq!(after.matches("as before · nothing made anew · ").count(), 1, "{done:?}");
 }
 
 #[test]

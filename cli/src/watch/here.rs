@@ -170,6 +170,7 @@ impl Watching<'_, '_> {
             // A panic in a plugin ends this attempt, not the watch.
             Err(failure) if failure.exit == Exit::Ours => {
                 self.audience.failed(&failure);
+                self.has_told = true;
                 let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
                 let told = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
                 let also = libraries.chain([self.args.file.as_path()]);
@@ -202,7 +203,7 @@ impl Watching<'_, '_> {
             self.audience.page().inspect(|page| page.problems(&told));
             if std::mem::take(&mut self.has_told) {
                 let edit = Edit::new(vec![], Anew::default(), begun.elapsed().as_secs_f64());
-                self.tell(&edit);
+                self.tell(&format!("as before · {}", edit.words()), report::note);
             }
             return Ok(Next::Wait);
         }
@@ -234,7 +235,7 @@ impl Watching<'_, '_> {
                 edit::changes((&before.scene, &before.files), (&scene, &watched), &texts)
             });
             let edit = Edit::new(changes, anew, begun.elapsed().as_secs_f64());
-            self.tell(&edit);
+            self.tell(&edit.words(), report::aside);
             self.audience.page().inspect(|page| page.changed(edit.words()));
             let (scene, stage) = (Arc::new(scene), Arc::new(stage));
             let read = Arc::new(Read { files, sources });
@@ -244,10 +245,10 @@ impl Watching<'_, '_> {
         Ok(Next::Wait)
     }
 
-    /// Says what a save changed, to people at a terminal.
-    fn tell(&self, edit: &Edit) {
+    /// Says what a save came to, to people.
+    fn tell(&self, words: &str, say: fn(&str)) {
         if !self.args.quiet && !self.args.json {
-            report::aside(&edit.words());
+            say(words);
         }
     }
 

@@ -71,15 +71,22 @@ fn is_better(mended: &Mended, sources: &Sources) -> bool {
     if !mended.changes.iter().any(|(code, _)| code.starts_with("E00")) {
         return true;
     }
-    let faults = |text: &str| -> Vec<(&'static str, usize)> {
+    let faults = |text: &str| -> Vec<((&'static str, String), usize)> {
         let (_, found) = luxel_lang::parse_only(text, &Budgets::default());
         let errors = found.iter().filter(|found| found.is_error());
-        errors.map(|it| (it.code, it.span().map_or(0, |span| span.range().start))).collect()
+        // Anything may be unexpected: there the words tell what.
+        let words =
+            |it: &Diagnostic| if it.code == "E0023" { it.message.clone() } else { String::new() };
+        errors
+            .map(|it| ((it.code, words(it)), it.span().map_or(0, |at| at.range().start)))
+            .collect()
     };
     let (before, after) = (faults(sources.text(mended.source)), faults(&mended.text));
-    let codes = |faults: &[(&'static str, usize)]| faults.iter().map(|it| it.0).collect::<Vec<_>>();
+    let kinds = |faults: &[((&'static str, String), usize)]| -> Vec<_> {
+        faults.iter().map(|it| it.0.clone()).collect()
+    };
     let is_further =
-        || codes(&before) == codes(&after) && before.iter().zip(&after).all(|(b, a)| b.1 < a.1);
+        || kinds(&before) == kinds(&after) && before.iter().zip(&after).all(|(b, a)| b.1 < a.1);
     after.is_empty() || after.len() < before.len() || is_further()
 }
 

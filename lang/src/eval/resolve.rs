@@ -441,10 +441,10 @@ impl<'a> Resolver<'a> {
         let ending = builtins::names()
             .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
         let ending = ending.map(|name| Near { name, grade: Grade::Sure });
-        if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
-            found = found.meant(place, Some(near));
-        } else if Unit::named(shown).is_some() {
+        if Unit::named(shown).is_some() {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
+        } else if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
+            found = found.meant(place, Some(near));
         } else if shown == "range" {
             found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
         } else {

@@ -4,7 +4,7 @@ use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
 use super::around::{Around, Place, is_category};
 use super::lex::TokenKind;
-use super::make::{RESERVED, STATEMENTS};
+use super::make::RESERVED;
 
 /// What is said of an object whose parameters do not stand in braces.
 const BRACES: &str = "an object has its parameters between `{` and `}`";
@@ -97,16 +97,22 @@ fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
 pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
     let (current, before) = (around.current()?, around.before(1)?);
     let is_object = is_category(current.text) && around.is_word(around.at + 1);
-    let begins = is_object || STATEMENTS.contains(&current.text);
+    // `a if b` and `a for b in c` are other languages' expressions.
+    let is_statement = current.text != "for" && fits(current.text, around, around.at + 1);
     let apart = around.open.is_empty() && around.place == Place::File;
-    if !begins || !apart || current.first_on_line || !before.ends_operand() {
+    if !(is_object || is_statement) || !apart || current.first_on_line || !before.ends_operand() {
         return None;
     }
     // A comment between the two stays where it is.
     let blank = around.text[..current.start].trim_end().len();
     let gap = Span::new(around.source, blank, current.start);
-    let message = format!("`{}` begins a statement, which wants a line of its own", current.text);
-    Some(around.error("E0023", current, message).fix(gap, "\n"))
+    let message = format!(
+        "`{}` begins a statement, which wants a line of its own, or `;` before it",
+        current.text
+    );
+    // An object may be meant as a parameter of the one before.
+    let grade = if is_object { Grade::Guess } else { Grade::Sure };
+    Some(around.error("E0023", current, message).mend(gap, "\n", grade))
 }
 
 /// `plcae ball`, `includ "a.scene"`, `const x = 3`: by what follows the word.

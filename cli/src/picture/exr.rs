@@ -93,7 +93,7 @@ impl<'s> WritableSamples<'s> for Source<'_> {
     }
 }
 
-/// Thirty-two lines at a time, which take a quarter of the memory that the usual squares of 256 pixels take.
+/// Thirty-two lines at a time: of a picture of 512 a quarter of what squares of 256 pixels hold.
 const ENCODING: Encoding = Encoding {
     compression: Compression::PIZ,
     blocks: Blocks::ScanLines,
@@ -195,11 +195,19 @@ fn srgb() -> Chromaticities {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
     use std::io::Cursor;
+    use std::path::Path;
 
     use exr::prelude::{ReadChannels, ReadLayers, read};
+    use glam::DVec3;
+    use luxel_core::files::MemoryFiles;
+    use luxel_core::registry::Registry;
+    use luxel_core::render::{Control, Options, render};
+    use luxel_core::stage;
 
     use super::*;
+    use crate::picture::read::Picture;
 
     fn bytes(film: &Film) -> Vec<u8> {
         let mut file = Cursor::new(vec![]);
@@ -239,6 +247,43 @@ mod tests {
         assert_eq!(notes.to_string(), r#"{"\u00e9\u7403\ud834\udd1e":1}"#);
         let read: serde_json::Value = serde_json::from_str(&notes.to_string()).unwrap();
         assert_eq!(read["é球𝄞"], 1);
+    }
+
+    #[test]
+    fn every_pixel_stands_where_it_was_measured() {
+        // More lines than a block has, at a place of their own, each pixel with a light of its own.
+        let files = MemoryFiles::default().with(
+            "a.scene",
+            *b"scene 1\n\
+              camera perspective { look = look_at(from = (0, 0, 4) m, to = (0, 0, 0) m, \
+              up = (0, 1, 0)), fov = 40 deg }\n\
+              film rgb { resolution = (40, 90) }\n\
+              integrator debug { show = \"normals\" }\n\
+              sampler independent { samples = 3 }\n\
+              shape sphere { radius = 9 m }\n\
+              light constant { radiance = 1 W/m^2/sr }\n",
+        );
+        let mut registry = Registry::new();
+        for classes in luxel_builtin::CLASSES {
+            registry.add("builtin", classes).unwrap();
+        }
+        let settings = luxel_lang::Settings::default();
+        let loaded = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
+        let scene = loaded.scene.unwrap();
+        let stage = stage::build(&scene, &registry, &files, None).unwrap().stage;
+        let crop = Some(Rect::new(UVec2::new(5, 3), UVec2::new(21, 75)));
+        let options = Options { crop, ..Options::default() };
+        let (film, _) = render(&stage, &options, &Control::default());
+        let read = Picture::read(Cursor::new(bytes(&film))).unwrap();
+        let written = |v: DVec3| v.as_vec3().to_array().map(f32::to_bits);
+        let kept = |values: &[f32], i: usize| [0, 1, 2].map(|k| values[3 * i + k].to_bits());
+        for (i, (at, pixel)) in film.pixels().enumerate() {
+            assert_eq!(kept(&read.rgb, i), written(pixel.mean), "{at}");
+            assert_eq!(kept(&read.se, i), written(pixel.standard_error()), "{at}");
+            assert_eq!(read.n[i], pixel.n, "{at}");
+        }
+        let means: BTreeSet<_> = film.pixels().map(|(_, pixel)| written(pixel.mean)).collect();
+        assert!(means.len() > 1000, "{} kinds of pixels", means.len());
     }
 
     #[test]

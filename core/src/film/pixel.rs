@@ -81,7 +81,7 @@ impl Pixel {
         self.block_mean += delta / f64::from(blocks);
         self.block_m2 += delta * (mean - self.block_mean);
         if blocks == part.blocks {
-            self.before = root(self.per_sample()).as_vec3();
+            self.before = root(self.per_sample()).as_vec3().min(Vec3::MAX);
             (self.block_mean, self.block_m2) = (DVec3::ZERO, DVec3::ZERO);
         }
     }

@@ -14,7 +14,7 @@ pub(crate) struct Profile {
     density: [f32; STEPS + 1],
     /// Share of [0, x] at each step, of both sides together: from 0 to 1.
     cumulative: [f32; STEPS + 1],
-    /// For each of as many equal parts of [0, 1): the first step that ends beyond its beginning.
+    /// For each of `PARTS` equal parts of [0, 1): the first step that ends beyond its beginning.
     guide: [u16; PARTS],
 }
 

@@ -131,13 +131,14 @@ mod tests {
     fn what_comes_at_once_is_what_comes_one_by_one() {
         let mut rng = Rng::new(8);
         for _ in 0..1000 {
-            let (index, seeds) = (rng.u32(), [u64::from(rng.u32()), u64::from(rng.u32())]);
+            let mut seed = || u64::from(rng.u32()) << 32 | u64::from(rng.u32());
+            let (seeds, first) = ([seed(), seed()], seed());
+            let index = rng.u32();
             assert_eq!(
                 sobol_owen_2d_pair(index, seeds),
                 seeds.map(|seed| sobol_owen_2d(index, seed))
             );
             assert_eq!(pair(index, seeds), seeds.map(|seed| sobol_owen_2d(index, seed)));
-            let first = rng.u32().into();
             let [a, b] = seeds;
             assert_eq!(
                 sobol_owen_1d_and_2d_pair(index, [first, a, b]),

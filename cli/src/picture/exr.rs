@@ -112,13 +112,14 @@ impl SamplesWriter for Lines<'_> {
         let Vec2(x, y) = line.location.position;
         let at = |i: usize| y * self.width + x + i;
         let corner = UVec2::new(x as u32, y as u32);
-        let pixel =
-            |film: &Film, i: usize| *film.pixel(film.window.min + corner + UVec2::X * i as u32);
+        let place = |film: &Film, i: usize| film.window.min + corner + UVec2::X * i as u32;
         let written = match self.source {
             Source::Plane(Plane::Floats(values)) => line.write_samples(|i| values[at(i)]),
             Source::Plane(Plane::Counts(values)) => line.write_samples(|i| values[at(i)]),
-            Source::Pixels(film, value) => line.write_samples(|i| value(&pixel(film, i)) as f32),
-            Source::Samples(film) => line.write_samples(|i| pixel(film, i).n),
+            Source::Pixels(film, value) => {
+                line.write_samples(|i| value(film.pixel(place(film, i))) as f32)
+            }
+            Source::Samples(film) => line.write_samples(|i| film.pixel(place(film, i)).n),
         };
         written.expect("a line has room for its samples");
     }

@@ -231,8 +231,9 @@ mod tests {
         for n in 2..=16 {
             let pixel = of((0..n).map(noise));
             let plain = (pixel.variance().x / f64::from(n)).sqrt();
-            // Rounded to single precision, half a unit of 2^-23.
-            assert!((pixel.standard_error().x / plain - 1.0).abs() < 2f64.powi(-24), "{n}");
+            // At the end of the part its root is rounded to single precision.
+            let most = if n == 16 { 2f64.powi(-24) } else { 1e-12 };
+            assert!((pixel.standard_error().x / plain - 1.0).abs() <= most, "{n}");
         }
     }
 

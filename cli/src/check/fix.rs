@@ -71,22 +71,21 @@ fn is_better(mended: &Mended, sources: &Sources) -> bool {
     if !mended.changes.iter().any(|(code, _)| code.starts_with("E00")) {
         return true;
     }
-    let faults = |text: &str| -> Vec<((&'static str, String), usize)> {
+    // Anything may be unexpected: there the words tell what.
+    let kind = |found: &Diagnostic| match found.code {
+        "E0023" => found.message.clone(),
+        code => code.to_owned(),
+    };
+    let faults = |text: &str| -> Vec<(String, usize)> {
         let (_, found) = luxel_lang::parse_only(text, &Budgets::default());
         let errors = found.iter().filter(|found| found.is_error());
-        // Anything may be unexpected: there the words tell what.
-        let words =
-            |it: &Diagnostic| if it.code == "E0023" { it.message.clone() } else { String::new() };
-        errors
-            .map(|it| ((it.code, words(it)), it.span().map_or(0, |at| at.range().start)))
-            .collect()
+        errors.map(|it| (kind(it), it.span().map_or(0, |span| span.range().start))).collect()
     };
     let (before, after) = (faults(sources.text(mended.source)), faults(&mended.text));
-    let kinds = |faults: &[((&'static str, String), usize)]| -> Vec<_> {
-        faults.iter().map(|it| it.0.clone()).collect()
+    let is_further = || {
+        let mut pairs = before.iter().zip(&after);
+        before.len() == after.len() && pairs.all(|(b, a)| b.0 == a.0 && b.1 < a.1)
     };
-    let is_further =
-        || kinds(&before) == kinds(&after) && before.iter().zip(&after).all(|(b, a)| b.1 < a.1);
     after.is_empty() || after.len() < before.len() || is_further()
 }
 

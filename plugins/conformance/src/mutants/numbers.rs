@@ -19,9 +19,9 @@ fn pair(at: SampleAt) -> [f32; 2] {
 }
 
 /// Independent numbers whose place and values pass through two functions, and how many dimensions
-/// on the second of two pairs is.
+/// on the second of two pairs is, and two pairs are that come with one number.
 macro_rules! sampler {
-    ($name:ident, $place:expr, $value:expr, $step:expr) => {
+    ($name:ident, $place:expr, $value:expr, $step:expr, $after:expr) => {
         /// Numbers with a fault.
         #[derive(Params, Clone, Copy)]
         #[repr(C)]
@@ -57,15 +57,21 @@ macro_rules! sampler {
                 let next = SampleAt { dimension: at.dimension + $step, ..at };
                 [self.get_2d(at), self.get_2d(next)]
             }
+
+            fn get_1d_and_2d_pair(&self, at: SampleAt) -> (f32, [[f32; 2]; 2]) {
+                let next = SampleAt { dimension: at.dimension + $after, ..at };
+                (self.get_1d(at), self.get_2d_pair(next))
+            }
         }
     };
 }
 
-sampler!(SoundNumbers, |at| at, |u| u, 2);
-sampler!(PairsOverlap, |at| at, |u| u, 1);
-sampler!(AllPixelsAlike, |at| SampleAt { stream: 7, ..at }, |u| u, 2);
-sampler!(ShortPeriod, |at| SampleAt { index: at.index & 0xfff, ..at }, |u| u, 2);
-sampler!(EightBits, |at| at, |u| (u * 256.0).floor() / 256.0, 2);
+sampler!(SoundNumbers, |at| at, |u| u, 2, 1);
+sampler!(PairsOverlap, |at| at, |u| u, 1, 1);
+sampler!(PairsComeEarly, |at| at, |u| u, 2, 0);
+sampler!(AllPixelsAlike, |at| SampleAt { stream: 7, ..at }, |u| u, 2, 1);
+sampler!(ShortPeriod, |at| SampleAt { index: at.index & 0xfff, ..at }, |u| u, 2, 1);
+sampler!(EightBits, |at| at, |u| (u * 256.0).floor() / 256.0, 2, 1);
 
 /// A tent whose left side is as wide as a factor says, with the power of its radius in its height.
 macro_rules! tent {
@@ -158,6 +164,10 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         class: Class::sampler::<PairsOverlap>("pairs_overlap"),
         fault: "pairs one dimension on",
+    },
+    Mutant {
+        class: Class::sampler::<PairsComeEarly>("pairs_come_early"),
+        fault: "the number before two pairs is in them too",
     },
     Mutant {
         class: Class::sampler::<AllPixelsAlike>("all_pixels_alike"),

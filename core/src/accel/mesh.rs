@@ -221,23 +221,24 @@ impl MeshBvh {
         (best.id != u32::MAX).then_some(MeshHit { t, triangle: best.id, b1, b2 })
     }
 
-    /// As `leaf`, of blocks whose points move. Apart: it would take registers from all others.
+    /// As `leaf`, of blocks whose points move. Apart, and by value: it would take registers from all
+    /// others.
     #[inline(never)]
     fn leaf_in_motion<const ANY: bool>(
         &self,
         blocks: std::ops::Range<usize>,
-        ray: &Probe,
-        best: &mut Nearest,
-    ) -> (bool, u32) {
+        ray: Probe,
+        mut best: Nearest,
+    ) -> (bool, u32, Nearest) {
         let mut steps = 0;
         for (block, shift) in self.blocks[blocks.clone()].iter().zip(&self.shifts[blocks]) {
             steps += 1;
-            if ray.meets::<ANY>(&block.at(shift, ray.share), best) && ANY {
+            if ray.meets::<ANY>(&block.at(shift, ray.share), &mut best) && ANY {
                 best.id = 0;
-                return (true, steps);
+                return (true, steps, best);
             }
         }
-        (false, steps)
+        (false, steps, best)
     }
 
     /// Whether a leaf has a hit, which `best` takes, and how many blocks were looked at.
@@ -246,7 +247,9 @@ impl MeshBvh {
         let mut steps = 0;
         let blocks = leaf.blocks();
         if !self.shifts.is_empty() {
-            return self.leaf_in_motion::<ANY>(blocks, ray, best);
+            let (found, steps, nearest) = self.leaf_in_motion::<ANY>(blocks, *ray, *best);
+            *best = nearest;
+            return (found, steps);
         }
         for block in &self.blocks[blocks] {
             steps += 1;
@@ -281,7 +284,7 @@ pub struct Query<'a> {
 }
 
 /// A ray as leaves want it.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Probe {
     precision: Precision,
     line: Line,
@@ -297,7 +300,13 @@ impl Probe {
         match precision {
             Precision::Standard => block.intersect::<ANY>(shear, best),
             Precision::Fast => block.intersect_fast::<ANY>(line, shear.skip, best),
-            Precision::Exact => block.intersect_exact::<ANY>(line, shear.skip, best),
+            Precision::Exact => match block.intersect_exact::<ANY>(*line, shear.skip, *best) {
+                Some(nearer) => {
+                    *best = nearer;
+                    true
+                }
+                None => false,
+            },
         }
     }
 }

@@ -70,7 +70,7 @@ impl Direction {
 }
 
 /// A ray in a mesh's scaled frame, in double precision.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     pub(super) o: DVec3,
     /// Its largest |component| is in [1, 2].
@@ -78,7 +78,7 @@ pub(super) struct Line {
 }
 
 /// A ray in a mesh's scaled frame, as the watertight triangle test wants it.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {
     /// As in [`Direction`].
     pub(super) axes: [usize; 3],

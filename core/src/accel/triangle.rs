@@ -67,30 +67,31 @@ impl Block {
         self.take::<ANY>(lanes, best)
     }
 
-    /// The same as `intersect` in double precision, one triangle after another.
+    /// The same as `intersect` in double precision, one triangle after another: the nearer hit, if
+    /// there is one. Given and taken by value, so that the other precisions keep theirs in registers.
     #[inline(never)]
     pub(super) fn intersect_exact<const ANY: bool>(
         &self,
-        line: &Line,
+        line: Line,
         skip: u32,
-        best: &mut Nearest,
-    ) -> bool {
-        let mut is_hit = false;
+        best: Nearest,
+    ) -> Option<Nearest> {
+        let mut nearer = None;
         for lane in 0..LANES {
             let id = self.ids[lane];
             let corners = self.points.map(|p| DVec3::from_array(p.map(|c| f64::from(c[lane]))));
-            let Some([t, b1, b2]) = watertight(line, corners) else { continue };
+            let Some([t, b1, b2]) = watertight(&line, corners) else { continue };
+            let best = nearer.unwrap_or(best);
             let is_nearer = t < best.exact[0] || (t <= best.exact[0] && id < best.id);
             if id != skip && is_nearer {
                 let above = narrow(t * (1.0 + f64::from(f32::EPSILON)));
-                *best = Nearest { t: above, id, b1: 0.0, b2: 0.0, exact: [t, b1, b2] };
-                is_hit = true;
+                nearer = Some(Nearest { t: above, id, b1: 0.0, b2: 0.0, exact: [t, b1, b2] });
                 if ANY {
                     break;
                 }
             }
         }
-        is_hit
+        nearer
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ use luxel_sdk::num::{Frame, Ray, unit_again, unit_and_length};
 use super::path::{Path, Standing};
 use crate::cast::narrow;
 use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Crossing, Leaving, Moment, SceneHit, Seen, Skin, Stage};
+use crate::stage::{Crossing, FoundLight, Leaving, Moment, SceneHit, Seen, Skin, Stage};
 
 /// What is needed to shade: borrowed for one arrival.
 pub(super) struct Shader<'a, 's> {
@@ -205,17 +205,7 @@ impl Shader<'_, '_> {
         if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
             let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
             self.path.light = found.map_or(0, |found| found.light);
-            at.direct.set(found.and_then(|found| {
-                let wi = local.of_world(found.ray.d)?;
-                let eval = material.eval(local.wo, wi);
-                let f_le = eval.f * found.le_over_pdf * self.flight;
-                (!f_le.is_black()).then_some(Direct {
-                    ray: found.ray,
-                    f_le,
-                    pdf: found.pdf,
-                    f_pdf: eval.pdf,
-                })
-            }));
+            at.direct.set(self.lit(found, &local, material));
         }
         if self.wants.has(Wants::SIGHT) {
             let u = self.samples.next_1d();
@@ -236,6 +226,22 @@ impl Shader<'_, '_> {
             let sample = material.sample(local.wo, u);
             at.scatter.set(sample.and_then(|sample| self.scattered(&local, &sample)));
         }
+    }
+
+    /// What a light sends on along the path.
+    #[inline(always)]
+    fn lit(
+        &self,
+        found: Option<FoundLight>,
+        local: &Local,
+        material: &dyn Material,
+    ) -> Option<Direct> {
+        let found = found?;
+        let wi = local.of_world(found.ray.d)?;
+        let eval = material.eval(local.wo, wi);
+        let f_le = eval.f * found.le_over_pdf * self.flight;
+        let (ray, pdf, f_pdf) = (found.ray, found.pdf, eval.pdf);
+        (!f_le.is_black()).then_some(Direct { ray, f_le, pdf, f_pdf })
     }
 
     #[inline(always)]

@@ -9,7 +9,8 @@ growing sample counts. `speed` interleaves the programs and counts processor tim
 Luxel's is that of the whole process, with reading the scene and writing the picture; Mitsuba's that
 of the render call alone, after a first one that compiles its kernels. relMSE is the mean of
 (I - R)^2 / (R^2 + 0.01) less the reference's own variance, and efficiency 1 / (relMSE * seconds),
-with seconds of processor time over the number of cores. Needs mitsuba and numpy; for the llvm
+with seconds of processor time over the number of cores. The last column is Luxel's time over the
+other's, round by round: median, least and greatest. Needs mitsuba and numpy; for the llvm
 variants on AVX-512, LLVM 19 or later (DRJIT_LIBLLVM_PATH).
 """
 
@@ -169,7 +170,7 @@ def speed(args):
                 rows[variant].append((seconds, relative_mse(picture, stack)))
         paths = args.res**2 * args.spp
         print(f"\n{scene}: {args.res}^2, {args.spp} spp, {args.rounds} rounds interleaved, {CORES} cores")
-        print(f"  {'':14}{'cpu s':>8}{'spread':>9}{'Mpaths/cpu-s':>14}{'relMSE':>11}{'spread':>9}{'efficiency':>12}{'Luxel is':>10}")
+        print(f"  {'':14}{'cpu s':>8}{'spread':>9}{'Mpaths/cpu-s':>14}{'relMSE':>11}{'spread':>9}{'efficiency':>12}{'Luxel is':>10}{'its time, of each round':>26}")
         table = {}
         for name, found in rows.items():
             times, errors = zip(*found)
@@ -177,7 +178,10 @@ def speed(args):
             spread = lambda x: (max(x) - min(x)) / statistics.median(x)
             table[name] = 1 / (e * t / CORES)
             cells = f"{t:8.2f}{spread(times):9.1%}{paths / t / 1e6:14.3f}{e:11.5f}{spread(errors):9.1%}{table[name]:12.2f}"
-            print(f"  {name:14}{cells}{table['luxel'] / table[name]:9.2f}x")
+            of_time = [ours[0] / theirs for ours, theirs in zip(rows["luxel"], times)]
+            least, middle, most = min(of_time), statistics.median(of_time), max(of_time)
+            paired = f"{middle:12.3f} ({least:.3f}..{most:.3f})"
+            print(f"  {name:14}{cells}{table['luxel'] / table[name]:9.2f}x{paired}")
 
 
 def main():

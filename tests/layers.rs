@@ -155,6 +155,27 @@ fn a_group_is_what_its_lights_alone_would_give() {
 }
 
 #[test]
+fn what_media_send_is_of_no_group() {
+    let gas = |scale: f64| {
+        let shape = format!(
+            "shape box {{ center = (0, 1, 2) m, size = (9, 9, 1) m, interior = medium glowing \
+             {{ sigma_a = 1 / (2 m), sigma_s = 1 / (3 m), scale = {scale} }} }}"
+        );
+        film(&stage(&format!("{}\n{shape}", LAMPS.replace("GROUP", "")), &[]))
+    };
+    let (bright, dark) = (gas(0.5), gas(0.0));
+    for channel in ["light.sky.G", "light.warm.G"] {
+        let pairs = values(&bright, channel).into_iter().zip(values(&dark, channel));
+        for ((a, b), (at, pixel)) in pairs.zip(bright.pixels()) {
+            // What is taken out again was rounded as it was put in.
+            let rounding = 64.0 * f64::from(f32::EPSILON) * (1.0 + pixel.mean.length());
+            assert!((a - b).abs() < rounding, "{channel} at {at}: {a} {b}");
+        }
+    }
+    assert!(bright.pixels().zip(dark.pixels()).all(|((_, a), (_, b))| a.mean.y > b.mean.y));
+}
+
+#[test]
 fn groups_are_layers_that_can_be_dropped() {
     let files = MemoryFiles::default().with("a.scene", LAMPS.replace("GROUP", "").as_bytes());
     let registry = crate::load::registry();

@@ -287,6 +287,7 @@ fn begin(at: &mut Arrival, kind: ArrivalKind, ray: &Ray, t: f64, steps: u32) {
     (at.ng, at.ns, at.uv) = (DVec3::ZERO, DVec3::ZERO, glam::Vec2::ZERO);
     at.lift = DVec3::ZERO;
     (at.le, at.le_pdf, at.material) = (Spectrum::ZERO, 0.0, u32::MAX);
+    at.glow = Spectrum::ZERO;
     (at.direct.given, at.scatter.given) = (false, false);
 }
 

@@ -73,7 +73,8 @@ impl<'s> Worker<'s> {
         output: Output,
     ) -> Self {
         let at = SampleAt { stream: 0, index: 0, dimension: 0 };
-        let lane = Lane { at: Arrival::default(), l: Spectrum::ZERO, numbers: at };
+        let lane =
+            Lane { at: Arrival::default(), l: Spectrum::ZERO, glow: Spectrum::ZERO, numbers: at };
         Self {
             stage,
             processor: Processor::widest(),
@@ -221,7 +222,8 @@ impl<'s> Worker<'s> {
         let p = pixel.as_dvec2() + 0.5 + offset;
         let found = stage.camera_ray(p, lens)?;
         self.paths[lane].start(cast::index(job), &found, u, stage);
-        (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
+        let own = &mut self.lanes[lane];
+        (own.l, own.glow, own.numbers) = (Spectrum::ZERO, Spectrum::ZERO, samples.at());
         self.job.ray = found.ray;
         self.record.start(lane, self.job.ray.o);
         Some(())
@@ -351,17 +353,19 @@ impl<'s> Worker<'s> {
             let Onward { ray, lane } = self.now.rays[i];
             let lane = lane as usize;
             let mut samples = Samples::new(self.sampler, self.lanes[lane].numbers);
-            self.fly_one(ray, lane, &mut samples);
+            let glow = self.fly_one(ray, lane, &mut samples);
+            self.lanes[lane].at.glow = glow;
             self.lanes[lane].numbers = samples.at();
         }
     }
 
+    /// Gives the light of the media on its way.
     #[inline(always)]
-    fn fly_one(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) {
+    fn fly_one(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) -> Spectrum {
         let stage = self.stage.at(self.paths[lane].time);
         let mut media = self.paths[lane].media_along(&ray);
         let mut from = self.paths[lane].leaving();
-        let (mut steps, mut flight) = (0, Spectrum::ONE);
+        let (mut steps, mut flight, mut glow) = (0, Spectrum::ONE, Spectrum::ZERO);
         loop {
             let hit = stage.intersect(self.processor, &ray, from, &mut steps);
             let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
@@ -375,20 +379,29 @@ impl<'s> Worker<'s> {
                 let at = Site { p: ray.o, uv, palette: &path.palette, color: None };
                 let object = &stage.media[medium as usize];
                 let medium = object.resolve(&at, &self.medium_scratch).medium();
-                let free = medium.sample(&Ray { t_max, ..ray }, samples);
+                let ray = Ray { t_max, ..ray };
+                if wants.has(Wants::EMISSION) {
+                    glow += flight * medium.glow(&ray, samples);
+                }
+                let free = medium.sample(&ray, samples);
                 flight *= free.weight;
                 if let Some(t) = free.t.get() {
                     path.media = media;
                     let shader = Shader { stage, wants, path, samples, scratch, flight };
-                    return shader.medium((&ray, t, steps), &medium.phase(), arrival);
+                    shader.medium((&ray, t, steps), &medium.phase(), arrival);
+                    return glow;
                 }
             }
             path.media = media;
             let shader = Shader { stage, wants, path, samples, scratch, flight };
-            let Some(hit) = hit else { return shader.escaped(&ray, steps, arrival) };
+            let Some(hit) = hit else {
+                shader.escaped(&ray, steps, arrival);
+                return glow;
+            };
             let crossing = stage.crossing(self.processor, &media, &ray, &hit);
             if let Some(met) = crossing.met {
-                return shader.boundary((&ray, &met, steps), &crossing, arrival);
+                shader.boundary((&ray, &met, steps), &crossing, arrival);
+                return glow;
             }
             from = Some(Leaving::from(&hit));
             media = crossing.beyond;

@@ -141,10 +141,14 @@ pub(crate) fn open_scene(scene: &mut Scene) {
     ball_and_lamp(scene, 1.0);
 }
 
-/// The same, brighter, in fog: what arrives was scattered any number of times.
+/// The same, brighter, in fog that glows: what arrives was scattered any number of times.
 fn foggy_scene(scene: &mut Scene) {
     ball_and_lamp(scene, BRIGHT);
-    let given = [("density", number(0.1, "1/m")), ("albedo", plain(0.8))];
+    let given = [
+        ("density", number(0.1, "1/m")),
+        ("albedo", plain(0.8)),
+        ("glow", number(BRIGHT, "W/m^2/sr")),
+    ];
     scene.medium = Some(node(scene, Kind::Medium, "reference_fog", &given));
 }
 

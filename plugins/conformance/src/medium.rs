@@ -1,6 +1,7 @@
 //! Media: what flies through and what is scattered against transmittance.
 
 use glam::DVec3;
+use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{FreeFlight, Medium, Phase, SampleAt, Sampler, Samples};
 use luxel_sdk::num::{Moments, Ray};
 use luxel_sdk::params::Role;
@@ -29,6 +30,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
         set.ask(|resolved| {
             let medium = resolved.medium();
             passes(medium, set, &mut rng, judge);
+            glows(medium, set, &mut rng, judge);
             for t_max in DISTANCES {
                 flies(medium, set, t_max, MORE * subject.options.samples, judge);
             }
@@ -54,17 +56,27 @@ fn samples(source: &dyn Sampler, index: u32) -> Samples<'_> {
     Samples::new(source, SampleAt { stream: 9, index, dimension: 0 })
 }
 
-/// Mean transmittance per lane, and its standard error, over estimates that may be random.
-fn transmittance(medium: &dyn Medium, ray: &Ray, first: u32) -> [Moments; 4] {
+/// Mean per lane, and its standard error, over estimates that may be random.
+fn means(first: u32, estimate: impl Fn(&mut Samples<'_>) -> Spectrum) -> [Moments; 4] {
     let numbers = Numbers { samples: 1, seed: 0 };
     let mut lanes = [Moments::default(); 4];
     for i in 0..64 {
-        let t = medium.transmittance(ray, &mut samples(&numbers, first + i));
-        for (lane, t) in lanes.iter_mut().zip(t.to_array()) {
-            lane.push(f64::from(t));
+        let found = estimate(&mut samples(&numbers, first + i));
+        for (lane, found) in lanes.iter_mut().zip(found.to_array()) {
+            lane.push(f64::from(found));
         }
     }
     lanes
+}
+
+/// Mean transmittance per lane.
+fn transmittance(medium: &dyn Medium, ray: &Ray, first: u32) -> [Moments; 4] {
+    means(first, |samples| medium.transmittance(ray, samples))
+}
+
+/// Mean glow per lane.
+fn glow(medium: &dyn Medium, ray: &Ray, first: u32) -> [Moments; 4] {
+    means(first, |samples| medium.glow(ray, samples))
 }
 
 /// Legal at any distance and any coefficients: a lane that nothing is in times no end, thick fog.
@@ -77,6 +89,9 @@ fn stays_finite(medium: &dyn Medium, set: &Set, judge: &mut Judge) {
             let left = medium.transmittance(&ray, &mut samples(&numbers, i)).to_array();
             let legal = left.iter().all(|left| (0.0..=1.0 + ROUNDING).contains(&f64::from(*left)));
             judge.holds("finite and in [0, 1]", legal, || format!("{}: {left:?}", at()));
+            let glow = medium.glow(&ray, &mut samples(&numbers, i));
+            let legal = glow.is_finite() && glow.0.min_element() >= 0.0;
+            judge.holds("glows are finite", legal, || format!("{}: {glow:?}", at()));
             let flight = medium.sample(&ray, &mut samples(&numbers, i));
             let weight = flight.weight.is_finite() && flight.weight.0.min_element() >= 0.0;
             let inside = flight.t.get().is_none_or(|t| t >= 0.0 && t <= t_max && t.is_finite());
@@ -117,6 +132,33 @@ fn passes(medium: &dyn Medium, set: &Set, rng: &mut Rng, judge: &mut Judge) {
     }
 }
 
+/// The light of a medium: none at no distance; of two pieces that of the first, and that of the second as
+/// far as the first lets it through.
+fn glows(medium: &dyn Medium, set: &Set, rng: &mut Rng, judge: &mut Judge) {
+    let at = |t: f64| format!("{}: to {t} m", set.label);
+    let none = glow(medium, &ray(DVec3::ZERO, 0.0), 0);
+    let most = none.iter().map(|lane| lane.mean.abs()).fold(0.0, f64::max);
+    judge.within("nothing glows at once", most, 0.0, || at(0.0));
+    for _ in 0..8 {
+        let (a, b) = (rng.f64() * 3.0, rng.f64() * 3.0);
+        let whole_ray = ray(DVec3::ZERO, a + b);
+        let whole = glow(medium, &whole_ray, 0);
+        let first = glow(medium, &ray(DVec3::ZERO, a), 64);
+        let second = glow(medium, &ray(whole_ray.at(a), b), 128);
+        let through = transmittance(medium, &ray(DVec3::ZERO, a), 192);
+        for lane in 0..4 {
+            let (w, f, s, t) = (whole[lane], first[lane], second[lane], through[lane]);
+            let sigma = w.standard_error()
+                + f.standard_error()
+                + s.standard_error()
+                + s.mean * t.standard_error();
+            let off = w.mean - (f.mean + t.mean * s.mean);
+            let z = deviation(off, ROUNDING * w.mean, sigma);
+            judge.statistic("glows add up", z, || at(a + b));
+        }
+    }
+}
+
 /// The extinction where the class has the field's names for grey coefficients, m⁻¹.
 fn extinction(set: &Set) -> Option<f64> {
     let params = set.object.class().params;
@@ -128,7 +170,7 @@ fn extinction(set: &Set) -> Option<f64> {
         // What is not given is as by default, or absent.
         sum += if given(name) { set.number(name)? } else { set.number(name).unwrap_or(0.0) };
     }
-    has("sigma_t").then_some(sum)
+    (has("sigma_t") || has("sigma_a")).then_some(sum)
 }
 
 /// The share of extinction that scatters, where it is stated and grey.

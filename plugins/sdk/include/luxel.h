@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0xa675972eafef51e2ull
+#define LUXEL_LAYOUT_HASH 0xd7ff3362fdb2a0c4ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -292,6 +292,7 @@ typedef struct {
     uint32_t steps;
     luxel_spectrum le;
     float le_pdf;
+    luxel_spectrum glow;
     luxel_maybe_direct direct;
     luxel_maybe_scatter scatter;
     luxel_maybe_sight sight;
@@ -302,6 +303,7 @@ typedef struct {
 typedef struct {
     luxel_arrival at;
     luxel_spectrum l;
+    luxel_spectrum glow;
     luxel_sample_at numbers;
 } luxel_lane;
 
@@ -666,6 +668,8 @@ typedef struct {
     luxel_status (*sample)(const void *at, const luxel_ray *ray, luxel_samples_ref *samples, luxel_free_flight *out);
     /* The fraction of light that passes. */
     luxel_status (*transmittance)(const void *at, const luxel_ray *ray, luxel_samples_ref *samples, luxel_spectrum *out);
+    /* The light that it sends itself towards where the ray begins. */
+    luxel_status (*glow)(const void *at, const luxel_ray *ray, luxel_samples_ref *samples, luxel_spectrum *out);
     /* How it scatters: a handle that is valid as long as the parameters. */
     luxel_status (*phase)(const void *at, luxel_phase_ref *out);
 } luxel_medium_table;
@@ -949,7 +953,7 @@ LUXEL_CHECK(sizeof(luxel_maybe_scatter) == 64, "size of luxel_maybe_scatter");
 LUXEL_CHECK(_Alignof(luxel_maybe_scatter) == 16, "alignment of luxel_maybe_scatter");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, given) == 0, "luxel_maybe_scatter.given");
 LUXEL_CHECK(offsetof(luxel_maybe_scatter, value) == 16, "luxel_maybe_scatter.value");
-LUXEL_CHECK(sizeof(luxel_arrival) == 496, "size of luxel_arrival");
+LUXEL_CHECK(sizeof(luxel_arrival) == 512, "size of luxel_arrival");
 LUXEL_CHECK(_Alignof(luxel_arrival) == 16, "alignment of luxel_arrival");
 LUXEL_CHECK(offsetof(luxel_arrival, kind) == 0, "luxel_arrival.kind");
 LUXEL_CHECK(offsetof(luxel_arrival, p) == 8, "luxel_arrival.p");
@@ -964,15 +968,17 @@ LUXEL_CHECK(offsetof(luxel_arrival, material) == 168, "luxel_arrival.material");
 LUXEL_CHECK(offsetof(luxel_arrival, steps) == 172, "luxel_arrival.steps");
 LUXEL_CHECK(offsetof(luxel_arrival, le) == 176, "luxel_arrival.le");
 LUXEL_CHECK(offsetof(luxel_arrival, le_pdf) == 192, "luxel_arrival.le_pdf");
-LUXEL_CHECK(offsetof(luxel_arrival, direct) == 208, "luxel_arrival.direct");
-LUXEL_CHECK(offsetof(luxel_arrival, scatter) == 320, "luxel_arrival.scatter");
-LUXEL_CHECK(offsetof(luxel_arrival, sight) == 384, "luxel_arrival.sight");
-LUXEL_CHECK(offsetof(luxel_arrival, curvature) == 480, "luxel_arrival.curvature");
-LUXEL_CHECK(sizeof(luxel_lane) == 528, "size of luxel_lane");
+LUXEL_CHECK(offsetof(luxel_arrival, glow) == 208, "luxel_arrival.glow");
+LUXEL_CHECK(offsetof(luxel_arrival, direct) == 224, "luxel_arrival.direct");
+LUXEL_CHECK(offsetof(luxel_arrival, scatter) == 336, "luxel_arrival.scatter");
+LUXEL_CHECK(offsetof(luxel_arrival, sight) == 400, "luxel_arrival.sight");
+LUXEL_CHECK(offsetof(luxel_arrival, curvature) == 496, "luxel_arrival.curvature");
+LUXEL_CHECK(sizeof(luxel_lane) == 560, "size of luxel_lane");
 LUXEL_CHECK(_Alignof(luxel_lane) == 16, "alignment of luxel_lane");
 LUXEL_CHECK(offsetof(luxel_lane, at) == 0, "luxel_lane.at");
-LUXEL_CHECK(offsetof(luxel_lane, l) == 496, "luxel_lane.l");
-LUXEL_CHECK(offsetof(luxel_lane, numbers) == 512, "luxel_lane.numbers");
+LUXEL_CHECK(offsetof(luxel_lane, l) == 512, "luxel_lane.l");
+LUXEL_CHECK(offsetof(luxel_lane, glow) == 528, "luxel_lane.glow");
+LUXEL_CHECK(offsetof(luxel_lane, numbers) == 544, "luxel_lane.numbers");
 LUXEL_CHECK(sizeof(luxel_onward) == 64, "size of luxel_onward");
 LUXEL_CHECK(_Alignof(luxel_onward) == 8, "alignment of luxel_onward");
 LUXEL_CHECK(offsetof(luxel_onward, ray) == 0, "luxel_onward.ray");
@@ -1031,11 +1037,11 @@ LUXEL_CHECK(sizeof(luxel_requests) == 64, "size of luxel_requests");
 LUXEL_CHECK(_Alignof(luxel_requests) == 8, "alignment of luxel_requests");
 LUXEL_CHECK(offsetof(luxel_requests, rays) == 0, "luxel_requests.rays");
 LUXEL_CHECK(offsetof(luxel_requests, shadows) == 32, "luxel_requests.shadows");
-LUXEL_CHECK(sizeof(luxel_ask) == 24, "size of luxel_ask");
+LUXEL_CHECK(sizeof(luxel_ask) == 32, "size of luxel_ask");
 LUXEL_CHECK(_Alignof(luxel_ask) == 8, "alignment of luxel_ask");
 LUXEL_CHECK(offsetof(luxel_ask, lane) == 0, "luxel_ask.lane");
 LUXEL_CHECK(offsetof(luxel_ask, l) == 8, "luxel_ask.l");
-LUXEL_CHECK(offsetof(luxel_ask, requests) == 16, "luxel_ask.requests");
+LUXEL_CHECK(offsetof(luxel_ask, requests) == 24, "luxel_ask.requests");
 LUXEL_CHECK(sizeof(luxel_material_ref) == 16, "size of luxel_material_ref");
 LUXEL_CHECK(_Alignof(luxel_material_ref) == 8, "alignment of luxel_material_ref");
 LUXEL_CHECK(offsetof(luxel_material_ref, table) == 0, "luxel_material_ref.table");

@@ -8,7 +8,7 @@ pub(super) const LIST: &str = include_str!("truths.txt");
 /// Measured reflectances of a colour chart.
 pub(super) const CHART: &str = include_str!("colour/colorchecker_n_ohta.csv");
 
-const SCENES: [(&str, &str); 41] = [
+const SCENES: [(&str, &str); 42] = [
     ("absorbing.scene", include_str!("absorbing.scene")),
     ("ball_disk.scene", include_str!("ball_disk.scene")),
     ("beer.scene", include_str!("beer.scene")),
@@ -21,6 +21,7 @@ const SCENES: [(&str, &str); 41] = [
     ("flux_disc.scene", include_str!("flux_disc.scene")),
     ("furnace_closed.scene", include_str!("furnace_closed.scene")),
     ("furnace_convex.scene", include_str!("furnace_convex.scene")),
+    ("glowing.scene", include_str!("glowing.scene")),
     ("half_disk.scene", include_str!("half_disk.scene")),
     ("half_moon.scene", include_str!("half_moon.scene")),
     ("halfspace.scene", include_str!("halfspace.scene")),

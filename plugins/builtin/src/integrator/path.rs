@@ -64,6 +64,7 @@ impl PathIntegrator for PathTracer {
             let found_by_chance = if self.light_sampling { mis(path.pdf, at.le_pdf) } else { 1.0 };
             ask.add(path.beta * at.le * found_by_chance);
         }
+        ask.add_glow(path.beta, at);
         if path.depth >= self.max_depth {
             return;
         }

@@ -65,7 +65,7 @@ fn wall(albedo: f32, sampled: bool) -> Arrival {
 /// Radiance of path number `index`, where every ray arrives at `at` and no shadow ray is blocked.
 fn radiance(integrator: &dyn Integrator, at: &Arrival, index: u32) -> f64 {
     let numbers = SampleAt { stream: 0, index, dimension: 0 };
-    let mut lanes = [Lane { at: *at, l: Spectrum::ZERO, numbers }];
+    let mut lanes = [Lane { at: *at, l: Spectrum::ZERO, glow: Spectrum::ZERO, numbers }];
     let mut states = integrator.lanes(1);
     let round = Round { host: &Open, sampler: &Numbers };
     let (mut requests, mut shadows) = (Requests::default(), Spectrum::ZERO);

@@ -36,6 +36,13 @@ pub(crate) struct Homogeneous<'a> {
 /// The least random number above zero: what zero counts as, so that logarithms stay finite.
 const LEAST: f64 = 0.5 / 4294967296.0;
 
+impl<'a> Homogeneous<'a> {
+    /// What absorbs and scatters so much, m⁻¹.
+    pub(super) fn of(sigma_a: Spectrum, sigma_s: Spectrum, phase: PhaseRef<'a>) -> Self {
+        Self { sigma_t: Spectrum::ZERO, albedo: Spectrum::ONE, sigma_a, sigma_s, phase }
+    }
+}
+
 impl Homogeneous<'_> {
     fn extinction(&self) -> Spectrum {
         self.sigma_t + self.sigma_a + self.sigma_s

@@ -73,7 +73,7 @@ struct Lossless<'a> {
 
 impl<'a> Lossless<'a> {
     fn fog(&self) -> Fog<'a> {
-        Fog { density: self.density, albedo: self.albedo, phase: self.phase }
+        Fog { density: self.density, albedo: self.albedo, glow: 0.0, phase: self.phase }
     }
 }
 
@@ -91,10 +91,51 @@ impl Medium for Lossless<'_> {
     }
 }
 
+/// Fog that shines as if nothing of it were in the way.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct ShinesThroughItself<'a> {
+    /// Absorption.
+    #[param(default = 1.0, unit = "1/m", min = 0, max = 1e6)]
+    density: f32,
+    /// Where scattered light goes.
+    #[param(optional)]
+    phase: PhaseRef<'a>,
+}
+
+impl<'a> ShinesThroughItself<'a> {
+    fn fog(&self) -> Fog<'a> {
+        Fog { density: self.density, albedo: Spectrum::ZERO, glow: 1.0, phase: self.phase }
+    }
+}
+
+impl Medium for ShinesThroughItself<'_> {
+    fn sample(&self, ray: &Ray, samples: &mut Samples<'_>) -> FreeFlight {
+        self.fog().sample(ray, samples)
+    }
+
+    fn transmittance(&self, ray: &Ray, samples: &mut Samples<'_>) -> Spectrum {
+        self.fog().transmittance(ray, samples)
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "rounds; radiance is f32")]
+    fn glow(&self, ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
+        Spectrum::splat((f64::from(self.density) * ray.t_max.min(1e6)) as f32)
+    }
+
+    fn phase(&self) -> PhaseRef<'_> {
+        self.phase
+    }
+}
+
 /// All of them.
 pub(super) const MUTANTS: &[Mutant] = &[
     Mutant { class: Class::texture::<NanBelowZero>("nan_below_zero"), fault: "NaN for v < 0" },
     Mutant { class: Class::texture::<Overshoot>("overshoot"), fault: "5 % above its colours" },
     Mutant { class: Class::phase::<Brighter>("brighter"), fault: "integrates to 1.03" },
     Mutant { class: Class::medium::<Lossless<'static>>("lossless"), fault: "albedo is left out" },
+    Mutant {
+        class: Class::medium::<ShinesThroughItself<'static>>("shines_through_itself"),
+        fault: "nothing of it hides its glow",
+    },
 ];

@@ -15,6 +15,7 @@ enum Fault {
     StartsOnSurface,
     ShortPaths,
     NoLampsInFog,
+    FogIsDark,
     Fireproof,
 }
 
@@ -33,6 +34,9 @@ impl Path {
             le = le.min(Spectrum::splat(2.0));
         }
         ask.add(le);
+        if fault != Fault::FogIsDark {
+            ask.add_glow(self.beta, at);
+        }
         let in_fog = at.kind == ArrivalKind::Medium && fault == Fault::NoLampsInFog;
         if let Some(direct) = at.direct.as_ref().filter(|_| !in_fog) {
             let mut ray = direct.ray;
@@ -97,6 +101,7 @@ tracer!(EndlessShadows);
 tracer!(StartsOnSurface);
 tracer!(ShortPaths);
 tracer!(NoLampsInFog);
+tracer!(FogIsDark);
 tracer!(Fireproof);
 
 /// The same without a fault.
@@ -117,6 +122,10 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         class: Class::integrator::<NoLampsInFog>("no_lamps_in_fog"),
         fault: "looks for no light in media",
+    },
+    Mutant {
+        class: Class::integrator::<FogIsDark>("fog_is_dark"),
+        fault: "leaves out what media send",
     },
     Mutant {
         class: Class::integrator::<Fireproof>("fireproof"),

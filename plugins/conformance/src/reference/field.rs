@@ -56,6 +56,9 @@ pub(crate) struct Fog<'a> {
     /// Share of extinction that is scattering.
     #[param(default = 0.5, role = reflectance)]
     pub(crate) albedo: Spectrum,
+    /// Radiance that it would have if it were endless and did not scatter.
+    #[param(default = 0.0, unit = "W/m^2/sr", min = 0, max = 1e6)]
+    pub(crate) glow: f32,
     /// Where scattered light goes.
     #[param(optional)]
     pub(crate) phase: PhaseRef<'a>,
@@ -82,6 +85,11 @@ impl Medium for Fog<'_> {
 
     fn transmittance(&self, ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
         self.left(ray.t_max)
+    }
+
+    fn glow(&self, ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
+        let absorbed = Spectrum::ONE - self.albedo;
+        absorbed * self.glow * (Spectrum::ONE - self.left(ray.t_max))
     }
 
     fn phase(&self) -> PhaseRef<'_> {

@@ -130,6 +130,7 @@ impl PathIntegrator for Walk {
         ask: &mut Ask<'_>,
     ) {
         ask.add(way.beta * at.le * mis(way.pdf, at.le_pdf));
+        ask.add_glow(way.beta, at);
         if let Some(direct) = at.direct.as_ref() {
             ask.add_if_visible(direct.ray, way.beta * direct.f_le * mis(direct.pdf, direct.f_pdf));
         }

@@ -48,6 +48,7 @@ impl PathIntegrator for Bounces {
     ) {
         if *depth >= self.first {
             ask.add(*beta * at.le * mis(*pdf, at.le_pdf));
+            ask.add_glow(*beta, at);
         }
         if *depth >= self.last {
             return;

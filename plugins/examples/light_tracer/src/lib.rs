@@ -12,7 +12,8 @@ use luxel_sdk::kind::{
 ///
 /// As many paths leave the lamps in a pass as the picture has pixels. The camera must be a point:
 /// `perspective`. What it sees in a mirror or through smooth glass stays black, as no light that
-/// goes there is found; lamps and the sky are seen directly, point lights are not.
+/// goes there is found; lamps and the sky are seen directly, point lights are not. Media that glow
+/// are dark to it.
 ///
 /// ```scene
 /// integrator light_tracer { max_depth = 64 }

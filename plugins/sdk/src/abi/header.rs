@@ -102,11 +102,11 @@ describe! { PLAIN, PLAIN_C {
     Maybe<Scatter> => "luxel_maybe_scatter" { given, value }
     /// A point that a path arrived at. Kinds: 0 escaped, 1 surface, 2 medium.
     Arrival => "luxel_arrival" {
-        kind, p, p_err, ng, ns, lift, uv, t, wo, material, steps, le, le_pdf, direct, scatter, sight,
-        curvature,
+        kind, p, p_err, ng, ns, lift, uv, t, wo, material, steps, le, le_pdf, glow, direct, scatter,
+        sight, curvature,
     }
     /// A path in flight.
-    Lane => "luxel_lane" { at, l, numbers }
+    Lane => "luxel_lane" { at, l, glow, numbers }
     /// A ray with the path that goes on along it.
     Onward => "luxel_onward" { ray, lane }
     /// A shadow ray with the light that it decides about, for the path's own pixel (UINT32_MAX) or

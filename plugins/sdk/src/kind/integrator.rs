@@ -133,6 +133,8 @@ pub struct Arrival {
     pub le: Spectrum,
     /// Density with which light sampling at the last point would have found it, sr⁻¹.
     pub le_pdf: f32,
+    /// Radiance of the media that the last ray flew through, dimmed by them: see [`Ask::add_glow`].
+    pub glow: Spectrum,
     /// A light sample, if one may contribute.
     pub direct: Maybe<Direct>,
     /// A scattering sample, if the path can go on.
@@ -245,18 +247,33 @@ impl Requests {
 pub struct Ask<'a> {
     pub(crate) lane: u32,
     pub(crate) l: &'a mut Spectrum,
+    pub(crate) glow: &'a mut Spectrum,
     pub(crate) requests: &'a mut Requests,
 }
 
 impl<'a> Ask<'a> {
-    /// For a path: its lane, its light so far, and where its requests go.
-    pub fn new(lane: u32, l: &'a mut Spectrum, requests: &'a mut Requests) -> Self {
-        Self { lane, l, requests }
+    /// For a path: its lane, its light so far, what of that media sent, and where its requests go.
+    pub fn new(
+        lane: u32,
+        (l, glow): (&'a mut Spectrum, &'a mut Spectrum),
+        requests: &'a mut Requests,
+    ) -> Self {
+        Self { lane, l, glow, requests }
     }
 
     /// Light for the pixel.
     pub fn add(&mut self, l: Spectrum) {
         *self.l += l;
+    }
+
+    /// What the media sent that the path has just flown through, for the pixel: no lamp's, so that no
+    /// group of lights counts it. `beta` is what radiance from here on counts for.
+    pub fn add_glow(&mut self, beta: Spectrum, at: &Arrival) {
+        if !at.glow.is_black() {
+            let l = beta * at.glow;
+            *self.glow += l;
+            self.add(l);
+        }
     }
 
     /// Goes on: `arrive` is called where this ray ends. A path that does not ask is done. Once per
@@ -335,6 +352,8 @@ pub struct Lane {
     pub at: Arrival,
     /// Light gathered so far.
     pub l: Spectrum,
+    /// What of that media sent.
+    pub glow: Spectrum,
     /// The next of its random numbers.
     pub numbers: SampleAt,
 }
@@ -390,7 +409,8 @@ struct States<'a, I: PathIntegrator> {
 
 impl<I: PathIntegrator> Erased for States<'_, I> {
     fn start(&mut self, lane: u32, job: &Job, l: &mut Spectrum, requests: &mut Requests) {
-        let mut ask = Ask { lane, l, requests };
+        let mut no_glow = Spectrum::ZERO;
+        let mut ask = Ask::new(lane, (l, &mut no_glow), requests);
         self.states[lane as usize] = self.integrator.start(job, &mut ask);
     }
 
@@ -415,7 +435,7 @@ pub(crate) fn arrive_n<I: PathIntegrator>(
 ) {
     for &lane in arrived {
         let path = &mut lanes[lane as usize];
-        let mut ask = Ask { lane, l: &mut path.l, requests };
+        let mut ask = Ask::new(lane, (&mut path.l, &mut path.glow), requests);
         let state = &mut states[lane as usize];
         let mut samples = Samples::new(round.sampler, path.numbers);
         integrator.arrive(state, &path.at, &mut samples, round.host, &mut ask);

@@ -35,6 +35,16 @@ pub trait Medium: Send + Sync {
     /// The fraction of light that passes along the ray up to `ray.t_max`.
     fn transmittance(&self, ray: &Ray, samples: &mut Samples<'_>) -> Spectrum;
 
+    /// The light that it sends itself towards where the ray begins, from up to `ray.t_max` and dimmed by
+    /// what of it lies between: ∫ transmittance · emission dt, radiance. Asked for each flight, wherever
+    /// that ends.
+    ///
+    /// # Source
+    /// PBR4 §11.1.2, §14.1.
+    fn glow(&self, _ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
+        Spectrum::ZERO
+    }
+
     /// How it scatters.
     fn phase(&self) -> PhaseRef<'_>;
 }

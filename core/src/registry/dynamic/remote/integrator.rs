@@ -111,10 +111,10 @@ impl Erased for RemoteStates<'_> {
         }
         self.conduct.before_start(lane, requests);
         let state = self.states().wrapping_add(lane as usize * self.stride);
+        let mut no_glow = Spectrum::ZERO;
+        let mut ask = Ask::new(lane, (l, &mut no_glow), requests);
         // SAFETY: the struct behind the head is of the class that the table belongs to.
-        let answer = unsafe {
-            self.table.start(self.head.at(), state, job, &mut Ask::new(lane, l, requests))
-        };
+        let answer = unsafe { self.table.start(self.head.at(), state, job, &mut ask) };
         self.head.found(answer);
         let told = self.conduct.after_start(lane, requests);
         self.judge(told);

@@ -102,6 +102,23 @@ impl Medium for RemoteMedium {
         Spectrum::ONE
     }
 
+    fn glow(&self, ray: &Ray, samples: &mut Samples<'_>) -> Spectrum {
+        if self.0.is_poisoned() {
+            return Spectrum::ZERO;
+        }
+        let table = self.table();
+        let found = self.lend(samples, |samples| {
+            // SAFETY: as above.
+            unsafe { table.glow(self.0.at(), ray, samples) }
+        });
+        let glow = found.unwrap_or(Spectrum::ZERO);
+        if is_light(glow) {
+            return glow;
+        }
+        self.0.wrong("gave a glow that is negative or not finite");
+        Spectrum::ZERO
+    }
+
     fn phase(&self) -> PhaseRef<'_> {
         PhaseRef::new(Scattering::of(&self.0))
     }

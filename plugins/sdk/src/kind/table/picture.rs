@@ -147,7 +147,8 @@ impl Erased for PathStates<'_> {
     fn start(&mut self, lane: u32, job: &Job, l: &mut Spectrum, requests: &mut Requests) {
         let state = self.states().wrapping_add(lane as usize * self.stride);
         let paths = self.paths;
-        let mut ask = Ask::new(lane, l, requests);
+        let mut no_glow = Spectrum::ZERO;
+        let mut ask = Ask::new(lane, (l, &mut no_glow), requests);
         // SAFETY: the handle lends what the table was made for; the state is one of its own.
         paths.found(unsafe { paths.table.start(paths.at, state, job, &mut ask) });
     }

@@ -43,6 +43,7 @@ fn curve_of(color: &Color, outside: Outside) -> Result<Option<Curve>, String> {
         Color::Blackbody(t) => blackbody(*t).ok_or("a temperature is finite and at least 1 K")?,
         Color::Illuminant(name) => illuminant(name).ok_or_else(|| unknown("illuminant", name))?,
         Color::Metal(name) => metal(name).ok_or_else(|| unknown("metal", name))?.eta,
+        Color::Waves(length) => Curve::from_fn(|nm| waves(*length, nm)),
         Color::Glass(name) => glass(name).ok_or_else(|| unknown("glass", name))?.curve(),
         Color::Scaled(inner, factor) => match curve_of(inner, outside)? {
             Some(curve) => curve.map(|_, x| x * factor),
@@ -74,6 +75,10 @@ pub(super) fn lanes(color: &Color, role: Role, mode: ColorMode) -> Result<Lanes,
             ColorMode::Spectral => Lanes::Rgb(rgb, Uplift::Reflectance),
         });
     }
+    if let (ColorMode::Rgb, Color::Waves(length)) = (mode, color) {
+        let rgb = DOMINANT.map(|nm| waves(*length, nm));
+        return Ok(Lanes::Constant(Spectrum::from_rgb(rgb32(rgb))));
+    }
     let curve = curve_of(color, Outside::Constant)?.expect("only RGB has no curve");
     Ok(match (mode, role) {
         (ColorMode::Spectral, _) => Lanes::Curve(curve),
@@ -81,6 +86,15 @@ pub(super) fn lanes(color: &Color, role: Role, mode: ColorMode) -> Result<Lanes,
         (ColorMode::Rgb, Role::ComplexIor) => Lanes::Constant(Spectrum::from_rgb(ior_rgb(&curve))),
         (ColorMode::Rgb, _) => Lanes::Constant(Spectrum::from_rgb(reflectance_rgb(&curve))),
     })
+}
+
+/// Wavelengths that look like the primaries of sRGB beside its white, nm: what a channel stands for where
+/// something depends on the wavelength itself.
+const DOMINANT: [f64; 3] = [611.4, 549.1, 464.2];
+
+/// How many waves of a wavelength fit into a length in metres.
+fn waves(length: f64, nm: f64) -> f64 {
+    length * 1e9 / nm
 }
 
 /// Extinction of a metal, where the colour names one.
@@ -173,4 +187,25 @@ pub(super) fn dimension(unit: &str) -> Dimension {
         return Dimension::NONE;
     }
     Unit::parse(unit).expect("units in schemas exist").dimension
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_length_is_told_in_waves_of_each_wavelength() {
+        let film = Color::Waves(300e-9);
+        let Ok(Lanes::Curve(curve)) = lanes(&film, Role::Waves, ColorMode::Spectral) else {
+            panic!("it depends on the wavelength")
+        };
+        // Between two entries of the curve, 1 nm apart, it errs by a quarter of (1 nm / λ)².
+        for nm in [360.0, 449.5, 550.0, 829.5] {
+            assert!((f64::from(curve.at(nm)) / (300.0 / f64::from(nm)) - 1.0).abs() < 3e-6, "{nm}");
+        }
+        let Ok(Lanes::Constant(rgb)) = lanes(&film, Role::Waves, ColorMode::Rgb) else {
+            panic!("a channel has one wavelength")
+        };
+        assert!(rgb.lane(0) < rgb.lane(1) && rgb.lane(1) < rgb.lane(2));
+    }
 }

@@ -19,6 +19,8 @@ pub enum Color {
     Metal(Arc<str>),
     /// A measured glass by name: eta.
     Glass(Arc<str>),
+    /// How often waves of each wavelength fit into a length in metres.
+    Waves(f64),
     /// Another one, times a number.
     Scaled(Arc<Color>, f64),
 }
@@ -30,6 +32,7 @@ impl Color {
         match self {
             Self::Rgb(c) => Self::Rgb(c.map(|x| x * factor)),
             Self::Constant(x) => Self::Constant(x * factor),
+            Self::Waves(length) => Self::Waves(length * factor),
             Self::Scaled(inner, before) => Self::Scaled(inner.clone(), before * factor),
             other => Self::Scaled(Arc::new(other.clone()), factor),
         }

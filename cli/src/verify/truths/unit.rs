@@ -7,7 +7,9 @@ use luxel_sdk::color::{
     Observer, RgbSpace, Spectrum, blackbody, glass, illuminant, srgb_decode, srgb_encode, xyz_to_xy,
 };
 use luxel_sdk::kind::{Phase, Raster};
-use luxel_sdk::scattering::{conductor_reflectance, dielectric_reflectance, refract};
+use luxel_sdk::scattering::{
+    conductor_reflectance, dielectric_reflectance, film_reflectance, refract,
+};
 
 use super::bench::Bench;
 use super::{estimators, photometry, rays, walks};
@@ -23,6 +25,7 @@ pub(super) fn rows(bench: &Bench<'_>) -> Result<Vec<Row>, Failure> {
         dielectric(),
         hemisphere(),
         conductor(),
+        film(),
         bk7(),
         whites(),
         planckian(),
@@ -124,6 +127,25 @@ fn conductor() -> Vec<Row> {
         let measured = f64::from(conductor_reflectance(direction(degrees).z, eta, k).lane(0));
         let case = format!("{degrees} deg");
         Row::exact("fresnel.conductor", &case, (expected, measured), (1e-5, 0.0))
+    };
+    cases.map(row).to_vec()
+}
+
+/// A soap film of 300 nm.
+fn film() -> Vec<Row> {
+    let cases = [
+        (0.0, 450.0, 0.03444598990126065),
+        (0.0, 550.0, 0.07543020299675554),
+        (0.0, 650.0, 0.03469435042891508),
+        (45.0, 450.0, 0.09991114286125788),
+        (45.0, 550.0, 0.048264907697633704),
+        (45.0, 650.0, 0.0018909823807549797),
+    ];
+    let row = |(degrees, nm, expected): (f64, f32, f64)| {
+        let (eta, waves) = (Spectrum::splat(1.33), Spectrum::splat(300.0 / nm));
+        let measured = f64::from(film_reflectance(direction(degrees).z, eta, waves).lane(0));
+        let case = format!("{degrees} deg, {nm} nm");
+        Row::exact("thinfilm.airy", &case, (expected, measured), (1e-4, 0.0))
     };
     cases.map(row).to_vec()
 }

@@ -17,13 +17,14 @@ const MOST_PARAMS: usize = 1 << 10;
 pub(super) const MOST_STRUCT: usize = 256;
 
 /// The roles, by their number in the boundary.
-const ROLES: [Role; 6] = [
+const ROLES: [Role; 7] = [
     Role::Plain,
     Role::Reflectance,
     Role::Illuminant,
     Role::Ior,
     Role::ComplexIor,
     Role::Coefficient,
+    Role::Waves,
 ];
 
 /// Values in a row; an error where there are too many or where they stand nowhere.

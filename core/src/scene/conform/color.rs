@@ -33,7 +33,11 @@ pub(super) fn conform(
     let color = if scaled { color.scaled(scale) } else { color };
     let role = if param.ty == Type::Emission { Role::Illuminant } else { param.role };
     suits(param, role, &color)?;
-    Ok(Value::Color(check_range(param, color)?, dimension))
+    let color = match check_range(param, color)? {
+        Color::Constant(length) if role == Role::Waves => Color::Waves(length),
+        color => color,
+    };
+    Ok(Value::Color(color, dimension))
 }
 
 /// Whether a colour of this form makes sense for the role.
@@ -43,9 +47,10 @@ fn suits(param: &Param, role: Role, color: &Color) -> Result<(), Misfit> {
         color => color,
     };
     let (what, legal) = match form {
-        Color::Rgb(_) => ("a colour", !matches!(role, Role::Ior)),
+        Color::Rgb(_) => ("a colour", !matches!(role, Role::Ior | Role::Waves)),
+        Color::Curve(_) => ("a spectrum", role != Role::Waves),
         // Factors are folded, so that none stands in another.
-        Color::Constant(_) | Color::Curve(_) | Color::Scaled(..) => return Ok(()),
+        Color::Constant(_) | Color::Waves(_) | Color::Scaled(..) => return Ok(()),
         Color::Blackbody(_) => ("a black body's spectrum", emits(role)),
         Color::Illuminant(_) => ("an illuminant", emits(role)),
         Color::Metal(_) => ("a metal", role == Role::ComplexIor && param.ty == Type::ComplexIor),
@@ -60,6 +65,7 @@ fn suits(param: &Param, role: Role, color: &Color) -> Result<(), Misfit> {
         Role::Ior => "an index of refraction: a number, a spectrum or `glass(…)`",
         Role::ComplexIor => "an index of refraction: a number, a spectrum or `metal(…)`",
         Role::Coefficient => "a coefficient: a number, colour or spectrum per length",
+        Role::Waves => "a length",
         Role::Plain => "a colour or spectrum",
     };
     let message = format!("`{}` wants {wanted}, not {what}", param.name);

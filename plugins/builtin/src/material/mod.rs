@@ -5,6 +5,7 @@ mod conductor;
 mod dielectric;
 mod mix;
 mod metallic_roughness;
+mod thin_film;
 
 #[cfg(test)]
 mod check;
@@ -18,4 +19,5 @@ pub(crate) const CLASSES: &[Class] = &[
     Class::material::<dielectric::Dielectric>("dielectric"),
     Class::material::<mix::Mix<'static>>("mix"),
     Class::material::<metallic_roughness::MetallicRoughness>("metallic_roughness"),
+    Class::material::<thin_film::ThinFilm>("thin_film"),
 ];

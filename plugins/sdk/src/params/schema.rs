@@ -60,6 +60,8 @@ pub enum Role {
     ComplexIor,
     /// A medium's coefficient, m⁻¹, not negative.
     Coefficient,
+    /// A length in metres, told as how many waves of each wavelength it is long.
+    Waves,
 }
 
 /// A parameter's value when the scene gives none.

@@ -3,7 +3,7 @@
 mod fresnel;
 mod ggx;
 
-pub use fresnel::{conductor_reflectance, dielectric_reflectance, refract};
+pub use fresnel::{conductor_reflectance, dielectric_reflectance, film_reflectance, refract};
 pub use ggx::{Ggx, SMOOTH_ALPHA};
 
 use glam::Vec3;

@@ -10,11 +10,13 @@ Luxel's is that of the whole process, with reading the scene and writing the pic
 of the render call alone, after a first one that compiles its kernels. relMSE is the mean of
 (I - R)^2 / (R^2 + 0.01) less the reference's own variance, and efficiency 1 / (relMSE * seconds),
 with seconds of processor time over the number of cores. The last column is Luxel's time over the
-other's, round by round: median, least and greatest. Needs mitsuba and numpy; for the llvm
-variants on AVX-512, LLVM 19 or later (DRJIT_LIBLLVM_PATH).
+other's, round by round: median, least and greatest. `--json FILE` writes the same figures for
+programs, by scene. Needs mitsuba and numpy; for the llvm variants on AVX-512, LLVM 19 or later
+(DRJIT_LIBLLVM_PATH).
 """
 
 import argparse
+import json
 import os
 import pathlib
 import resource
@@ -104,8 +106,10 @@ def reference(args, scene, res):
 
 
 def accuracy(args):
+    """By scene: [difference, standard error] of each channel by region; `blocks` of the grey box."""
     import mitsuba as mi
 
+    found = {}
     mi.set_variant("scalar_rgb")
     for scene in args.scenes:
         stack = reference(args, scene, args.res).astype(float)
@@ -116,28 +120,37 @@ def accuracy(args):
             runs = [run @ XYZ_OF_RGB.T for run in runs]
         factor = scenes.LUXEL_PER_MITSUBA.get(scene, 1.0)
         print(f"\n{scene}: {args.res}^2, Luxel {args.spp} spp x {args.seeds} seeds, channel ratios Luxel / ({factor:.6g} x Mitsuba)")
+        regions = {}
         for name, mask in scenes.regions(scene, args.res).items():
+            if not mask.any():
+                continue
             ours = np.array([run[mask].mean(0) for run in runs])
             theirs = np.array([group[mask].mean(0) for group in stack]) * factor
             ratio = ours.mean(0) / theirs.mean(0)
             noise = lambda x: x.std(0, ddof=1) / len(x) ** 0.5 / x.mean(0)
             error = np.hypot(noise(ours), noise(theirs))
-            cells = "  ".join(f"{r - 1:+.5f} +- {e:.5f}" for r, e in zip(ratio, error))
+            regions[name] = list(zip(ratio - 1, error))
+            cells = "  ".join(f"{r:+.5f} +- {e:.5f}" for r, e in regions[name])
             print(f"  {name:8} {mask.sum():6} px  {cells}")
+        found[scene] = {"regions": regions}
         if scene == "cornell_grey":
-            blocks(args, stack)
+            found[scene]["blocks"] = blocks(args, stack)
+    return found
 
 
 def blocks(args, stack):
-    """Relative MSE over 32 x 32 blocks, which falls as 1/N until a difference shows."""
+    """Relative MSE over 32 x 32 blocks, which falls as 1/N until a difference shows; Mitsuba's own."""
     half = lambda x: x.reshape(args.res // 32, 32, args.res // 32, 32, 3).mean((1, 3))
     theirs = np.array([half(group) for group in stack])
     mean = theirs.mean(0)
     own = (theirs.var(0, ddof=1) / len(theirs) / mean**2).mean()
     print(f"  relMSE of 32 x 32 blocks (Mitsuba's own noise: {own:.2e})")
+    of_spp = []
     for spp in (4, 16, 64, 256):
         found = [((half(luxel(args, "cornell_grey", args.res, spp, 90 + i)[0]) / mean - 1) ** 2).mean() for i in range(3)]
-        print(f"    {spp:5} spp  {statistics.mean(found):.3e}")
+        of_spp.append((spp, statistics.mean(found)))
+        print(f"    {spp:5} spp  {of_spp[-1][1]:.3e}")
+    return {"own": own, "of_spp": of_spp}
 
 
 def relative_mse(picture, stack):
@@ -148,8 +161,10 @@ def relative_mse(picture, stack):
 
 
 def speed(args):
+    """By scene and program: medians, rate and efficiency, and Luxel's time over the program's."""
     import mitsuba as mi
 
+    tables = {}
     for scene in args.scenes:
         if scene in ("cornell_grey", "cornell_spectral"):
             continue
@@ -168,20 +183,32 @@ def speed(args):
                 mi.set_variant(variant)
                 picture, seconds = mitsuba(ready[variant], args.spp, 500 + i)
                 rows[variant].append((seconds, relative_mse(picture, stack)))
-        paths = args.res**2 * args.spp
+        tables[scene] = table = {name: figures(args, rows["luxel"], found) for name, found in rows.items()}
         print(f"\n{scene}: {args.res}^2, {args.spp} spp, {args.rounds} rounds interleaved, {CORES} cores")
         print(f"  {'':14}{'cpu s':>8}{'spread':>9}{'Mpaths/cpu-s':>14}{'relMSE':>11}{'spread':>9}{'efficiency':>12}{'Luxel is':>10}{'its time, of each round':>26}")
-        table = {}
-        for name, found in rows.items():
-            times, errors = zip(*found)
-            t, e = statistics.median(times), statistics.median(errors)
-            spread = lambda x: (max(x) - min(x)) / statistics.median(x)
-            table[name] = 1 / (e * t / CORES)
-            cells = f"{t:8.2f}{spread(times):9.1%}{paths / t / 1e6:14.3f}{e:11.5f}{spread(errors):9.1%}{table[name]:12.2f}"
-            of_time = [ours[0] / theirs for ours, theirs in zip(rows["luxel"], times)]
-            least, middle, most = min(of_time), statistics.median(of_time), max(of_time)
+        for name, it in table.items():
+            cells = f"{it['seconds']:8.2f}{it['spread']:9.1%}{it['rate']:14.3f}{it['relmse']:11.5f}{it['relmse_spread']:9.1%}{it['efficiency']:12.2f}"
+            least, middle, most = it["of_time"]
             paired = f"{middle:12.3f} ({least:.3f}..{most:.3f})"
-            print(f"  {name:14}{cells}{table['luxel'] / table[name]:9.2f}x{paired}")
+            print(f"  {name:14}{cells}{table['luxel']['efficiency'] / it['efficiency']:9.2f}x{paired}")
+    return tables
+
+
+def figures(args, ours, found):
+    """Of the seconds and relMSE of a program's rounds, beside those of Luxel's."""
+    times, errors = zip(*found)
+    seconds, relmse = statistics.median(times), statistics.median(errors)
+    spread = lambda x: (max(x) - min(x)) / statistics.median(x)
+    of_time = [luxel[0] / theirs for luxel, theirs in zip(ours, times)]
+    return {
+        "seconds": seconds,
+        "spread": spread(times),
+        "rate": args.res**2 * args.spp / seconds / 1e6,
+        "relmse": relmse,
+        "relmse_spread": spread(errors),
+        "efficiency": 1 / (relmse * seconds / CORES),
+        "of_time": [min(of_time), statistics.median(of_time), max(of_time)],
+    }
 
 
 def main():
@@ -196,11 +223,14 @@ def main():
     parser.add_argument("--scenes", nargs="+", default=list(scenes.SCENES), choices=scenes.SCENES)
     parser.add_argument("--variants", nargs="+", default=["scalar_rgb", "llvm_ad_rgb"])
     parser.add_argument("--keep", default=str(pathlib.Path(tempfile.gettempdir()) / "luxel-bench"))
+    parser.add_argument("--json", type=pathlib.Path)
     args = parser.parse_args()
     args.spp = args.spp or (256 if args.what == "accuracy" else 16)
     args.res = args.res or (256 if args.what == "accuracy" else 512)
     sys.stdout.reconfigure(line_buffering=True)
-    (accuracy if args.what == "accuracy" else speed)(args)
+    found = (accuracy if args.what == "accuracy" else speed)(args)
+    if args.json:
+        args.json.write_text(json.dumps(found, indent=1) + "\n")
 
 
 if __name__ == "__main__":

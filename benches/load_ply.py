@@ -1,8 +1,11 @@
-"""How long Mitsuba 3 takes to read a PLY and build its tree, and the peak memory.
+"""How long Mitsuba 3 takes to read a PLY and build its tree, and the peak memory, Python's included.
 
     python load_ply.py mesh.ply
+
+prints JSON: variant -> [seconds, MiB].
 """
 
+import json
 import resource
 import statistics
 import subprocess
@@ -26,13 +29,15 @@ def once(variant, path):
 def main():
     if len(sys.argv) == 3:
         return once(sys.argv[2], sys.argv[1])
+    found = {}
     for variant in ("scalar_rgb", "llvm_ad_rgb"):
         runs = [
             subprocess.run([sys.executable, __file__, sys.argv[1], variant], capture_output=True, text=True, check=True)
             for _ in range(3)
         ]
         times, peaks = zip(*(map(float, run.stdout.split()) for run in runs))
-        print(f"  {variant:11} {statistics.median(times):.2f} s, peak {max(peaks):.0f} MB (with Python)")
+        found[variant] = statistics.median(times), max(peaks)
+    print(json.dumps(found))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ use luxel_sdk::color::{Palette, Wavelengths};
 use luxel_sdk::kind::Material;
 use luxel_sdk::sampling::{Rng, uniform_hemisphere};
 
-use crate::process::{Luxel, here};
+use crate::process::{self, Luxel, here};
 use crate::scene::{linked, stage_of};
 use crate::series::Series;
 
@@ -20,21 +20,45 @@ use crate::series::Series;
 /// # Errors
 /// The library is missing or does not open; the program failed.
 pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
-    let library = beside(&luxel.program);
-    if !library.exists() {
-        return Err(
-            "no library of the built-ins: run `cargo rustc --release -p luxel-builtin-library --crate-type cdylib`"
-                .to_owned(),
+    println!(
+        "pictures, 256 x 256, {SPP} spp, processor seconds of the whole process, {ROUNDS} rounds \
+              in turn (goal 1.10)"
+    );
+    println!("  {:18} {:>9} {:>9} {:>7} {:>9}", "scene", "linked", "loaded", "ratio", "spread");
+    for (name, both) in PICTURES.into_iter().zip(pictures(luxel)?) {
+        println!(
+            "  {name:18} {:7.3} s {:7.3} s {:7.3} {:7.1} %",
+            both.linked.min(),
+            both.loaded.min(),
+            both.ratio(),
+            both.spread()
         );
     }
-    pictures(luxel, &library)?;
-    events(&library)
+    events(&library(luxel)?)
 }
 
 /// The library of the built-ins in the folder of the program.
-fn beside(program: &Path) -> PathBuf {
-    let name = format!("{}builtins{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    program.with_file_name(name)
+fn library(luxel: &Luxel) -> Result<PathBuf, String> {
+    let words = ["rustc", "--release", "-p", "luxel-builtin-library", "--crate-type", "cdylib"];
+    process::library(luxel, "builtins", &words)
+}
+
+/// What the same took with the built-ins linked and loaded.
+pub(crate) struct Both {
+    linked: Series,
+    loaded: Series,
+}
+
+impl Both {
+    /// What it takes loaded, in parts of what it takes linked.
+    pub(crate) fn ratio(&self) -> f64 {
+        self.loaded.min() / self.linked.min()
+    }
+
+    /// The greater of the two, in per cent.
+    fn spread(&self) -> f64 {
+        self.linked.spread().max(self.loaded.spread())
+    }
 }
 
 /// Rounds of pictures, each of both ways.
@@ -42,30 +66,26 @@ const ROUNDS: usize = 7;
 /// Samples per pixel: enough that opening the library does not count.
 const SPP: u32 = 64;
 
-fn pictures(luxel: &Luxel, library: &Path) -> Result<(), String> {
-    println!(
-        "pictures, 256 x 256, {SPP} spp, processor seconds of the whole process, {ROUNDS} rounds \
-              in turn (goal 1.10)"
-    );
-    println!("  {:18} {:>9} {:>9} {:>7} {:>9}", "scene", "linked", "loaded", "ratio", "spread");
-    for name in ["cornell_rgb", "glass_metal"] {
+/// Scenes whose pictures are made.
+const PICTURES: [&str; 2] = ["cornell_rgb", "glass_metal"];
+
+/// Processor seconds of the Cornell box, and of the spheres of glass and metal.
+///
+/// # Errors
+/// As `run`.
+pub(crate) fn pictures(luxel: &Luxel) -> Result<Vec<Both>, String> {
+    let flag = format!("--builtins={}", library(luxel)?.display());
+    let mut found = vec![];
+    for name in PICTURES {
         let scene = here().join(format!("scenes/{name}.scene"));
-        let flag = format!("--builtins={}", library.display());
         let (mut linked, mut loaded) = (vec![], vec![]);
         for _ in 0..ROUNDS {
             linked.push(luxel.render_with(&scene, 256, SPP, &[])?.cpu);
             loaded.push(luxel.render_with(&scene, 256, SPP, &[&flag])?.cpu);
         }
-        let (linked, loaded) = (Series::from(linked), Series::from(loaded));
-        println!(
-            "  {name:18} {:7.3} s {:7.3} s {:7.3} {:7.1} %",
-            linked.min(),
-            loaded.min(),
-            loaded.min() / linked.min(),
-            linked.spread().max(loaded.spread())
-        );
+        found.push(Both { linked: Series::from(linked), loaded: Series::from(loaded) });
     }
-    Ok(())
+    Ok(found)
 }
 
 /// Materials of the table, in a scene each: name, colour mode, text.
@@ -120,12 +140,13 @@ fn events(library: &Path) -> Result<(), String> {
             }
         }
         let [linked, loaded] = found.map(Series::from);
+        let both = Both { linked, loaded };
         println!(
             "  {name:26} {:6.1} ns {:6.1} ns {:7.3} {:7.1} %",
-            linked.min(),
-            loaded.min(),
-            loaded.min() / linked.min(),
-            linked.spread().max(loaded.spread())
+            both.linked.min(),
+            both.loaded.min(),
+            both.ratio(),
+            both.spread()
         );
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::ply::grid;
-use crate::process::{Luxel, has_mitsuba, here, write};
+use crate::process::{Luxel, Took, has_mitsuba, here, write};
 use crate::series::Series;
 
 const TRIVIAL: &str = "scene 1
@@ -14,11 +14,30 @@ shape sphere { radius = 1 m, material = material diffuse {} }
 light area { shape = shape sphere { center = (0, 5, 0) m, radius = 1 m }, radiance = 1 W/m^2/sr }
 ";
 
-/// Prints the time from the start of the program to its end with a trivial picture on disk.
+/// What starting the program takes.
+pub(crate) struct Start {
+    /// From its start to its end with a trivial picture on disk, milliseconds.
+    pub(crate) ms: Series,
+    /// Memory at most, megabytes.
+    mb: Series,
+}
+
+/// Prints what starting the program takes.
 ///
 /// # Errors
 /// The program failed; its words.
 pub(crate) fn cold(luxel: &Luxel) -> Result<(), String> {
+    let Start { ms, mb } = start(luxel)?;
+    println!("start to a trivial 64 x 64 picture, whole process, 20 runs (goal 20 ms)");
+    println!("  min {:.1} ms, median {:.1} ms, peak {:.0} MB", ms.min(), ms.median(), mb.median());
+    Ok(())
+}
+
+/// Starts the program many times.
+///
+/// # Errors
+/// The program failed; its words.
+pub(crate) fn start(luxel: &Luxel) -> Result<Start, String> {
     let scene = write("trivial.scene", TRIVIAL.as_bytes())?;
     luxel.render(&scene, 64, 1)?;
     let (mut ms, mut mb) = (vec![], vec![]);
@@ -27,10 +46,7 @@ pub(crate) fn cold(luxel: &Luxel) -> Result<(), String> {
         ms.push(took.seconds * 1e3);
         mb.extend(took.megabytes);
     }
-    let (ms, mb) = (Series::from(ms), Series::from(mb));
-    println!("start to a trivial 64 x 64 picture, whole process, 20 runs (goal 20 ms)");
-    println!("  min {:.1} ms, median {:.1} ms, peak {:.0} MB", ms.min(), ms.median(), mb.median());
-    Ok(())
+    Ok(Start { ms: Series::from(ms), mb: Series::from(mb) })
 }
 
 /// Prints the peak memory of the Cornell box and of a million placements.
@@ -38,11 +54,17 @@ pub(crate) fn cold(luxel: &Luxel) -> Result<(), String> {
 /// # Errors
 /// The program failed; its words.
 pub(crate) fn memory(luxel: &Luxel) -> Result<(), String> {
-    let scene = here().join("scenes/cornell_rgb.scene");
-    let took = luxel.render(&scene, 512, 1)?;
-    let peak = took.megabytes.unwrap_or(f64::NAN);
+    let peak = cornell_box(luxel)?.megabytes.unwrap_or(f64::NAN);
     println!("Cornell box 512 x 512, picture written: peak {peak:.1} MB (goal 45)");
     placements(luxel)
+}
+
+/// What the Cornell box takes, 512 × 512, one sample per pixel.
+///
+/// # Errors
+/// The program failed; its words.
+pub(crate) fn cornell_box(luxel: &Luxel) -> Result<Took, String> {
+    luxel.render(&here().join("scenes/cornell_rgb.scene"), 512, 1)
 }
 
 /// As many placements as a scene may have, of one mesh.
@@ -78,15 +100,18 @@ pub(crate) fn cornell(luxel: &Luxel, python: Option<&Path>) -> Result<(), String
         println!("Mitsuba is not to be had (--python PATH of one that imports it): Luxel alone");
         return alone(luxel);
     };
-    for what in ["accuracy", "speed"] {
-        let mut command = Command::new(python);
-        command.arg(here().join("compare.py")).arg(what).arg("--luxel").arg(&luxel.program);
-        let status = command.status().map_err(|e| format!("{}: {e}", python.display()))?;
-        if !status.success() {
-            return Err(format!("compare.py {what} failed"));
-        }
-    }
-    Ok(())
+    ["accuracy", "speed"].into_iter().try_for_each(|what| compare(luxel, python, &[what]))
+}
+
+/// Runs `compare.py` with these words.
+///
+/// # Errors
+/// It does not start or fails.
+pub(crate) fn compare(luxel: &Luxel, python: &Path, words: &[&str]) -> Result<(), String> {
+    let mut command = Command::new(python);
+    command.arg(here().join("compare.py")).args(words).arg("--luxel").arg(&luxel.program);
+    let status = command.status().map_err(|e| format!("{}: {e}", python.display()))?;
+    if status.success() { Ok(()) } else { Err(format!("compare.py {} failed", words.join(" "))) }
 }
 
 fn alone(luxel: &Luxel) -> Result<(), String> {

@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
+use serde_json::Value;
+
 use crate::process::{Luxel, has_mitsuba, here, write};
 use crate::series::Series;
 
@@ -16,11 +18,35 @@ film rgb { resolution = (8, 8) }
 light area { shape = shape sphere { center = (0, 5, 0) m, radius = 1 m }, radiance = 1 W/m^2/sr }
 ";
 
-/// Prints time and peak memory above those of the same scene without the mesh.
+/// What a program took to read the mesh and to build its tree.
+pub(crate) struct Loaded {
+    pub(crate) program: &'static str,
+    /// Medians: of the time above that without the mesh, and of the most memory, MiB.
+    pub(crate) seconds: f64,
+    pub(crate) memory: f64,
+    /// Of the time, in per cent, where it is told.
+    spread: Option<f64>,
+}
+
+/// Prints time and peak memory.
+///
+/// # Errors
+/// As `measure`.
+pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
+    let n = 2 * (SIDE - 1) * (SIDE - 1);
+    println!("binary PLY of {n} triangles, read and built (goals: 1 s, 300 MB)");
+    for Loaded { program, seconds, memory, spread } in measure(luxel, python)? {
+        let spread = spread.map_or(String::new(), |spread| format!(" (spread {spread:.0} %)"));
+        println!("  {program:11} {seconds:.2} s{spread}, peak {memory:.0} MB");
+    }
+    Ok(())
+}
+
+/// Luxel, and Mitsuba's two variants where this Python has it.
 ///
 /// # Errors
 /// A program failed; its words.
-pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
+pub(crate) fn measure(luxel: &Luxel, python: Option<&Path>) -> Result<Vec<Loaded>, String> {
     let ply = write("waves.ply", &grid(SIDE))?;
     let empty = write("empty.scene", SCENE.as_bytes())?;
     let mesh = "shape mesh \"waves\" { file = \"waves.ply\", unit = 1 m }\n";
@@ -32,18 +58,26 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
         memory.extend(with.megabytes);
     }
     let (seconds, memory) = (Series::from(seconds), Series::from(memory));
-    let n = 2 * (SIDE - 1) * (SIDE - 1);
-    println!("binary PLY of {n} triangles, read and built (goals: 1 s, 300 MB)");
-    println!(
-        "  luxel       {:.2} s (spread {:.0} %), peak {:.0} MB",
-        seconds.median(),
-        seconds.spread(),
-        memory.median()
-    );
-    let Some(python) = python.filter(|python| has_mitsuba(python)) else { return Ok(()) };
+    let spread = Some(seconds.spread());
+    let (seconds, memory) = (seconds.median(), memory.median());
+    let mut found = vec![Loaded { program: "luxel", seconds, memory, spread }];
+    if let Some(python) = python.filter(|python| has_mitsuba(python)) {
+        found.extend(peers(python, &ply)?);
+    }
+    Ok(found)
+}
+
+/// Mitsuba's two variants, with Python's own memory.
+fn peers(python: &Path, ply: &Path) -> Result<[Loaded; 2], String> {
     let script = here().join("load_ply.py");
-    let status = Command::new(python).arg(script).arg(ply).status();
-    status.map(drop).map_err(|e| format!("{}: {e}", python.display()))
+    let output = Command::new(python).arg(script).arg(ply).output();
+    let output = output.map_err(|error| format!("{}: {error}", python.display()))?;
+    let told: Value = serde_json::from_slice(&output.stdout)
+        .map_err(|_| format!("load_ply.py: {}", String::from_utf8_lossy(&output.stderr)))?;
+    Ok(["scalar_rgb", "llvm_ad_rgb"].map(|program| {
+        let number = |i: usize| told[program][i].as_f64().unwrap_or(f64::NAN);
+        Loaded { program, seconds: number(0), memory: number(1), spread: None }
+    }))
 }
 
 /// A wavy square of 2 m as binary PLY, with so many vertices along each side.

@@ -124,6 +124,23 @@ pub(crate) fn has_mitsuba(python: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
+/// A library in the folder of the program; where none is there, `cargo` makes it with these words.
+///
+/// # Errors
+/// It is not built, or elsewhere.
+pub(crate) fn library(luxel: &Luxel, name: &str, words: &[&str]) -> Result<PathBuf, String> {
+    let name = format!("{}{name}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let library = luxel.program.with_file_name(name);
+    if !library.exists() {
+        let mut cargo = Command::new("cargo");
+        let built = cargo.args(words).current_dir(here()).status();
+        built.map_err(|error| format!("cargo: {error}"))?;
+    }
+    let told = || format!("no {}: `cargo {}` makes it", library.display(), words.join(" "));
+    library.exists().then_some(()).ok_or_else(told)?;
+    Ok(library)
+}
+
 /// A folder for what the benches make.
 ///
 /// # Errors

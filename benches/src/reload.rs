@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::process::{Luxel, read, scratch, write};
+use crate::process::{self, Luxel, read, scratch, write};
 use crate::series::Series;
 
 const RELOADS: usize = 200;
@@ -19,29 +19,22 @@ light constant { radiance = 1 W/m^2/sr }
 shape sphere { radius = 1 m, material = material velvet {} }
 ";
 
-/// Prints the time from renaming a library into place to the new picture, and what the process grew
-/// by, over many reloads.
+/// What many reloads took.
+pub(crate) struct Reloads {
+    /// From renaming the library into place to the new picture, milliseconds.
+    pub(crate) ms: Series,
+    /// What the process grew by with each, KiB, where the system tells it.
+    grown: Option<f64>,
+    /// The size of the library's file, KiB.
+    file: f64,
+}
+
+/// Prints what many reloads took.
 ///
 /// # Errors
-/// The example library is missing, or the watch never answers.
+/// As `measure`.
 pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
-    let name = format!("{}velvet{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let original = luxel.program.with_file_name(&name);
-    let bytes = read(&original)
-        .map_err(|_| "no example library: run `cargo build --release -p velvet`".to_owned())?;
-    let scene = write("reload.scene", SCENE.as_bytes())?;
-    let folder = scratch()?.join("reload");
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-    let (library, picture) = (folder.join(&name), scratch()?.join("reload-out"));
-    let _ = std::fs::remove_file(picture.with_extension("exr"));
-    put(&library, &bytes)?;
-    let mut watch = watch(luxel, &scene, &folder, &picture)?;
-    let measured = reloads(&mut watch, &bytes, &library, &picture.with_extension("exr"));
-    let _ = watch.kill();
-    let _ = watch.wait();
-    let (ms, grown) = measured?;
-    let ms = Series::from(ms);
+    let Reloads { ms, grown, file } = measure(luxel)?;
     println!(
         "reload in `luxel watch`: from the library's rename to the written 64 x 64 picture, \
               {RELOADS} reloads (goal 50 ms)"
@@ -49,12 +42,34 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
     println!("  min {:.1} ms, median {:.1} ms, spread {:.0} %", ms.min(), ms.median(), ms.spread());
     match grown {
         Some(kib) => println!(
-            "  resident memory grew by {kib:.0} KiB a reload; the library's file has {:.0} KiB",
-            bytes.len() as f64 / 1024.0
+            "  resident memory grew by {kib:.0} KiB a reload; the library's file has {file:.0} KiB"
         ),
         None => println!("  resident memory is not told on this system"),
     }
     Ok(())
+}
+
+/// Puts a library in the place of a watched one, many times.
+///
+/// # Errors
+/// The example library is missing, or the watch never answers.
+pub(crate) fn measure(luxel: &Luxel) -> Result<Reloads, String> {
+    let original = process::library(luxel, "velvet", &["build", "--release", "-p", "velvet"])?;
+    let bytes = read(&original)?;
+    let name = original.file_name().expect("a library is a file");
+    let scene = write("reload.scene", SCENE.as_bytes())?;
+    let folder = scratch()?.join("reload");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
+    let (library, picture) = (folder.join(name), scratch()?.join("reload-out"));
+    let _ = std::fs::remove_file(picture.with_extension("exr"));
+    put(&library, &bytes)?;
+    let mut watch = watch(luxel, &scene, &folder, &picture)?;
+    let measured = reloads(&mut watch, &bytes, &library, &picture.with_extension("exr"));
+    let _ = watch.kill();
+    let _ = watch.wait();
+    let (ms, grown) = measured?;
+    Ok(Reloads { ms: Series::from(ms), grown, file: bytes.len() as f64 / 1024.0 })
 }
 
 fn watch(luxel: &Luxel, scene: &Path, folder: &Path, out: &Path) -> Result<Child, String> {

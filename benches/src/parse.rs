@@ -20,13 +20,19 @@ const OBJECT: &str = "shape sphere \"ball\" { center = (1.2, 0.5, -3.25) m, radi
      material = material diffuse { reflectance = rgb.linear_srgb(0.5, 0.25, 0.125) } }\n";
 
 /// What large scenes are made of.
-struct Case {
+pub(crate) struct Case {
     name: &'static str,
     text: fn() -> String,
 }
 
+pub(crate) const OBJECTS: Case = Case { name: "objects", text: || OBJECT.repeat(20_000) };
+pub(crate) const TABLE: Case = Case {
+    name: "table #[ ]",
+    text: || format!("let t = #[{}1]", "0.2531 -12.25 ".repeat(700_000)),
+};
+
 const CASES: [Case; 6] = [
-    Case { name: "objects", text: || OBJECT.repeat(20_000) },
+    OBJECTS,
     Case {
         name: "placements",
         text: || lines(60_000, |i| format!("place ball {{ transform = move(({i}, 0, 0) m) }}\n")),
@@ -48,11 +54,14 @@ const CASES: [Case; 6] = [
         },
     },
     Case { name: "list [ ]", text: || format!("let t = [{}1]", "0.25, ".repeat(1_600_000)) },
-    Case {
-        name: "table #[ ]",
-        text: || format!("let t = #[{}1]", "0.2531 -12.25 ".repeat(700_000)),
-    },
+    TABLE,
 ];
+
+impl Case {
+    fn scene(&self) -> String {
+        format!("scene 1\n{}\n", (self.text)())
+    }
+}
 
 /// A way to read a text.
 struct Reader {
@@ -80,10 +89,10 @@ pub(crate) fn run() -> Result<(), String> {
         "parse, MB/s of scene text per second of processor time (goals: objects 10, lists and tables 150)"
     );
     for case in &CASES {
-        let text = format!("scene 1\n{}\n", (case.text)());
+        let text = case.scene();
         print!("  {:12} {:5.1} MB", case.name, text.len() as f64 / 1e6);
         for reader in &READERS {
-            let series = Series::of(5, || rate(&text, reader));
+            let series = rates(&text, reader);
             let held = peak(case, reader)? / text.len() as f64;
             print!(
                 "   {} {:6.1} MB/s (spread {:2.0} %), {held:4.1} bytes a byte",
@@ -96,6 +105,16 @@ pub(crate) fn run() -> Result<(), String> {
     }
     mistake();
     Ok(())
+}
+
+/// Megabytes per second of processor time of the reader that is in use.
+pub(crate) fn ours(case: &Case) -> Series {
+    rates(&case.scene(), &READERS[0])
+}
+
+/// Of five measurements.
+fn rates(text: &str, reader: &Reader) -> Series {
+    Series::of(5, || rate(text, reader))
 }
 
 /// How long a mistake inside many objects takes, on the wall.

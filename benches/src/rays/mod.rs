@@ -13,6 +13,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use glam::Vec3;
+use libloading::Library;
 use luxel_core::accel::{MeshBvh, Precision, Processor};
 use obvhs::bvh2::Bvh2;
 use obvhs::cwbvh::CwBvh;
@@ -31,6 +32,13 @@ const ROUNDS: usize = 9;
 
 /// Rays side by side: camera rays of a picture this wide.
 const WIDTH: u16 = 384;
+
+/// A mesh through which rays are traced, and from where it is seen.
+struct Field {
+    name: &'static str,
+    soup: Soup,
+    eye: Vec3,
+}
 
 struct Runner<'a> {
     name: String,
@@ -94,21 +102,71 @@ pub(crate) fn run(given: Option<&Path>, python: Option<&Path>) {
     if library.is_none() {
         println!("Embree 4 was not found: give --embree LIBRARY, or --python with `embreex`");
     }
-    let one = knot(1341, 335);
-    for (name, soup, eye) in [
-        ("small", &knot(375, 94), Vec3::new(0.3, 0.6, 2.2)),
-        ("large", &one, Vec3::new(0.3, 0.6, 2.2)),
-        ("huge", &eight(&one), Vec3::new(0.9, 2.4, 4.4)),
+    let near = Vec3::new(0.3, 0.6, 2.2);
+    for field in [
+        Field { name: "small", soup: knot(375, 94), eye: near },
+        Field { name: "large", soup: knot(1341, 335), eye: near },
+        huge(),
     ] {
-        mesh(name, soup, eye, library.as_ref());
+        mesh(&field, library.as_ref());
     }
 }
 
-fn mesh(name: &str, soup: &Soup, eye: Vec3, library: Option<&libloading::Library>) {
-    let n = soup.indices.len();
-    println!("\n{name}: {n} triangles");
-    let tree = || MeshBvh::build(&soup.points, &soup.indices).expect("the knot is finite");
-    let single = |processor, precision| Single { tree: tree(), processor, precision };
+fn huge() -> Field {
+    Field { name: "huge", soup: eight(&knot(1341, 335)), eye: Vec3::new(0.9, 2.4, 4.4) }
+}
+
+/// Rays per second in turns through the largest mesh, in parts of those of Embree's default: the least
+/// and the greatest of all sets. `None` without Embree.
+pub(crate) fn in_turns(given: Option<&Path>, python: Option<&Path>) -> Option<[f64; 2]> {
+    let library = embree::load(&embree_path(given, python))?;
+    let field = huge();
+    let runners = [turns(&field.soup), with_embree(&library, &field.soup, EMBREE)?];
+    let best = race(&runners, &field.sets(&runners[0]));
+    let ratios = best[0].iter().zip(&best[1]).map(|(ours, theirs)| theirs.min() / ours.min());
+    let ratios = Series::from(ratios.collect());
+    Some([ratios.min(), ratios.percentile(100)])
+}
+
+impl Field {
+    /// The rays, of which the runner says where they land.
+    fn sets(&self, runner: &Runner<'_>) -> Vec<Set> {
+        let land = |shots: &[Shot]| {
+            let mut found = vec![Landing::NOWHERE; shots.len()];
+            runner.tracer.nearest(shots, &mut found);
+            found
+        };
+        sets(&self.soup, WIDTH, self.eye, &land)
+    }
+}
+
+fn tree(soup: &Soup) -> MeshBvh {
+    MeshBvh::build(&soup.points, &soup.indices).expect("the knot is finite")
+}
+
+fn turns<'a>(soup: &Soup) -> Runner<'a> {
+    let processor = Processor::widest();
+    built("luxel, in turns".into(), || Turns { tree: tree(soup), processor })
+}
+
+/// What Embree is asked for where others are compared with it.
+const EMBREE: (&str, Flags) = ("Embree", Flags::Default);
+
+/// `None` if this library does not take the mesh.
+fn with_embree<'a>(
+    library: &'a Library,
+    soup: &'a Soup,
+    (name, flags): (&str, Flags),
+) -> Option<Runner<'a>> {
+    let scene = || Embree::new(library, soup, flags);
+    scene()?;
+    Some(built(name.into(), || scene().expect("it was built before")))
+}
+
+fn mesh(field: &Field, library: Option<&Library>) {
+    let soup = &field.soup;
+    println!("\n{}: {} triangles", field.name, soup.indices.len());
+    let single = |processor, precision| Single { tree: tree(soup), processor, precision };
     let mut runners = vec![];
     for processor in Processor::all().into_iter().rev() {
         let name = format!("luxel, {}", processor.name());
@@ -118,35 +176,29 @@ fn mesh(name: &str, soup: &Soup, eye: Vec3, library: Option<&libloading::Library
         let name = format!("luxel, {}", precision.word());
         runners.push(built(name, || single(Processor::widest(), precision)));
     }
-    let processor = Processor::widest();
-    runners.push(built("luxel, in turns".into(), || Turns { tree: tree(), processor }));
+    runners.push(turns(soup));
     runners.push(built("obvhs Bvh2".into(), || Obvhs::<Bvh2>::new(soup)));
     runners.push(built("obvhs CwBvh".into(), || Obvhs::<CwBvh>::new(soup)));
-    for (name, flags) in [("Embree", Flags::Default), ("Embree, robust", Flags::Robust)] {
-        let scene = |library| Embree::new(library, soup, flags);
-        if let Some(library) = library
-            && scene(library).is_some()
-        {
-            runners.push(built(name.into(), || scene(library).expect("it was built before")));
-        }
+    for kind in [EMBREE, ("Embree, robust", Flags::Robust)] {
+        runners.extend(library.and_then(|library| with_embree(library, soup, kind)));
     }
-    let land = |shots: &[Shot]| {
-        let mut found = vec![Landing::NOWHERE; shots.len()];
-        runners[0].tracer.nearest(shots, &mut found);
-        found
-    };
-    let sets = sets(soup, WIDTH, eye, &land);
+    let sets = field.sets(&runners[0]);
     let best = race(&runners, &sets);
-    let reference = runners.iter().position(|runner| runner.name == "Embree");
+    print(&runners, &sets, &best, soup.indices.len());
+}
+
+/// A table of what was measured through a mesh of `n` triangles.
+fn print(runners: &[Runner<'_>], sets: &[Set], best: &[Vec<Series>], n: usize) {
+    let reference = runners.iter().position(|runner| runner.name == EMBREE.0);
     print!("{:<22}{:>9}{:>8}", "", "build s", "B/tri");
-    for set in &sets {
+    for set in sets {
         print!("{:>24}", format!("{} {}k", set.name, set.shots.len() / 1000));
     }
     println!();
     for (i, runner) in runners.iter().enumerate() {
         let per = runner.tracer.bytes() as f64 / n as f64;
         print!("{:<22}{:>9.3}{per:>8.1}", runner.name, runner.build.min());
-        for (series, set) in best[i].iter().zip(&sets) {
+        for (series, set) in best[i].iter().zip(sets) {
             let rate = |series: &Series| set.shots.len() as f64 / series.min() / 1e6;
             let at = sets.iter().position(|other| other.name == set.name);
             let ratio = reference.zip(at).map(|(r, at)| rate(series) / rate(&best[r][at]));

@@ -1,39 +1,65 @@
-//! Every table of docs/accuracy.md that Luxel alone can measure, written where it stands.
+//! Every table of docs/accuracy.md, and those of other documents that compare Luxel with another
+//! renderer or sum it up, written where they stand.
 
 mod asked;
 mod denoised;
+mod peers;
+mod readme;
 mod studied;
 
 use std::path::Path;
 use std::process::Command;
 
-use crate::process::{Luxel, here};
-use crate::{document, errors};
+use crate::process::{Luxel, has_mitsuba, here};
+use crate::{Plan, document, errors};
+use peers::Found;
+use studied::STUDIES;
 
-/// The document, below the project's folder.
-const DOCUMENT: &str = "docs/accuracy.md";
+/// The documents, below the project's folder.
+const ACCURACY: &str = "docs/accuracy.md";
+const PERFORMANCE: &str = "docs/performance.md";
 
-/// Writes them all; what takes long last.
+/// The names of their parts.
+const ASKED: &str = "asked";
+const DENOISED: &str = "denoised";
+const REGIONS: &str = "peers";
+const BLOCKS: &str = "peers-blocks";
+const SPEED: &str = "peers-speed";
+
+/// Writes them all; what takes long last. Without another renderer its tables stay as they are.
 ///
 /// # Errors
 /// What a command or the disk says.
-pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
+pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     let root = here().parent().ok_or("the benches lie in the project's folder")?;
-    let place = root.join(DOCUMENT);
-    let write = |name: &str, body: &str| {
-        println!("{name}\n{body}");
-        document::write(&place, name, body)
-    };
+    let (luxel, place) = (&plan.luxel, root.join(ACCURACY));
     told(Command::new(&luxel.program).args(["verify", "--write"]).arg(&place))?;
     errors::run(Some(&place))?;
     let tests = ["test", "-p", "luxel-tests", "intervals_hold_the_truth"];
     told(Command::new("cargo").args(tests).env("LUXEL_WRITE_DOCS", "1").current_dir(root))?;
-    write("asked", &asked::table(root)?)?;
-    write("denoised", &denoised::table(luxel, root)?)?;
-    for study in studied::STUDIES {
-        write(&study.name(), &study.run(luxel, root)?)?;
+    write(&place, ASKED, &asked::table(root)?)?;
+    write(&place, DENOISED, &denoised::table(luxel, root)?)?;
+    readme::alone(plan, root)?;
+    for study in STUDIES {
+        write(&place, &study.name(), &study.run(luxel, root)?)?;
     }
-    Ok(())
+    let Some(python) = plan.python.as_deref().filter(|python| has_mitsuba(python)) else {
+        println!(
+            "Mitsuba is not to be had (--python PATH of one that imports it): what is measured beside it stays as it is"
+        );
+        return Ok(());
+    };
+    let found = Found::measure(luxel, python)?;
+    write(&place, REGIONS, &found.regions()?)?;
+    write(&place, BLOCKS, &found.blocks()?)?;
+    write(&root.join(PERFORMANCE), SPEED, &found.speed()?)?;
+    readme::beside(&found, root)
+}
+
+/// Prints a part of a document, and puts it there.
+fn write(place: &Path, name: &str, body: &str) -> Result<(), String> {
+    println!("{name}\n{body}");
+    document::write(place, name, body)
 }
 
 /// What a command prints, if it ends well.
@@ -55,4 +81,26 @@ fn luxel(luxel: &Luxel, folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::new(&luxel.program);
     command.args(words).current_dir(folder);
     command
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generated::part;
+    use crate::process::read;
+    use studied::Study;
+
+    #[test]
+    fn every_part_that_is_written_stands_in_its_document() {
+        let text =
+            |document| String::from_utf8(read(&here().join("..").join(document)).unwrap()).unwrap();
+        let accuracy = text(ACCURACY);
+        for name in ["truths", "errors", "coverage", ASKED, DENOISED, REGIONS, BLOCKS] {
+            part(&accuracy, name).unwrap();
+        }
+        for name in STUDIES.iter().map(Study::name) {
+            part(&accuracy, &name).unwrap();
+        }
+        part(&text(PERFORMANCE), SPEED).unwrap();
+    }
 }

@@ -19,6 +19,7 @@ const LAMP: &str = "light point \"lamp\" { position = (0, 3, 1) m, spectrum = rg
 const BY_WAVELENGTH: &str = "light point \"lamp\" { position = (0, 3, 1) m, spectrum = blackbody(3000 K), intensity = 8 W/sr }\n";
 const FOG: &str = "shape sphere \"fog\" { center = (-0.6, 0.6, 0) m, radius = 50 cm, interior = medium homogeneous \"mist\" { sigma_t = 2 / (1 m), albedo = 0.8 } }\n";
 const WATER: &str = "shape box \"water\" { center = (0.6, 0.4, 0) m, size = (1.4, 0.8, 1.4) m, material = material dielectric { ior = 1.33 } }\n";
+const BUBBLE: &str = "shape sphere { center = (0, 1, 0) m, radius = 30 cm, material = material thin_film \"soap\" { thickness = 300 nm } }\n";
 const MOVING: &str = "shape box \"hand\" { size = (0.3, 0.3, 0.3) m, transform = [spin((0, 1, 0), 9 deg / (1 ms)), move((0, 0.8, 0.5) m)] }\n";
 
 /// A film of so many pixels, and what else it says.
@@ -130,6 +131,7 @@ fn what_is_dropped_is_as_if_the_scene_did_not_say_it() {
     let layered = film("auto { depth = true,");
     for (feature, with, as_if) in [
         (Feature::Spectral, [&*auto, BY_WAVELENGTH], [&*rgb, BY_WAVELENGTH]),
+        (Feature::Spectral, [&*auto, BUBBLE], [&*rgb, BUBBLE]),
         (Feature::Media, [&*auto, FOG], [&*auto, ""]),
         (Feature::Motion, [&*open, MOVING], [&*shut, MOVING]),
         (Feature::Layers, [&*layered, ""], [&*auto, ""]),

@@ -29,7 +29,7 @@ pub(crate) struct Start {
 pub(crate) fn cold(luxel: &Luxel) -> Result<(), String> {
     let Start { ms, mb } = start(luxel)?;
     println!("start to a trivial 64 x 64 picture, whole process, 20 runs (goal 20 ms)");
-    println!("  min {:.1} ms, median {:.1} ms, peak {:.0} MB", ms.min(), ms.median(), mb.median());
+    println!("  min {:.1} ms, median {:.1} ms, peak {:.0} MiB", ms.min(), ms.median(), mb.median());
     Ok(())
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn start(luxel: &Luxel) -> Result<Start, String> {
 /// The program failed; its words.
 pub(crate) fn memory(luxel: &Luxel) -> Result<(), String> {
     let peak = cornell_box(luxel)?.megabytes.unwrap_or(f64::NAN);
-    println!("Cornell box 512 x 512, picture written: peak {peak:.1} MB (goal 45)");
+    println!("Cornell box 512 x 512, picture written: peak {peak:.1} MiB (goal 45)");
     placements(luxel)
 }
 
@@ -84,7 +84,7 @@ fn placements(luxel: &Luxel) -> Result<(), String> {
     let scene = write("placements.scene", PLACEMENTS.as_bytes())?;
     let took = luxel.render(&scene, 256, 1)?;
     println!(
-        "998,001 placements of a mesh of 100,352 triangles: {:.1} s, peak {:.0} MB (goal 1074)",
+        "998,001 placements of a mesh of 100,352 triangles: {:.1} s, peak {:.0} MiB (goal 1024)",
         took.seconds,
         took.megabytes.unwrap_or(f64::NAN)
     );

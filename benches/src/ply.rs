@@ -34,10 +34,10 @@ pub(crate) struct Loaded {
 /// As `measure`.
 pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
     let n = 2 * (SIDE - 1) * (SIDE - 1);
-    println!("binary PLY of {n} triangles, read and built (goals: 1 s, 300 MB)");
+    println!("binary PLY of {n} triangles, read and built (goals: 1 s, 300 MiB)");
     for Loaded { program, seconds, memory, spread } in measure(luxel, python)? {
         let spread = spread.map_or(String::new(), |spread| format!(" (spread {spread:.0} %)"));
-        println!("  {program:11} {seconds:.2} s{spread}, peak {memory:.0} MB");
+        println!("  {program:11} {seconds:.2} s{spread}, peak {memory:.0} MiB");
     }
     Ok(())
 }

@@ -15,7 +15,7 @@ pub(crate) struct Took {
     pub(crate) seconds: f64,
     /// Processor time in user mode, seconds; `NaN` without `/usr/bin/time`.
     pub(crate) cpu: f64,
-    /// Most memory it held at once, megabytes; `None` without `/usr/bin/time`.
+    /// Most memory it held at once, MiB; `None` without `/usr/bin/time`.
     pub(crate) megabytes: Option<f64>,
 }
 

@@ -77,7 +77,8 @@ impl Worker<'_> {
         self.job.beta = found.beta;
         self.job.sight = Maybe::from(sight);
         self.paths[lane].start_at_light(index(job), &found);
-        (self.lanes[lane].l, self.lanes[lane].numbers) = (Spectrum::ZERO, samples.at());
+        let own = &mut self.lanes[lane];
+        (own.l, own.glow, own.numbers) = (Spectrum::ZERO, Spectrum::ZERO, samples.at());
         Some(())
     }
 

@@ -2,6 +2,7 @@
 
 mod arrival;
 mod develop;
+mod fly;
 mod goal;
 mod jobs;
 mod lattice;

@@ -23,7 +23,7 @@ pub(super) struct Recorder {
     fresh: Vec<Option<DVec3>>,
     /// Light of the groups that the path in a lane has gathered, lane by lane.
     light: Vec<Spectrum>,
-    /// What the paths that arrived had gathered of lamps before.
+    /// What the paths that arrived had gathered before.
     before: Vec<Spectrum>,
 }
 
@@ -105,7 +105,7 @@ impl Recorder {
     /// Paths are about to be told where they arrived.
     pub(super) fn before(&mut self, lanes: &[Lane], arrived: &[u32]) {
         self.before.clear();
-        self.before.extend(arrived.iter().map(|lane| of_lamps(&lanes[*lane as usize])));
+        self.before.extend(arrived.iter().map(|lane| lanes[*lane as usize].l));
     }
 
     /// They were told: what they gathered is of what shines where they are.
@@ -117,9 +117,8 @@ impl Recorder {
         scratch: &mut Scratch,
     ) {
         for (i, lane) in arrived.iter().enumerate() {
-            let (path, lane_now) = (&paths[*lane as usize], &lanes[*lane as usize]);
-            let at = &lane_now.at;
-            let gathered = of_lamps(lane_now) - self.before[i];
+            let (path, Lane { at, l, .. }) = (&paths[*lane as usize], &lanes[*lane as usize]);
+            let gathered = *l - self.before[i];
             if gathered.is_black() {
                 continue;
             }
@@ -181,11 +180,6 @@ impl Recorder {
             }
         }
     }
-}
-
-/// What a path has gathered, without that of media.
-fn of_lamps(lane: &Lane) -> Spectrum {
-    lane.l - lane.glow
 }
 
 /// What part is of the whole; none where that is black.

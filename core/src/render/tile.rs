@@ -8,11 +8,12 @@ use luxel_sdk::kind::{
     Arrival, Erased, Host, Integrator, Job, Lane, Onward, Output, Requests, Round, SampleAt,
     Sampler, Samples, Shadow, Wants,
 };
-use luxel_sdk::num::{Ray, offset_origin};
+use luxel_sdk::num::Ray;
 use luxel_sdk::sampling::hash_combine;
 
 use super::arrival::Shader;
 use super::develop::Develop;
+use super::fly::Fly;
 use super::jobs::Jobs;
 use super::lattice::Lattice;
 use super::light::Splat;
@@ -22,8 +23,8 @@ use super::{Stop, shadow};
 use crate::accel::{Processor, Work};
 use crate::cast;
 use crate::film::{Holds, Rect, Tile};
-use crate::object::{ColorMode, Scratch, Site};
-use crate::stage::{Leaving, Moment, Rooms, SceneHit, Stage};
+use crate::object::{ColorMode, Scratch};
+use crate::stage::{Moment, Rooms, SceneHit, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
 const LANES: usize = 128;
@@ -31,7 +32,7 @@ const LANES: usize = 128;
 /// What one thread needs; reused from tile to tile.
 pub(super) struct Worker<'s> {
     pub(super) stage: &'s Stage,
-    processor: Processor,
+    pub(super) processor: Processor,
     pub(super) seed: u32,
     pub(super) sampler: &'s dyn Sampler,
     pub(super) wants: Wants,
@@ -42,7 +43,7 @@ pub(super) struct Worker<'s> {
     pub(super) paths: Vec<Path>,
     free: Vec<u32>,
     /// What the running round answers, and what it asks for.
-    now: Requests,
+    pub(super) now: Requests,
     next: Requests,
     hits: Vec<(Option<SceneHit>, u32)>,
     shadowed: Vec<bool>,
@@ -57,7 +58,7 @@ pub(super) struct Worker<'s> {
     pub(super) splats: Vec<Splat>,
     pub(super) scratch: Scratch,
     /// For a medium's parameters while its phase function is asked.
-    medium_scratch: Scratch,
+    pub(super) medium_scratch: Scratch,
     to_rgb: Develop,
     /// What else than light is wanted of paths.
     record: Recorder,
@@ -346,71 +347,6 @@ impl<'s> Worker<'s> {
         }
     }
 
-    /// Traces and shades paths whose rays may end in a medium, or pass open surfaces on their way.
-    #[inline(always)]
-    fn fly(&mut self) {
-        for i in 0..self.now.rays.len() {
-            let Onward { ray, lane } = self.now.rays[i];
-            let lane = lane as usize;
-            let mut samples = Samples::new(self.sampler, self.lanes[lane].numbers);
-            let glow = self.fly_one(ray, lane, &mut samples);
-            self.lanes[lane].at.glow = glow;
-            self.lanes[lane].numbers = samples.at();
-        }
-    }
-
-    /// Gives the light of the media on its way.
-    #[inline(always)]
-    fn fly_one(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) -> Spectrum {
-        let stage = self.stage.at(self.paths[lane].time);
-        let mut media = self.paths[lane].media_along(&ray);
-        let mut from = self.paths[lane].leaving();
-        let (mut steps, mut flight, mut glow) = (0, Spectrum::ONE, Spectrum::ZERO);
-        loop {
-            let hit = stage.intersect(self.processor, &ray, from, &mut steps);
-            let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
-            let path = &mut self.paths[lane];
-            let arrival = &mut self.lanes[lane].at;
-            let scratch = &mut self.scratch;
-            let wants = self.wants;
-            if let Some((medium, t_max)) = stage.medium_along(&media, &Ray { t_max, ..ray }) {
-                self.medium_scratch.reset();
-                let uv = glam::Vec2::ZERO;
-                let at = Site { p: ray.o, uv, palette: &path.palette, color: None };
-                let object = &stage.media[medium as usize];
-                let medium = object.resolve(&at, &self.medium_scratch).medium();
-                let ray = Ray { t_max, ..ray };
-                if wants.has(Wants::EMISSION) {
-                    glow += flight * medium.glow(&ray, samples);
-                }
-                let free = medium.sample(&ray, samples);
-                flight *= free.weight;
-                if let Some(t) = free.t.get() {
-                    path.media = media;
-                    let shader = Shader { stage, wants, path, samples, scratch, flight };
-                    shader.medium((&ray, t, steps), &medium.phase(), arrival);
-                    return glow;
-                }
-            }
-            path.media = media;
-            let shader = Shader { stage, wants, path, samples, scratch, flight };
-            let Some(hit) = hit else {
-                shader.escaped(&ray, steps, arrival);
-                return glow;
-            };
-            let crossing = stage.crossing(self.processor, &media, &ray, &hit);
-            if let Some(met) = crossing.met {
-                shader.boundary((&ray, &met, steps), &crossing, arrival);
-                return glow;
-            }
-            from = Some(Leaving::from(&hit));
-            media = crossing.beyond;
-            let surface = &crossing.surface;
-            let o = offset_origin(surface.p, surface.p_err, surface.ng, ray.d);
-            ray = Ray { o, t_max: ray.t_max - hit.hit.t, ..ray };
-        }
-    }
-
     /// Lanes that were answered and asked for nothing more are done.
     fn retire(&mut self) {
         let mut busy = [false; LANES];
@@ -436,7 +372,8 @@ impl<'s> Worker<'s> {
     /// A path has ended: its light becomes a sample, its lane is free.
     fn finish(&mut self, lane: usize) {
         let path = &self.paths[lane];
-        let l = self.lanes[lane].l * path.weight;
+        let Lane { l, glow, .. } = self.lanes[lane];
+        let l = (l + glow) * path.weight;
         if let Some(result) = self.results.get_mut(path.job as usize) {
             *result = self.to_rgb.sample(l, &path.palette.wavelengths);
             if self.record.has_groups() {
@@ -450,7 +387,6 @@ impl<'s> Worker<'s> {
 struct Shadows<'a, 's>(&'a mut Worker<'s>);
 struct Trace<'a, 's>(&'a mut Worker<'s>);
 struct Shade<'a, 's>(&'a mut Worker<'s>);
-struct Fly<'a, 's>(&'a mut Worker<'s>);
 
 impl Work for Shadows<'_, '_> {
     #[inline(always)]
@@ -470,13 +406,6 @@ impl Work for Shade<'_, '_> {
     #[inline(always)]
     fn run(self, _: Processor) {
         self.0.shade();
-    }
-}
-
-impl Work for Fly<'_, '_> {
-    #[inline(always)]
-    fn run(self, _: Processor) {
-        self.0.fly();
     }
 }
 

@@ -41,7 +41,7 @@ fn shown(color: &Color) -> String {
     match color {
         Color::Rgb(rgb) => hex(*rgb),
         Color::Constant(x) => format!("{x} at every wavelength"),
-        Color::Waves(length) => format!("waves in {length} m"),
+        Color::Waves(length) => format!("{length} m, in waves of each wavelength"),
         Color::Curve(points) => match Curve::from_points(points, Outside::Constant) {
             Ok(curve) => spectrum(&curve, reflectance_rgb(&curve)),
             Err(_) => "a spectrum".to_owned(),

@@ -69,8 +69,14 @@ pub(crate) fn is_spectrum(param: &Param) -> bool {
         || (param.ty == Type::Emission && param.group.is_empty())
 }
 
+/// What lengths are counted in that are told in waves, m.
+const MICRON: f64 = 1e-6;
+
 /// A number as a value of the parameter's type.
 fn number(param: &Param, x: f64) -> Value {
+    if param.role == Role::Waves {
+        return Value::Color(Color::Waves(x * MICRON), dimension(param));
+    }
     if is_spectrum(param) {
         return Value::Color(Color::Constant(x), dimension(param));
     }
@@ -200,7 +206,7 @@ pub(crate) fn draw(param: &Param, rng: &mut Rng, bright: bool) -> Option<Value> 
         let reaches = param.role == Role::Reflectance;
         let mut lane = || if reaches { rng.f64() } else { anywhere(param, rng) };
         let rgb = [lane(), lane(), lane()];
-        let grey = matches!(param.role, Role::Ior | Role::Illuminant);
+        let grey = matches!(param.role, Role::Ior | Role::Illuminant | Role::Waves);
         return Some(if grey {
             let x = if param.role == Role::Ior { 1.0 + 1.5 * rng.f64() } else { rgb[0] };
             number(param, x.clamp(param.min, param.max))

@@ -103,6 +103,15 @@ impl Attributes {
         if self.derived || self.shared {
             return Ok(());
         }
+        let is_waves = self.role.as_ref().is_some_and(|role| role == "waves");
+        let is_length = self.default.is_none() && !self.textured && self.unit == "m";
+        if is_waves && !(is_length && is_spectrum(&field.ty)) {
+            return at(
+                "`role = waves` is for a Spectrum with `unit = \"m\"`, without `default` and \
+                       `textured`"
+                    .to_owned(),
+            );
+        }
         let given: Vec<_> = ["default", "required", "optional"]
             .into_iter()
             .filter(|word| self.keys.iter().any(|key| key == word))
@@ -156,6 +165,11 @@ impl Attributes {
         self.keys.push(key);
         Ok(())
     }
+}
+
+fn is_spectrum(ty: &syn::Type) -> bool {
+    let syn::Type::Path(path) = ty else { return false };
+    path.path.segments.last().is_some_and(|last| last.ident == "Spectrum")
 }
 
 fn role(word: Ident) -> Result<Ident> {

@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0xd7ff3362fdb2a0c4ull
+#define LUXEL_LAYOUT_HASH 0x32c405fd72001375ull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -358,7 +358,8 @@ typedef struct {
     luxel_bytes bytes;
 } luxel_import_value;
 
-/* One parameter. Flags: 1 required, 2 textured. Presets: 0 none, 1 numbers, 2 a choice, 3 text. */
+/* One parameter. Flags: 1 required, 2 textured. Presets: 0 none, 1 numbers, 2 a choice, 3 text.
+   Roles: 0 plain, 1 reflectance, 2 illuminant, 3 ior, 4 complex ior, 5 coefficient, 6 waves. */
 typedef struct {
     luxel_text name;
     luxel_text doc;
@@ -396,10 +397,11 @@ typedef struct {
     luxel_shadow_queue shadows;
 } luxel_requests;
 
-/* What a path that begins may ask: light into `l`, rays into `requests`. */
+/* What a path that begins may ask: light into `l`, that of media into `glow`, rays into `requests`. */
 typedef struct {
     uint32_t lane;
     luxel_spectrum *l;
+    luxel_spectrum *glow;
     luxel_requests *requests;
 } luxel_ask;
 
@@ -668,10 +670,10 @@ typedef struct {
     luxel_status (*sample)(const void *at, const luxel_ray *ray, luxel_samples_ref *samples, luxel_free_flight *out);
     /* The fraction of light that passes. */
     luxel_status (*transmittance)(const void *at, const luxel_ray *ray, luxel_samples_ref *samples, luxel_spectrum *out);
-    /* The light that it sends itself towards where the ray begins. */
-    luxel_status (*glow)(const void *at, const luxel_ray *ray, luxel_samples_ref *samples, luxel_spectrum *out);
     /* How it scatters: a handle that is valid as long as the parameters. */
     luxel_status (*phase)(const void *at, luxel_phase_ref *out);
+    /* The light that it sends itself towards where the ray begins. */
+    luxel_status (*glow)(const void *at, const luxel_ray *ray, luxel_samples_ref *samples, luxel_spectrum *out);
 } luxel_medium_table;
 
 /* A camera, in world space. */
@@ -1041,6 +1043,7 @@ LUXEL_CHECK(sizeof(luxel_ask) == 32, "size of luxel_ask");
 LUXEL_CHECK(_Alignof(luxel_ask) == 8, "alignment of luxel_ask");
 LUXEL_CHECK(offsetof(luxel_ask, lane) == 0, "luxel_ask.lane");
 LUXEL_CHECK(offsetof(luxel_ask, l) == 8, "luxel_ask.l");
+LUXEL_CHECK(offsetof(luxel_ask, glow) == 16, "luxel_ask.glow");
 LUXEL_CHECK(offsetof(luxel_ask, requests) == 24, "luxel_ask.requests");
 LUXEL_CHECK(sizeof(luxel_material_ref) == 16, "size of luxel_material_ref");
 LUXEL_CHECK(_Alignof(luxel_material_ref) == 8, "alignment of luxel_material_ref");

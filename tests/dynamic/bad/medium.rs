@@ -49,6 +49,14 @@ impl Medium for Fog<'_> {
         self.wrong.at(Wrong::Other);
         Spectrum::splat(if self.wrong == Wrong::OtherNan { f32::NAN } else { 0.5 })
     }
+    fn glow(&self, _: &Ray, _: &mut Samples<'_>) -> Spectrum {
+        self.wrong.at(Wrong::Sample);
+        Spectrum::splat(match self.wrong {
+            Wrong::SampleLong => f32::NAN,
+            Wrong::Zero => -1.0,
+            _ => 0.0,
+        })
+    }
     fn phase(&self) -> PhaseRef<'_> {
         self.wrong.at(Wrong::Second);
         match self.wrong {

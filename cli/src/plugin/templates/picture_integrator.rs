@@ -69,6 +69,7 @@ impl PathIntegrator for FromCamera {
         if at.kind == ArrivalKind::Escaped {
             ask.add(at.le);
         }
+        ask.add_glow(Spectrum::ONE, at);
     }
 }
 

@@ -10,8 +10,9 @@ use luxel_sdk::abi::{
 };
 use luxel_sdk::color::Spectrum;
 use luxel_sdk::kind::{
-    Arrival, Ask, Eval, Hit, Host, Job, Kind, Light, LightForm, Material, PathIntegrator, Sample,
-    Samples, Shape, ShapeSample, Surface, Texture, TexturePoint, Wants,
+    Arrival, Ask, Eval, FreeFlight, Hit, Host, Job, Kind, Light, LightForm, Material, Medium,
+    PathIntegrator, Phase, PhaseRef, Sample, Samples, Shape, ShapeSample, Surface, Texture,
+    TexturePoint, Wants,
 };
 use luxel_sdk::num::{Bounds3, Ray};
 
@@ -59,7 +60,7 @@ pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, Stri
             LightTable,
             Some((LightTable::of::<Without>(), &["le", "sample", "escaped", "output"]))
         ),
-        Kind::Medium => table!(MediumTable),
+        Kind::Medium => table!(MediumTable, Some((MediumTable::of::<Without>(), &["glow"]))),
         Kind::Phase => table!(PhaseTable),
         Kind::Camera => table!(CameraTable),
         Kind::Sampler => table!(SamplerTable),
@@ -123,6 +124,27 @@ impl Material for Without {
         Eval::ZERO
     }
     fn sample(&self, _: Vec3, _: [f32; 3]) -> Option<Sample> {
+        None
+    }
+}
+
+impl Medium for Without {
+    fn sample(&self, _: &Ray, _: &mut Samples<'_>) -> FreeFlight {
+        super::remote::THROUGH
+    }
+    fn transmittance(&self, _: &Ray, _: &mut Samples<'_>) -> Spectrum {
+        Spectrum::ONE
+    }
+    fn phase(&self) -> PhaseRef<'_> {
+        PhaseRef::new(self)
+    }
+}
+
+impl Phase for Without {
+    fn eval(&self, _: Vec3, _: Vec3) -> Eval {
+        Eval::ZERO
+    }
+    fn sample(&self, _: Vec3, _: [f32; 2]) -> Option<Sample> {
         None
     }
 }

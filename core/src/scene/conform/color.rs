@@ -50,7 +50,8 @@ fn suits(param: &Param, role: Role, color: &Color) -> Result<(), Misfit> {
         Color::Rgb(_) => ("a colour", !matches!(role, Role::Ior | Role::Waves)),
         Color::Curve(_) => ("a spectrum", role != Role::Waves),
         // Factors are folded, so that none stands in another.
-        Color::Constant(_) | Color::Waves(_) | Color::Scaled(..) => return Ok(()),
+        Color::Constant(_) | Color::Scaled(..) => return Ok(()),
+        Color::Waves(_) => ("a length", role == Role::Waves),
         Color::Blackbody(_) => ("a black body's spectrum", emits(role)),
         Color::Illuminant(_) => ("an illuminant", emits(role)),
         Color::Metal(_) => ("a metal", role == Role::ComplexIor && param.ty == Type::ComplexIor),

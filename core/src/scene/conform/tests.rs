@@ -86,6 +86,24 @@ fn a_reflectance_reflects_no_more_than_all() {
 }
 
 #[test]
+fn a_length_in_waves_is_a_length() {
+    let film = Param { ty: Type::Spectrum, role: Role::Waves, ..LENGTH };
+    let waves = |x| Ok(Value::Color(Color::Waves(x), Dimension::LENGTH));
+    assert_eq!(fit(&film, Given::Number(3e-7, Dimension::LENGTH)), waves(3e-7));
+    assert_eq!(fit(&film, Given::Number(-3e-7, Dimension::LENGTH)), Err("E0405"));
+    assert_eq!(fit(&film, Given::Number(3e-7, Dimension::NONE)), Err("E0201"));
+    for (wrong, words) in [
+        (Color::Rgb([1e-7; 3]), "a colour"),
+        (Color::Curve([(400.0, 1e-7), (700.0, 2e-7)].into()), "a spectrum"),
+        (Color::Blackbody(3000.0), "a black body's spectrum"),
+    ] {
+        let misfit = conform(&film, Given::Color(wrong, Dimension::LENGTH), &|_| None).unwrap_err();
+        let told = format!("`radius` wants a length, not {words}");
+        assert_eq!((misfit.code, misfit.message), ("E0214", told));
+    }
+}
+
+#[test]
 fn a_choice_names_the_nearest_word() {
     let choice = Param { ty: Type::Choice, choices: &WORDS, ..LENGTH };
     let misfit = conform(&choice, Given::Text("gxg".into()), &|_| None).unwrap_err();

@@ -38,11 +38,12 @@ impl Glowing<'_> {
     }
 }
 
-/// ∫ e^(−σs) ds from 0 to t, m.
-#[expect(clippy::cast_possible_truncation, reason = "rounds; radiance is f32")]
-fn seen_depth(sigma: f32, t: f64) -> f32 {
-    let sigma = f64::from(sigma);
-    if sigma > 0.0 { (-(-sigma * t).exp_m1() / sigma) as f32 } else { t as f32 }
+/// Share of the radiance of a thick piece that does not scatter which a length t shows, in [0, 1].
+#[expect(clippy::cast_possible_truncation, reason = "rounds; a fraction")]
+fn shown(sigma_a: f32, sigma_s: f32, t: f64) -> f32 {
+    let (sigma_a, sigma_s) = (f64::from(sigma_a), f64::from(sigma_s));
+    let sigma_t = sigma_a + sigma_s;
+    if sigma_a > 0.0 { (sigma_a / sigma_t * -(-sigma_t * t).exp_m1()) as f32 } else { 0.0 }
 }
 
 impl Medium for Glowing<'_> {
@@ -56,12 +57,8 @@ impl Medium for Glowing<'_> {
 
     /// In closed form, so it is free of noise.
     fn glow(&self, ray: &Ray, _samples: &mut Samples<'_>) -> Spectrum {
-        let sigma_t = (self.sigma_a + self.sigma_s).to_array();
-        let lane = |i: usize| {
-            let emitted = self.sigma_a.lane(i) * self.emission.spectrum.lane(i);
-            if emitted > 0.0 { emitted * seen_depth(sigma_t[i], ray.t_max) } else { 0.0 }
-        };
-        Spectrum::from_array([0, 1, 2, 3].map(lane))
+        let lane = |i: usize| shown(self.sigma_a.lane(i), self.sigma_s.lane(i), ray.t_max);
+        self.emission.spectrum * Spectrum::from_array([0, 1, 2, 3].map(lane))
     }
 
     fn phase(&self) -> PhaseRef<'_> {
@@ -74,11 +71,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_seen_of_a_length_is_all_of_it_until_it_hides_itself() {
-        let near = |a: f32, b: f64| (f64::from(a) / b - 1.0).abs() < 1e-6;
-        assert!(near(seen_depth(0.0, 3.0), 3.0));
-        assert!(near(seen_depth(1e-12, 3.0), 3.0));
-        assert!(near(seen_depth(0.5, 3.0), 2.0 * (1.0 - (-1.5f64).exp())));
-        assert!(near(seen_depth(4.0, f64::INFINITY), 0.25));
+    fn a_thin_piece_shines_as_it_absorbs_and_a_thick_one_hides_itself() {
+        let near = |a: f32, b: f64| assert!((f64::from(a) / b - 1.0).abs() < 1e-6, "{a} {b}");
+        near(shown(1e-12, 0.0, 3.0), 3e-12);
+        near(shown(0.5, 0.0, 3.0), 1.0 - (-1.5f64).exp());
+        near(shown(1.0, 3.0, f64::INFINITY), 0.25);
+        near(shown(1e-40, 0.0, f64::INFINITY), 1.0);
+        let none = [shown(0.0, 2.0, 3.0), shown(0.0, 0.0, f64::INFINITY)];
+        assert_eq!(none.map(f32::to_bits), [0; 2]);
     }
 }

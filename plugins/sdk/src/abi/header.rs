@@ -124,6 +124,7 @@ describe! { PLAIN, PLAIN_C {
     /// 6 table, 7 look, 8 bytes, 9 node.
     ImportValueTable => "luxel_import_value" { tag, index, numbers, text, table, bytes }
     /// One parameter. Flags: 1 required, 2 textured. Presets: 0 none, 1 numbers, 2 a choice, 3 text.
+    /// Roles: 0 plain, 1 reflectance, 2 illuminant, 3 ior, 4 complex ior, 5 coefficient, 6 waves.
     ParamTable => "luxel_param" {
         name, doc, ty, role, unit, preset, flags, numbers, text, min, max, choices, group,
         deprecated, offset,
@@ -133,8 +134,8 @@ describe! { PLAIN, PLAIN_C {
 describe! { REQUESTS, REQUESTS_C {
     /// What a round of arrivals asks for.
     Requests => "luxel_requests" { rays, shadows }
-    /// What a path that begins may ask: light into `l`, rays into `requests`.
-    Ask<'static> => "luxel_ask" { lane, l, requests }
+    /// What a path that begins may ask: light into `l`, that of media into `glow`, rays into `requests`.
+    Ask<'static> => "luxel_ask" { lane, l, glow, requests }
 } }
 
 describe! { HANDLES, HANDLES_C {

@@ -252,7 +252,7 @@ pub struct Ask<'a> {
 }
 
 impl<'a> Ask<'a> {
-    /// For a path: its lane, its light so far, what of that media sent, and where its requests go.
+    /// For a path: its lane, its light so far, that of media, and where its requests go.
     pub fn new(
         lane: u32,
         (l, glow): (&'a mut Spectrum, &'a mut Spectrum),
@@ -270,9 +270,7 @@ impl<'a> Ask<'a> {
     /// group of lights counts it. `beta` is what radiance from here on counts for.
     pub fn add_glow(&mut self, beta: Spectrum, at: &Arrival) {
         if !at.glow.is_black() {
-            let l = beta * at.glow;
-            *self.glow += l;
-            self.add(l);
+            *self.glow += beta * at.glow;
         }
     }
 
@@ -350,9 +348,9 @@ pub trait PathIntegrator: Send + Sync {
 pub struct Lane {
     /// Where it arrived.
     pub at: Arrival,
-    /// Light gathered so far.
+    /// Light gathered so far, without that of media.
     pub l: Spectrum,
-    /// What of that media sent.
+    /// Light of media gathered so far.
     pub glow: Spectrum,
     /// The next of its random numbers.
     pub numbers: SampleAt,

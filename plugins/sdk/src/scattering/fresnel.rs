@@ -32,16 +32,15 @@ fn polarised(c: f64, eta: f64, h: f64) -> [f64; 2] {
 /// [0, 1]: all that goes to and fro between its sides, summed as waves.
 ///
 /// `cos_i` in [0, 1] outside the film, `eta` ≥ 1 its index over the index around it, `waves` ≥ 0 its
-/// thickness over the wavelength outside. At grazing incidence all is reflected, but by no film at all. A
-/// NaN gives 1.
+/// thickness over the wavelength outside. `cos_i` 0 gives 1, and so does a NaN.
 ///
 /// # Source
 /// Airy's summation: Born & Wolf §7.6.1.
 #[expect(clippy::cast_possible_truncation, reason = "rounds; the result is in [0, 1]")]
-pub fn film_reflectance(cos_i: f32, eta: Spectrum, waves: Spectrum) -> Spectrum {
-    let c = f64::from(cos_i).clamp(0.0, 1.0);
-    let lane = |eta: f64, waves: f64| {
-        let Some(h) = beyond(c, eta) else { return 1.0 };
+pub fn film_reflectance(cos_i: f32, eta: f32, waves: Spectrum) -> Spectrum {
+    let (c, eta) = (f64::from(cos_i).clamp(0.0, 1.0), f64::from(eta));
+    let Some(h) = beyond(c, eta) else { return Spectrum::ONE };
+    let lane = |waves: f64| {
         let out_of_step = (std::f64::consts::TAU * h * waves).sin().powi(2);
         let summed = polarised(c, eta, h).map(|once| {
             let twice = 4.0 * once * out_of_step;
@@ -50,9 +49,7 @@ pub fn film_reflectance(cos_i: f32, eta: Spectrum, waves: Spectrum) -> Spectrum 
         });
         0.5 * (summed[0] + summed[1])
     };
-    let (eta, waves) = (eta.to_array(), waves.to_array());
-    let lanes = [0, 1, 2, 3].map(|i| lane(f64::from(eta[i]), f64::from(waves[i])) as f32);
-    Spectrum::from_array(lanes)
+    Spectrum::from_array(waves.to_array().map(|waves| lane(f64::from(waves)) as f32))
 }
 
 /// eta times the cosine on the far side, by `η² cos_t² = η² − 1 + cos_i²`: exact for an index of 1, and

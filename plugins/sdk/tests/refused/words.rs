@@ -1,4 +1,4 @@
-use luxel_sdk::{Params, params::Emission};
+use luxel_sdk::{Params, color::Spectrum, params::Emission};
 
 /// A surface.
 #[derive(Params, Clone, Copy)]
@@ -20,6 +20,10 @@ struct Surface {
     #[param(default = 1, textured)]
     //~ a texture cannot drive this, only f32, Vec3, Spectrum, Emission, ComplexIor
     count: u32,
+    /// Not a length by wavelength.
+    //~ `role = waves` is for a Spectrum with `unit = "m"`, without `default` and `textured`
+    #[param(default = 0.0, unit = "m", role = waves)]
+    thickness: Spectrum,
     /// Unknown amount.
     //~ unknown amount `brightness`; the amounts are scale, power, radiance, intensity, illuminance
     #[param(emission(radiance, brightness))]

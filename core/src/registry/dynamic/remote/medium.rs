@@ -52,7 +52,8 @@ pub(super) fn goes_on(before: SampleAt, now: SampleAt) -> bool {
         && now.dimension.checked_sub(before.dimension).is_some_and(|taken| taken <= MOST_NUMBERS)
 }
 
-const THROUGH: FreeFlight =
+/// What flies on.
+pub(in super::super) const THROUGH: FreeFlight =
     FreeFlight { t: Maybe { given: false, value: 0.0 }, weight: Spectrum::ONE };
 
 impl Medium for RemoteMedium {

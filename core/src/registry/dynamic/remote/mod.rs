@@ -28,6 +28,7 @@ use super::Remote;
 use super::watch::Watch;
 
 pub(crate) use conduct::Conduct;
+pub(super) use medium::THROUGH;
 pub(super) use shape::NOWHERE;
 
 /// Bytes before the library's struct. A multiple of its greatest alignment.

@@ -14,13 +14,13 @@ table! {
         fn transmittance(medium, ray: &Ray, samples: &mut SamplesRef<'_>) -> Spectrum {
             Some(samples.with(|samples| medium.transmittance(ray, samples)))
         }
-        /// The light that it sends itself towards where the ray begins.
-        fn glow(medium, ray: &Ray, samples: &mut SamplesRef<'_>) -> Spectrum {
-            Some(samples.with(|samples| medium.glow(ray, samples)))
-        }
         /// How it scatters: a handle that is valid as long as the parameters.
         fn phase(medium) -> PhaseRef<'static> {
             Some(medium.phase().for_as_long_as_it_lives())
+        }
+        /// The light that it sends itself towards where the ray begins.
+        fn glow(medium, ray: &Ray, samples: &mut SamplesRef<'_>) -> Spectrum {
+            Some(samples.with(|samples| medium.glow(ray, samples)))
         }
     }
 }

@@ -121,7 +121,7 @@ pub fn scan_until(
         operand: true,
         newline: true,
         in_for: false,
-        in_expect: false,
+        follower: None,
         first: depth == 0,
         doc: None,
         out: Scan::default(),
@@ -136,7 +136,7 @@ pub(crate) fn block_comment(text: &[u8]) -> Option<usize> {
     memchr::memmem::find(text.get(2..)?, b"*/").map(|end| end + 4)
 }
 
-#[expect(clippy::struct_excessive_bools, reason = "five independent facts about the place")]
+#[expect(clippy::struct_excessive_bools, reason = "four independent facts about the place")]
 struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -149,8 +149,8 @@ struct Scanner<'a> {
     newline: bool,
     /// Between `for` and `in`, where a comma separates names and not statements.
     in_for: bool,
-    /// In an `expect`, which `where` continues on a new line.
-    in_expect: bool,
+    /// The word that continues the running statement on a new line.
+    follower: Option<&'static [u8]>,
     /// Whether no statement has begun in this block.
     first: bool,
     doc: Option<usize>,
@@ -209,12 +209,18 @@ impl Scanner<'_> {
                     self.at += 1;
                 }
                 let name = &self.bytes[start..self.at];
-                if CONTINUE.contains(&name) || self.in_expect && name == b"where" {
+                let follows = self.follower == Some(name) && self.may_follow(name);
+                if follows || CONTINUE.contains(&name) {
                     (self.newline, self.doc) = (false, None);
+                    self.follower = self.follower.filter(|_| !follows);
                 } else {
                     let begins = self.word(start);
-                    // The word has no other use, and may follow `@off`.
-                    self.in_expect = name == b"expect" || self.in_expect && !begins;
+                    // These words have no other use, and may follow `@off`.
+                    self.follower = match name {
+                        b"expect" => Some(b"where"),
+                        b"use" => Some(b"version"),
+                        _ => self.follower.filter(|_| !begins),
+                    };
                     self.in_for &= !begins;
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
@@ -227,6 +233,24 @@ impl Scanner<'_> {
                 (self.operand, self.newline) = (true, false);
             }
             _ => (self.operand, self.newline) = (false, false),
+        }
+    }
+
+    /// `version` may also be a name: only with a text behind it does it follow `use`.
+    fn may_follow(&self, name: &[u8]) -> bool {
+        name != b"version" || self.next_mark() == Some(b'"')
+    }
+
+    /// The next byte that is neither blank nor of a comment.
+    fn next_mark(&self) -> Option<u8> {
+        let mut rest = self.bytes[self.at..].trim_ascii_start();
+        loop {
+            let comment = match rest {
+                [b'/', b'/', ..] => memchr(b'\n', rest)?,
+                [b'/', b'*', ..] => block_comment(rest)?,
+                _ => return rest.first().copied(),
+            };
+            rest = rest[comment..].trim_ascii_start();
         }
     }
 
@@ -421,6 +445,11 @@ mod tests {
         assert_eq!(starts("let a = b\n  with { c = 1 }\nif x { y = 1 }\nelse { y = 2 }").len(), 2);
         assert_eq!(starts("expect mean = b\n  where { c = 1 }\nlet d = 1\nwhere = 2").len(), 3);
         assert_eq!(starts("@off expect mean = b\n  where { c = 1 }").len(), 1);
+        assert_eq!(
+            starts("@off use plugin \"a\"\n version /*1*/ // 2\n \"^1\"\nversion \"b\" {}").len(),
+            2
+        );
+        assert_eq!(starts("use plugin \"a\"\nversion {}").len(), 2);
     }
 
     #[test]

@@ -40,6 +40,27 @@ impl RemoteMedium {
         self.0.wrong(NOT_ITS_OWN);
         None
     }
+
+    /// What a question about a ray is answered with; `none`, and the render ends with `wrong`, where that
+    /// is no light.
+    fn light(
+        &self,
+        samples: &mut Samples<'_>,
+        (none, wrong): (Spectrum, &'static str),
+        ask: impl FnOnce(&MediumTable, *const u8, &mut SamplesRef<'_>) -> Answer<Spectrum>,
+    ) -> Spectrum {
+        if self.0.is_poisoned() {
+            return none;
+        }
+        let table = self.table();
+        let found = self.lend(samples, |samples| ask(table, self.0.at(), samples));
+        let found = found.unwrap_or(none);
+        if is_light(found) {
+            return found;
+        }
+        self.0.wrong(wrong);
+        none
+    }
 }
 
 /// Numbers that one call may take: enough for any walk, too few to run out of dimensions.
@@ -87,37 +108,19 @@ impl Medium for RemoteMedium {
     }
 
     fn transmittance(&self, ray: &Ray, samples: &mut Samples<'_>) -> Spectrum {
-        if self.0.is_poisoned() {
-            return Spectrum::ONE;
-        }
-        let table = self.table();
-        let found = self.lend(samples, |samples| {
-            // SAFETY: as above.
-            unsafe { table.transmittance(self.0.at(), ray, samples) }
-        });
-        let left = found.unwrap_or(Spectrum::ONE);
-        if is_light(left) {
-            return left;
-        }
-        self.0.wrong("gave a transmittance that is negative or not finite");
-        Spectrum::ONE
+        let wrong = "gave a transmittance that is negative or not finite";
+        self.light(samples, (Spectrum::ONE, wrong), |table, at, samples| {
+            // SAFETY: the struct behind the head is of the class that the table belongs to.
+            unsafe { table.transmittance(at, ray, samples) }
+        })
     }
 
     fn glow(&self, ray: &Ray, samples: &mut Samples<'_>) -> Spectrum {
-        if self.0.is_poisoned() {
-            return Spectrum::ZERO;
-        }
-        let table = self.table();
-        let found = self.lend(samples, |samples| {
+        let wrong = "gave a glow that is negative or not finite";
+        self.light(samples, (Spectrum::ZERO, wrong), |table, at, samples| {
             // SAFETY: as above.
-            unsafe { table.glow(self.0.at(), ray, samples) }
-        });
-        let glow = found.unwrap_or(Spectrum::ZERO);
-        if is_light(glow) {
-            return glow;
-        }
-        self.0.wrong("gave a glow that is negative or not finite");
-        Spectrum::ZERO
+            unsafe { table.glow(at, ray, samples) }
+        })
     }
 
     fn phase(&self) -> PhaseRef<'_> {

@@ -3,7 +3,7 @@
 
 use luxel_core::scene::{number_words, range_words};
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::{Param, Preset, Type};
+use luxel_sdk::params::{Param, Preset, Role, Type};
 
 /// A field that the language reads: name, facts in a few words, manual.
 pub type Field = (&'static str, &'static str, &'static str);
@@ -123,6 +123,7 @@ pub fn what(param: &Param) -> String {
         Type::Bool => "true or false".into(),
         Type::Vec2 => "two numbers".into(),
         Type::Vec3 | Type::DVec3 => "three numbers".into(),
+        Type::Spectrum if param.role == Role::Waves => "number".into(),
         Type::Spectrum => "colour or spectrum".into(),
         Type::ComplexIor => "metal, or complex index of refraction".into(),
         Type::Choice => "word".into(),

@@ -135,6 +135,7 @@ pub fn wanted(param: &Param) -> String {
         Type::Bool => "`true` or `false`".to_owned(),
         Type::Vec2 => with_unit("a vector (x, y)"),
         Type::Vec3 | Type::DVec3 => with_unit("a vector (x, y, z)"),
+        Type::Spectrum if param.role == Role::Waves => with_unit("a number"),
         Type::Spectrum | Type::ComplexIor => with_unit("a colour or spectrum"),
         Type::Emission if param.group.is_empty() => "a colour or spectrum".to_owned(),
         Type::Float | Type::Double | Type::MaybeFloat | Type::Emission => with_unit("a number"),

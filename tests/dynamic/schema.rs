@@ -137,7 +137,7 @@ fn parameters_that_cannot_be_are_refused() {
     check_param(AMOUNT, "has the unknown type 4294967295", |p| p.ty = u32::MAX);
     check_param(AMOUNT, "has the unknown type 35", |p| p.ty = 35);
     check_param(AMOUNT, "has the unknown role 7", |p| p.role = 7);
-    let waves = "is told in waves, and no spectrum without default and texture";
+    let waves = "has the role waves, for spectra in m without default and texture";
     check_param(AMOUNT, waves, |p| p.role = 6);
     check_param(AMOUNT, "has the unknown unit `parsec`", |p| p.unit = Text::new("parsec"));
     check_param(AMOUNT, "has the unknown kind of default 4", |p| p.preset = 4);

@@ -199,9 +199,13 @@ mod tests {
         let Ok(Lanes::Curve(curve)) = lanes(&film, Role::Waves, ColorMode::Spectral) else {
             panic!("it depends on the wavelength")
         };
-        // Between two entries of the curve, 1 nm apart, it errs by a quarter of (1 nm / λ)².
-        for nm in [360.0, 449.5, 550.0, 829.5] {
-            assert!((f64::from(curve.at(nm)) / (300.0 / f64::from(nm)) - 1.0).abs() < 3e-6, "{nm}");
+        // Between two entries of the curve, 1 nm apart, it errs by up to a quarter of (1 nm / λ)²: 1.3e-6
+        // from 449 nm on, and single precision rounds thrice. At an entry it only rounds.
+        for nm in [360.0f32, 449.5, 550.0, 829.5] {
+            assert!(
+                (f64::from(curve.at(nm)) / (300.0 / f64::from(nm)) - 1.0).abs() < 1.5e-6,
+                "{nm}"
+            );
         }
         let Ok(Lanes::Constant(rgb)) = lanes(&film, Role::Waves, ColorMode::Rgb) else {
             panic!("a channel has one wavelength")

@@ -194,3 +194,28 @@ impl Shape for Without {
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_medium_that_leaves_its_glow_out_is_dark() {
+        let own = MediumTable::of::<Without>();
+        let older = size_of_val(own) - size_of::<*const u8>();
+        let mut words = vec![without_provenance::<u8>(older)];
+        let from = std::ptr::from_ref(own).cast::<*const u8>();
+        // SAFETY: the table has more words than its last one.
+        words.extend(
+            (1..older / size_of::<*const u8>()).map(|i| unsafe { from.wrapping_add(i).read() }),
+        );
+        // SAFETY: as long as it says.
+        let taken = unsafe { adopt(Kind::Medium, words.as_ptr().cast()) };
+        assert!(taken.is_ok(), "{taken:?}");
+        words.pop();
+        words[0] = without_provenance(older - size_of::<*const u8>());
+        // SAFETY: as long as it says.
+        let refused = unsafe { adopt(Kind::Medium, words.as_ptr().cast()) };
+        assert!(refused.is_err_and(|told| told.contains("lacks `phase`")));
+    }
+}

@@ -157,10 +157,11 @@ unsafe fn param(name: &'static str, table: &ParamTable, size: usize) -> Result<P
     }
     let ty = type_of(table.ty).ok_or_else(|| format!("has the unknown type {}", table.ty))?;
     let role = ROLES.get(table.role as usize).copied();
-    if role == Some(Role::Waves)
-        && (ty != Type::Spectrum || table.preset != 0 || table.flags & 2 != 0)
-    {
-        return Err("is told in waves, and no spectrum without default and texture".to_owned());
+    let is_length = ty == Type::Spectrum && unit == "m";
+    let is_given = table.preset == 0 && table.flags & 2 == 0;
+    if role == Some(Role::Waves) && !(is_length && is_given) {
+        let message = "has the role waves, for spectra in m without default and texture";
+        return Err(message.to_owned());
     }
     let default = match table.preset {
         0 => Preset::Absent,

@@ -350,8 +350,11 @@ impl MeshWalk<'_> {
             }
         } else {
             let node = &self.tree.nodes[self.current.index()];
-            processor.enter(&self.slabs, node, self.best.t, stack);
             self.steps += 1;
+            if let Some(nearest) = processor.enter(&self.slabs, node, self.best.t, stack) {
+                self.current = nearest;
+                return false;
+            }
         }
         match stack.pop_within(self.best.t) {
             Some((child, _)) => {

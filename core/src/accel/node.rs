@@ -33,6 +33,12 @@ impl Child {
         Self(Self::LEAF | (narrow(first) << 2) | narrow(n - 1))
     }
 
+    /// The reference as it stands in memory.
+    #[inline(always)]
+    pub(super) fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
     #[inline(always)]
     pub(super) fn is_leaf(self) -> bool {
         self.0 & Self::LEAF != 0
@@ -129,13 +135,13 @@ impl Order {
 
     /// The slots for a direction of this octant, as they are stored.
     #[inline(always)]
-    pub(super) fn bits(self, octant: usize) -> u32 {
+    pub(super) fn bits(&self, octant: usize) -> u32 {
         self.0[octant & 7]
     }
 
     /// The slots from far to near, for a direction of this octant.
     #[inline(always)]
-    pub(super) fn far_to_near(self, octant: usize) -> [usize; WIDTH] {
+    pub(super) fn far_to_near(&self, octant: usize) -> [usize; WIDTH] {
         let bits = self.bits(octant) as usize;
         [0, 3, 6, 9, 12, 15, 18, 21].map(|shift| bits >> shift & 7)
     }

@@ -95,12 +95,18 @@ impl<T: Real> Slabs<T> {
         }
     }
 
-    /// Puts the children that the ray enters at or before `t_max` on the stack, the nearest last.
+    /// The nearest of the children that the ray enters at or before `t_max`, and where it does; puts
+    /// the others on the stack, the nearest of them last.
     ///
     /// A direction component of zero makes infinities, and NaN where the origin lies in a plane: a
     /// slab with a NaN does not cut.
     #[inline(always)]
-    pub(super) fn enter(&self, boxes: &Boxes<T>, t_max: T, stack: &mut Stack<'_, T>) {
+    pub(super) fn enter(
+        &self,
+        boxes: &Boxes<T>,
+        t_max: T,
+        stack: &mut Stack<'_, T>,
+    ) -> Option<(Child, T)> {
         let mut t_near = [T::ZERO; WIDTH];
         let mut t_far = [t_max; WIDTH];
         for axis in 0..3 {
@@ -113,10 +119,12 @@ impl<T: Real> Slabs<T> {
                 t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
             }
         }
+        let below = stack.len();
         for slot in boxes.order.far_to_near(self.octant) {
             let entered = t_near[slot] <= t_far[slot] * T::FAR;
             stack.push_if(entered, boxes.children[slot], t_near[slot]);
         }
+        stack.pop_above(below)
     }
 }
 

@@ -100,10 +100,25 @@ impl<T: Copy> Stack<'_, T> {
         self.len += n;
     }
 
+    /// How many are kept.
+    #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
     /// What was kept last.
     #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<(Child, T)> {
-        self.len = self.len.checked_sub(1)?;
+        self.pop_above(0)
+    }
+
+    /// The same, but for the first `n`, which stay.
+    #[inline(always)]
+    pub(super) fn pop_above(&mut self, n: usize) -> Option<(Child, T)> {
+        if self.len <= n {
+            return None;
+        }
+        self.len -= 1;
         // SAFETY: this entry was written before it was counted.
         let child = unsafe { self.room.children[self.len].assume_init() };
         // SAFETY: as above.
@@ -125,5 +140,17 @@ mod tests {
         }
         let mut pop = || stack.pop().map(|(child, value)| (child.index(), value));
         assert_eq!([pop(), pop(), pop()], [Some((3, 3)), Some((1, 1)), None]);
+    }
+
+    #[test]
+    fn the_first_stay_where_only_those_above_are_asked_for() {
+        let mut room = Room::default();
+        let mut stack = room.stack();
+        (0..3).for_each(|value| stack.push_if(true, Child::node(value), value));
+        let mut above = |n| stack.pop_above(n).map(|(_, value)| value);
+        assert_eq!(
+            [above(2), above(2), above(1), above(0), above(0)],
+            [Some(2), None, Some(1), Some(0), None]
+        );
     }
 }

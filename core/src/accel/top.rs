@@ -102,8 +102,11 @@ impl TopWalk<'_> {
             None => stack.pop_within(self.t_max)?,
         };
         while !current.is_leaf() {
-            processor.enter_top(&self.slabs, &self.nodes[current.index()], self.t_max, stack);
-            (current, t_enter) = stack.pop_within(self.t_max)?;
+            let node = &self.nodes[current.index()];
+            (current, t_enter) = match processor.enter_top(&self.slabs, node, self.t_max, stack) {
+                Some(nearest) => nearest,
+                None => stack.pop_within(self.t_max)?,
+            };
         }
         Some((narrow(current.blocks().start), t_enter))
     }

@@ -32,14 +32,20 @@ static FIRST: [[u32; 8]; 256] = {
     table
 };
 
-/// The boxes of a node in the order in which a ray meets them, the farthest first.
+/// Where a ray enters and leaves the boxes of a node, slot by slot.
+pub(super) struct Spans {
+    t_near: __m256,
+    t_far: __m256,
+}
+
+/// The boxes of a node in the order in which directions of an octant meet them, the farthest first.
 pub(super) struct Ordered {
     pub(super) t_near: __m256,
     pub(super) t_far: __m256,
     pub(super) children: __m256i,
 }
 
-impl Ordered {
+impl Spans {
     /// `min` and `max` give their second operand if either is NaN, so that slab does not cut.
     #[inline]
     #[target_feature(enable = "avx2")]
@@ -55,10 +61,16 @@ impl Ordered {
             t_far = _mm256_min_ps(_mm256_mul_ps(far, rdir), t_far);
         }
         t_far = _mm256_mul_ps(t_far, _mm256_set1_ps(f32::FAR));
-        let order = order(node.order.bits(ray.octant));
-        Self {
-            t_near: _mm256_permutevar8x32_ps(t_near, order),
-            t_far: _mm256_permutevar8x32_ps(t_far, order),
+        Self { t_near, t_far }
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn ordered(&self, node: &Node, octant: usize) -> Ordered {
+        let order = order(node.order.bits(octant));
+        Ordered {
+            t_near: _mm256_permutevar8x32_ps(self.t_near, order),
+            t_far: _mm256_permutevar8x32_ps(self.t_far, order),
             children: _mm256_permutevar8x32_epi32(children(&node.children), order),
         }
     }
@@ -67,8 +79,14 @@ impl Ordered {
 /// See [`Processor::enter`](super::Processor::enter).
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
-pub(super) fn enter(ray: &Slabs<f32>, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
-    let Ordered { t_near, t_far, children } = Ordered::of(ray, node, t_max);
+pub(super) fn enter(
+    ray: &Slabs<f32>,
+    node: &Node,
+    t_max: f32,
+    stack: &mut Stack<'_, f32>,
+) -> Option<Child> {
+    let below = stack.len();
+    let Ordered { t_near, t_far, children } = Spans::of(ray, node, t_max).ordered(node, ray.octant);
     let entered = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(t_near, t_far)) & 0xff;
     let first = &FIRST[entered.cast_unsigned() as usize];
     // SAFETY: 32 bytes are read from an array of 32.
@@ -82,6 +100,7 @@ pub(super) fn enter(ray: &Slabs<f32>, node: &Node, t_max: f32, stack: &mut Stack
     unsafe { _mm256_storeu_si256(top.children.as_mut_ptr().cast(), children) };
     // SAFETY: all eight have been written.
     unsafe { stack.keep(entered.count_ones() as usize) };
+    Some(stack.pop_above(below)?.0)
 }
 
 /// The slots in the order of these bits; a permutation looks at three bits of each.

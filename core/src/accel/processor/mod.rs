@@ -8,7 +8,7 @@ mod avx512;
 #[cfg(test)]
 mod tests;
 
-use super::node::Node;
+use super::node::{Child, Node};
 use super::slabs::Slabs;
 use super::stack::Stack;
 use super::top::TopNode;
@@ -92,8 +92,8 @@ impl Processor {
         }
     }
 
-    /// Puts the children of a node that the ray enters at or before `t_max` on the stack, the
-    /// nearest last.
+    /// The nearest of the children of a node that the ray enters at or before `t_max`; puts the others
+    /// on the stack, the nearest of them last.
     #[inline(always)]
     pub(super) fn enter(
         self,
@@ -101,9 +101,9 @@ impl Processor {
         node: &Node,
         t_max: f32,
         stack: &mut Stack<'_, f32>,
-    ) {
+    ) -> Option<Child> {
         match self.0 {
-            Kind::Any => ray.enter(node, t_max, stack),
+            Kind::Any => Some(ray.enter(node, t_max, stack)?.0),
             #[cfg(target_arch = "x86_64")]
             Kind::Avx2 => {
                 // SAFETY: whoever made this value found the instructions.
@@ -117,7 +117,7 @@ impl Processor {
         }
     }
 
-    /// The same for a node of placements.
+    /// The same for a node of placements, and where the ray enters the nearest.
     #[inline(always)]
     pub(super) fn enter_top(
         self,
@@ -125,7 +125,7 @@ impl Processor {
         node: &TopNode,
         t_max: f64,
         stack: &mut Stack<'_, f64>,
-    ) {
+    ) -> Option<(Child, f64)> {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512 => {

@@ -95,6 +95,11 @@ fn statements_on_one_line_are_put_on_their_own() {
     let done = folder.luxel(&["check", "a.scene", "--fix"]);
     assert!(done.code == 0 && done.err.contains(": E0023: a line begun"), "{done:?}");
     assert_eq!(text(&folder, "a.scene"), format!("{SCENE}let a = 1\nlet b = 2\n"));
+    // As the file ends its lines.
+    let dos = |text: &str| text.replace('\n', "\r\n");
+    let folder = folder.with("b.scene", &dos(&format!("{SCENE}let a = 1 let b = 2\n")));
+    assert_eq!(folder.luxel(&["check", "b.scene", "--fix"]).code, 0);
+    assert_eq!(text(&folder, "b.scene"), dos(&format!("{SCENE}let a = 1\nlet b = 2\n")));
 }
 
 #[test]

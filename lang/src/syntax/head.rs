@@ -112,7 +112,14 @@ pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
     );
     // An object may be meant as a parameter of the one before.
     let grade = if is_object { Grade::Guess } else { Grade::Sure };
-    Some(around.error("E0023", current, message).mend(gap, "\n", grade))
+    let line_break = line_break(&around.text[..blank]);
+    Some(around.error("E0023", current, message).mend(gap, line_break, grade))
+}
+
+/// What ends a line after this text, as it ended the one before.
+fn line_break(before: &str) -> &'static str {
+    let last = before.rfind('\n').map(|end| &before[..end]);
+    if last.is_some_and(|line| line.ends_with('\r')) { "\r\n" } else { "\n" }
 }
 
 /// `plcae ball`, `includ "a.scene"`, `const x = 3`: by what follows the word.

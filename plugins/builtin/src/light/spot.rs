@@ -130,8 +130,8 @@ impl Light for Spot {
             return Err(Fault::range("cone", "a cone without width lights nothing"));
         }
         if self.falloff > self.cone {
-            let limit = self.cone.to_degrees();
-            let message = format!("the soft edge lies inside the cone: at most {limit:.6} deg");
+            let limit = (self.cone.to_degrees() * 1e6).round() / 1e6;
+            let message = format!("the soft edge lies inside the cone: at most {limit} deg");
             return Err(Fault::range("falloff", message));
         }
         Ok(())
@@ -164,6 +164,12 @@ mod tests {
         let mut spot = Spot { look, cone, falloff, exponent, emission, axis, solid_angle: 0.0 };
         spot.prepare();
         spot
+    }
+
+    #[test]
+    fn a_soft_edge_wider_than_the_cone_is_told_as_it_is_written() {
+        let fault = spot(12f64.to_radians(), 13f64.to_radians(), 0.0).check().unwrap_err();
+        assert!(format!("{fault:?}").contains("at most 12 deg"), "{fault:?}");
     }
 
     #[test]

@@ -19,13 +19,29 @@ const SPP: u32 = 16;
 /// Of the pictures, in pixels.
 const SIZE: [u32; 2] = [160, 120];
 
+const BOX: &str = include_str!("../scenes/cornell_rgb.scene");
+const GLASS: &str = include_str!("../scenes/glass_metal.scene");
+
 /// Scenes of the project.
 const SCENES: [(&str, &str); 4] = [
-    ("Cornell box", include_str!("../scenes/cornell_rgb.scene")),
-    ("glass and metal", include_str!("../scenes/glass_metal.scene")),
+    ("Cornell box", BOX),
+    ("glass and metal", GLASS),
     ("fog", include_str!("../../scenes/fog.scene")),
     ("motion", include_str!("../../scenes/motion.scene")),
 ];
+
+/// Those above, each requiring one feature more.
+fn enriched() -> [(&'static str, String); 3] {
+    let layers = "albedo = true, normal = true, position = true, depth = true, material_id = true, \
+                  object_id = true, motion = true, cost = true";
+    let drop = "shape sphere \"drop\" {
+        center = (170, 100, 180), radius = 60, material = material dielectric { ior = 1.33 } }\n";
+    [
+        ("Cornell box by wavelength", include_str!("../scenes/cornell_spectral.scene").to_owned()),
+        ("Cornell box, all layers", BOX.replace("film rgb { ", &format!("film rgb {{ {layers}, "))),
+        ("water in glass", format!("{GLASS}\n{drop}")),
+    ]
+}
 
 /// Prints for each scene and feature the time of the one over that of the other.
 ///
@@ -38,28 +54,40 @@ pub(crate) fn run() -> Result<(), String> {
     );
     println!("| scene | feature | | ratio | middle half | bits |\n|---|---|---|---|---|---|");
     for (name, text) in SCENES {
-        let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-        let mut scene = scene_in(&linked(), &files)?;
-        scene.set_resolution(SIZE.into());
-        features(name, &scene)?;
+        features(name, &small(text)?, true)?;
+    }
+    for (name, text) in enriched() {
+        features(name, &small(&text)?, false)?;
     }
     Ok(())
 }
 
-fn features(name: &str, scene: &Scene) -> Result<(), String> {
+/// The scene of a text, with a small picture.
+fn small(text: &str) -> Result<Scene, String> {
+    let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+    let mut scene = scene_in(&linked(), &files)?;
+    scene.set_resolution(SIZE.into());
+    Ok(scene)
+}
+
+/// The rows of a scene: of the features that it requires, and of the others too if `all`.
+fn features(name: &str, scene: &Scene, all: bool) -> Result<(), String> {
     let derived = built(scene)?;
     println!("| {name} | as derived, twice | | {} |", told(&derived, &built(scene)?));
     for feature in Feature::ALL {
         let mut other = scene.clone();
-        let way = if derived.needs(feature) {
+        let is_used = derived.needs(feature);
+        if !is_used && !all {
+            continue;
+        }
+        let way = if is_used {
             other.leave_out(feature).map(|()| "used / dropped")
         } else {
             other.require(feature).map(|()| "required / left out")
         };
         let Ok(way) = way else { continue };
         let other = built(&other)?;
-        let ratios =
-            if derived.needs(feature) { told(&derived, &other) } else { told(&other, &derived) };
+        let ratios = if is_used { told(&derived, &other) } else { told(&other, &derived) };
         println!("| {name} | `{}` | {way} | {ratios} |", feature.name());
     }
     Ok(())

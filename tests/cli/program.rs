@@ -198,6 +198,11 @@ impl Running {
         }
     }
 
+    /// Whether it has come to its end by itself.
+    pub(crate) fn is_over(&mut self) -> bool {
+        self.0.as_mut().unwrap().try_wait().unwrap().is_some()
+    }
+
     pub(crate) fn end(mut self) -> Done {
         told(&self.0.take().unwrap().wait_with_output().unwrap())
     }

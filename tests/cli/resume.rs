@@ -17,15 +17,17 @@ fn a_render_that_is_killed_twenty_times_goes_on_to_the_same_picture() {
     let mut rng = Rng::new(11);
     let args =
         ["render", "a.scene", "--spp", LONG, "-o", "left", "--resume", "--checkpoint", "0.02"];
-    let mut kept = 0;
-    for _ in 0..20 {
-        let running = folder.start(&args);
+    let (mut killed, mut kept) = (0, 0);
+    while killed < 20 {
+        let mut running = folder.start(&args);
         std::thread::sleep(Duration::from_millis(u64::from(rng.u32() % 250)));
+        killed += u32::from(!running.is_over());
         // Killed, not asked: nothing can be said or saved any more.
         drop(running);
         kept += u32::from(folder.path("left.checkpoint").exists());
     }
-    assert!(kept > 0, "none of them lived until its first checkpoint");
+    // Once there is a checkpoint, there is one until the picture is finished.
+    assert!(kept >= 10, "{kept} times something was kept");
     let last = folder.luxel(&[&args[..], &["--json"]].concat());
     assert_eq!(last.code, 0, "{last:?}");
     assert!(folder.read("left.exr") == folder.read("whole.exr"));

@@ -1,6 +1,4 @@
 //! Two seeds of a scene are the same, and a bias of 1 % in a material is found: tried many times.
-//!
-//! `LUXEL_SEEDS=200 cargo test --release -p luxel trials` takes the long form.
 
 use std::path::Path;
 
@@ -69,10 +67,7 @@ fn verdict(a: Picture, b: Picture) -> (Word, f64, f64) {
 }
 
 /// How many pairs of seeds are tried.
-fn trials() -> u32 {
-    #[expect(clippy::disallowed_methods, reason = "the long form is asked for from outside")]
-    std::env::var("LUXEL_SEEDS").map_or(10, |trials| trials.parse().unwrap())
-}
+const TRIALS: u32 = 200;
 
 /// The least number of successes of `n` trials that one run in a thousand falls short of, if each
 /// succeeds with the probability `p`.
@@ -96,7 +91,7 @@ fn words(rho: &str, spp: u32) -> Vec<(Word, f64)> {
         let (word, seen, _) = verdict(picture(&a, seed, spp), picture(&b, seed + 100_000, spp));
         (word, seen)
     };
-    (0..trials()).map(trial).collect()
+    (0..TRIALS).map(trial).collect()
 }
 
 #[test]
@@ -104,7 +99,7 @@ fn two_seeds_of_one_scene_are_the_same() {
     let words = words("0.5", 48);
     let same = words.iter().filter(|(word, _)| *word == Word::Same).count();
     println!("{same} of {} are the same", words.len());
-    // At least 19 of 20, 190 of 200.
+    // 190 of 200.
     assert!(same * 20 >= words.len() * 19, "{words:?}");
 }
 
@@ -113,7 +108,7 @@ fn samples_that_are_equal_by_chance_make_no_difference() {
     let dots = stage(DOTS, "0.5");
     for (spp, expected) in [(8, Word::Inconclusive), (16, Word::Same)] {
         let word = |seed| verdict(picture(&dots, seed, spp), picture(&dots, seed + 100_000, spp)).0;
-        let words: Vec<_> = (0..trials()).map(word).collect();
+        let words: Vec<_> = (0..TRIALS).map(word).collect();
         println!("{spp} {words:?}");
         assert!(words.iter().all(|word| *word == expected), "{spp}: {words:?}");
     }
@@ -129,7 +124,7 @@ fn a_bias_of_a_hundredth_in_one_material_is_found_with_the_stated_power() {
     let found = words.iter().filter(|(word, _)| *word == Word::Different).count();
     println!("{found} of {} found; bias {bias}, stated {seen}", words.len());
     assert!(seen <= bias, "the picture's mean is off by {bias}, and {seen} is seen");
-    assert!(found >= least(trials(), POWER) as usize, "{words:?}");
+    assert!(found >= least(TRIALS, POWER) as usize, "{words:?}");
 }
 
 #[test]

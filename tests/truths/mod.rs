@@ -56,6 +56,19 @@ fn truths_hold_and_every_one_is_published_and_no_other() {
 }
 
 #[test]
+fn truths_hold_in_every_precision() {
+    let n = published(&text(&root().join(PUBLISHED))).len();
+    for precision in ["fast", "exact"] {
+        let done = verify(&Folder::new("truths-precision"), &["--json", "--precision", precision]);
+        let rows = rows(&done);
+        let wrong: Vec<_> = rows.iter().filter(|row| row["verdict"] != "ok").collect();
+        assert!(done.code == 0 && wrong.is_empty(), "{precision}: {wrong:#?}");
+        let ids: BTreeSet<_> = rows.iter().map(|row| row["id"].to_string()).collect();
+        assert_eq!(ids.len(), n, "{precision}");
+    }
+}
+
+#[test]
 fn scenes_of_truths_hold_to_what_they_say_themselves() {
     let scenes = files_below(&root().join("cli/src/verify/truths"), "scene");
     let says = |path: &PathBuf| text(path).contains("expect ");

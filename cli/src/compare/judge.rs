@@ -109,6 +109,19 @@ pub(super) fn judge(pair: &Pair, alpha: f64) -> Judged {
     }
 }
 
+impl Judged {
+    /// How many tiles have their p of luminance in each tenth from 0 to 1: about as many in each, if
+    /// the pictures are the same and their standard errors are right.
+    pub(super) fn histogram(&self) -> [usize; 10] {
+        let mut tenths = [0; 10];
+        for p in self.tiles.iter().filter_map(|tile| tile.lanes[0].p) {
+            let above = (1..10).filter(|tenth| p >= f64::from(*tenth) / 10.0).count();
+            tenths[above] += 1;
+        }
+        tenths
+    }
+}
+
 /// The tiles of the whole picture, as far as they lie in a window.
 fn cut(window: Rect) -> impl Iterator<Item = Rect> {
     let (first, end) = (window.min / TILE, (window.min + window.size - 1) / TILE + 1);

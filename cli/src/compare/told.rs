@@ -65,6 +65,7 @@ impl Told<'_> {
             "tile_side": TILE,
             "tiles": judged.tiles.len(),
             "least_tile": least,
+            "histogram": judged.histogram(),
             "histogram_p": judged.histogram_p,
             "smallest_detectable_bias": {
                 "whole": judged.detectable.whole,
@@ -137,6 +138,8 @@ impl Told<'_> {
                 lane.z(),
             ));
         }
+        let tenths = judged.histogram().map(|n| n.to_string()).join(" ");
+        lines.push(format!("tiles by the tenth where their p lies, 0 to 1: {tenths}"));
         lines.push(format!("too many small p values of tiles: p = {}", chance(judged.histogram_p)));
         let seen = judged.detectable;
         lines.push(format!(

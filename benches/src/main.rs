@@ -62,8 +62,8 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
     Bench { name, runs_program: false, run }
 }
 
-/// The last four are not among `all`: they take long, or another program.
-const BENCHES: [Bench; 22] = [
+/// The last five are not among `all`: they take long, or another program, or measure nothing new.
+const BENCHES: [Bench; 23] = [
     of_crates("parse", |_| parse::run().and_then(|()| evaluate::run())),
     of_crates("evaluate", |_| evaluate::run()),
     of_crates("editor", |_| {
@@ -97,6 +97,7 @@ const BENCHES: [Bench; 22] = [
     of_program("lean", |plan| lean::run(&plan.luxel, plan.lean.as_deref())),
     of_program("tables", tables::run),
     of_program("soak", |plan| watch::soak(&plan.luxel)),
+    of_program("tables-short", tables::short),
     of_crates("leaks-long", |plan| {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 1_000_000);
         Ok(())
@@ -114,7 +115,7 @@ fn usage() -> String {
 
 /// What is to be measured, and with which programs.
 fn plan() -> Result<(&'static [Bench], Plan), String> {
-    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 4).0;
+    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 5).0;
     let mut benches = ALL;
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
     let (mut python, mut embree, mut lean, mut document) = (None, None, None, None);

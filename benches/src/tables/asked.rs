@@ -9,20 +9,25 @@ use luxel_core::render::{Control, Goal, Options, render};
 use luxel_core::stage::{self, Stage};
 use luxel_sdk::color::RgbSpace;
 
+use super::Form;
 use crate::process::read;
 use crate::scene::{linked, scene_in};
 
-/// What is asked for.
-const ERROR: f64 = 0.05;
-const SIZE: UVec2 = UVec2::splat(96);
-/// Of the picture that counts as the truth.
-const SPP: u32 = 2048;
 /// Of that picture; the scenes have others.
 const SEED: u32 = 77;
 /// Side of a tile, pixels.
 const TILE: u32 = 16;
 /// Share of the mean that a darker pixel's error is compared with, as `luxel render --error`.
 const DARK: f64 = 0.1;
+
+/// What is rendered.
+struct Run {
+    /// What is asked for.
+    error: f64,
+    size: UVec2,
+    /// Of the picture that counts as the truth.
+    spp: u32,
+}
 
 /// Name, file, and the files that it reads.
 const SCENES: [(&str, &str, &[&str]); 2] = [
@@ -40,61 +45,70 @@ const SCENES: [(&str, &str, &[&str]); 2] = [
 
 /// # Errors
 /// A scene that does not build.
-pub(super) fn table(root: &Path) -> Result<String, String> {
+pub(super) fn table(root: &Path, form: Form) -> Result<String, String> {
+    let run = Run {
+        error: form.pick(0.05, 0.3),
+        size: UVec2::splat(form.pick(96, 32)),
+        spp: form.pick(2048, 64),
+    };
     let mut rows = vec![
         "| | samples of a pixel, mean | said | true | worst tile | evenly: true | evenly: worst tile |"
             .to_owned(),
         "|---|---|---|---|---|---|---|".to_owned(),
     ];
     for (name, file, assets) in SCENES {
-        let stage = stage_of(&root.join("scenes"), file, assets)?;
-        rows.push(format!("| {name} | {} |", row(&stage)));
+        let stage = run.stage_of(&root.join("scenes"), file, assets)?;
+        rows.push(format!("| {name} | {} |", run.row(&stage)));
     }
     Ok(rows.join("\n"))
 }
 
-fn stage_of(folder: &Path, file: &str, assets: &[&str]) -> Result<Stage, String> {
-    let mut files = MemoryFiles::default().with("a.scene", &*read(&folder.join(file))?);
-    for asset in assets {
-        files = files.with(*asset, &*read(&folder.join(asset))?);
+impl Run {
+    fn stage_of(&self, folder: &Path, file: &str, assets: &[&str]) -> Result<Stage, String> {
+        let mut files = MemoryFiles::default().with("a.scene", &*read(&folder.join(file))?);
+        for asset in assets {
+            files = files.with(*asset, &*read(&folder.join(asset))?);
+        }
+        let mut scene = scene_in(&linked(), &files)?;
+        scene.set_resolution(self.size);
+        let built = stage::build(&scene, &linked(), &files, None);
+        built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
     }
-    let mut scene = scene_in(&linked(), &files)?;
-    scene.set_resolution(SIZE);
-    let built = stage::build(&scene, &linked(), &files, None);
-    built.map(|built| built.stage).map_err(|found| format!("{found:?}"))
-}
 
-fn row(stage: &Stage) -> String {
-    let picture = |options: Options| render(stage, &options, &Control::default()).0;
-    let truth = picture(Options { spp: Some(SPP), seed: Some(SEED), ..Options::default() });
-    let goal = Goal { error: Some(ERROR), time: None };
-    let asked = picture(Options { goal, ..Options::default() });
-    let counts: Vec<u32> = asked.pixels().map(|(_, pixel)| pixel.n).collect();
-    let (least, most) = (counts.iter().min(), counts.iter().max());
-    let total: u64 = counts.iter().map(|n| u64::from(*n)).sum();
-    let mean = u32::try_from(total / counts.len() as u64).unwrap_or(u32::MAX);
-    let evenly = picture(Options { spp: Some(mean), ..Options::default() });
-    let said = Errors::of_film(&asked, ERROR).map_or(f64::NAN, |errors| errors.rms);
-    let [(rms, worst), (even_rms, even_worst)] = [&asked, &evenly].map(|film| off(film, &truth));
-    let [said, rms, worst, even_rms, even_worst] =
-        [said, rms, worst, even_rms, even_worst].map(|share| format!("{:.1} %", share * 100.0));
-    let [least, most] = [least, most].map(|n| n.copied().unwrap_or_default());
-    format!("{least} to {most}, {mean} | {said} | {rms} | {worst} | {even_rms} | {even_worst}")
-}
-
-/// Relative error of a picture, root mean square: of all, and of the worst tile.
-fn off(film: &Film, truth: &Film) -> (f64, f64) {
-    let weights = RgbSpace::LinearSrgb.luminance_weights();
-    let n = f64::from(SIZE.x) * f64::from(SIZE.y);
-    let dark = DARK * truth.pixels().map(|(_, pixel)| weights.dot(pixel.mean)).sum::<f64>() / n;
-    let side = SIZE / TILE;
-    let mut tiles = vec![0.0; (side.x * side.y) as usize];
-    for ((at, own), (_, true_pixel)) in film.pixels().zip(truth.pixels()) {
-        let [own, right] = [own, true_pixel].map(|pixel| weights.dot(pixel.mean));
-        let tile = at / TILE;
-        tiles[(tile.y * side.x + tile.x) as usize] += ((own - right) / right.max(dark)).powi(2);
+    fn row(&self, stage: &Stage) -> String {
+        let picture = |options: Options| render(stage, &options, &Control::default()).0;
+        let truth =
+            picture(Options { spp: Some(self.spp), seed: Some(SEED), ..Options::default() });
+        let goal = Goal { error: Some(self.error), time: None };
+        let asked = picture(Options { goal, ..Options::default() });
+        let counts: Vec<u32> = asked.pixels().map(|(_, pixel)| pixel.n).collect();
+        let (least, most) = (counts.iter().min(), counts.iter().max());
+        let total: u64 = counts.iter().map(|n| u64::from(*n)).sum();
+        let mean = u32::try_from(total / counts.len() as u64).unwrap_or(u32::MAX);
+        let evenly = picture(Options { spp: Some(mean), ..Options::default() });
+        let said = Errors::of_film(&asked, self.error).map_or(f64::NAN, |errors| errors.rms);
+        let [(rms, worst), (even_rms, even_worst)] =
+            [&asked, &evenly].map(|film| self.off(film, &truth));
+        let [said, rms, worst, even_rms, even_worst] =
+            [said, rms, worst, even_rms, even_worst].map(|share| format!("{:.1} %", share * 100.0));
+        let [least, most] = [least, most].map(|n| n.copied().unwrap_or_default());
+        format!("{least} to {most}, {mean} | {said} | {rms} | {worst} | {even_rms} | {even_worst}")
     }
-    let whole = (tiles.iter().sum::<f64>() / n).sqrt();
-    let worst = tiles.iter().copied().fold(0.0, f64::max) / f64::from(TILE * TILE);
-    (whole, worst.sqrt())
+
+    /// Relative error of a picture, root mean square: of all, and of the worst tile.
+    fn off(&self, film: &Film, truth: &Film) -> (f64, f64) {
+        let weights = RgbSpace::LinearSrgb.luminance_weights();
+        let n = f64::from(self.size.x) * f64::from(self.size.y);
+        let dark = DARK * truth.pixels().map(|(_, pixel)| weights.dot(pixel.mean)).sum::<f64>() / n;
+        let side = self.size / TILE;
+        let mut tiles = vec![0.0; (side.x * side.y) as usize];
+        for ((at, own), (_, true_pixel)) in film.pixels().zip(truth.pixels()) {
+            let [own, right] = [own, true_pixel].map(|pixel| weights.dot(pixel.mean));
+            let tile = at / TILE;
+            tiles[(tile.y * side.x + tile.x) as usize] += ((own - right) / right.max(dark)).powi(2);
+        }
+        let whole = (tiles.iter().sum::<f64>() / n).sqrt();
+        let worst = tiles.iter().copied().fold(0.0, f64::max) / f64::from(TILE * TILE);
+        (whole, worst.sqrt())
+    }
 }

@@ -4,25 +4,26 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{answer, luxel, told};
+use super::{Form, answer, luxel, told};
 use crate::process::{Luxel, scratch};
 
 /// Samples of the pictures that are denoised.
 const COUNTS: [u32; 2] = [16, 64];
-/// Samples of the picture that they are compared with, and its seed.
-const REFERENCE: [u32; 2] = [320, 9];
+/// Of the picture that they are compared with.
+const SEED: u32 = 9;
 
 /// # Errors
 /// The program's words.
-pub(super) fn table(program: &Luxel, root: &Path) -> Result<String, String> {
+pub(super) fn table(program: &Luxel, root: &Path, form: Form) -> Result<String, String> {
     let folder = scratch()?;
     let scene = root.join("scenes/cornell.scene");
     let render = |name: &str, [spp, seed]: [u32; 2]| {
         let [spp, seed] = [format!("--spp={spp}"), format!("--seed={seed}")];
-        let words = ["render", "--quiet", "--size=256x256", &spp, &seed, "-o", name];
+        let size = form.pick("--size=256x256", "--size=32x32");
+        let words = ["render", "--quiet", size, &spp, &seed, "-o", name];
         told(luxel(program, &folder, &words).arg(&scene))
     };
-    render("reference", REFERENCE)?;
+    render("reference", [form.pick(320, 64), SEED])?;
     let mut rows = ["| | relMSE | MSE | FLIP |", "|---|---|---|---|"].map(str::to_owned).to_vec();
     for spp in COUNTS {
         render("noisy", [spp, 1])?;

@@ -10,7 +10,7 @@ mod studied;
 use std::path::Path;
 use std::process::Command;
 
-use crate::process::{Luxel, has_mitsuba, here};
+use crate::process::{self, Luxel, has_mitsuba, here, read, scratch};
 use crate::{Plan, document, errors};
 use peers::Found;
 use studied::STUDIES;
@@ -18,6 +18,8 @@ use studied::STUDIES;
 /// The documents, below the project's folder.
 const ACCURACY: &str = "docs/accuracy.md";
 const PERFORMANCE: &str = "docs/performance.md";
+/// Where the plots of studies stand.
+const IMAGES: &str = "docs/images";
 
 /// The names of their parts.
 const ASKED: &str = "asked";
@@ -26,23 +28,40 @@ const REGIONS: &str = "peers";
 const BLOCKS: &str = "peers-blocks";
 const SPEED: &str = "peers-speed";
 
+/// How much is measured.
+#[derive(Clone, Copy)]
+enum Form {
+    Whole,
+    /// So little that it only shows that every table can be made.
+    Short,
+}
+
+impl Form {
+    fn pick<T>(self, whole: T, short: T) -> T {
+        match self {
+            Self::Whole => whole,
+            Self::Short => short,
+        }
+    }
+}
+
+fn root() -> Result<&'static Path, String> {
+    here().parent().ok_or_else(|| "the benches lie in the project's folder".to_owned())
+}
+
 /// Writes them all; what takes long last. Without another renderer its tables stay as they are.
 ///
 /// # Errors
 /// What a command or the disk says.
 pub(crate) fn run(plan: &Plan) -> Result<(), String> {
-    let root = here().parent().ok_or("the benches lie in the project's folder")?;
+    let root = root()?;
     let (luxel, place) = (&plan.luxel, root.join(ACCURACY));
     told(Command::new(&luxel.program).args(["verify", "--write"]).arg(&place))?;
     errors::run(Some(&place))?;
     let tests = ["test", "-p", "luxel-tests", "intervals_hold_the_truth"];
     told(Command::new("cargo").args(tests).env("LUXEL_WRITE_DOCS", "1").current_dir(root))?;
-    write(&place, ASKED, &asked::table(root)?)?;
-    write(&place, DENOISED, &denoised::table(luxel, root)?)?;
+    renders(luxel, &place, Path::new(IMAGES), Form::Whole)?;
     readme::alone(plan, root)?;
-    for study in STUDIES {
-        write(&place, &study.name(), &study.run(luxel, root)?)?;
-    }
     let Some(python) = plan.python.as_deref().filter(|python| has_mitsuba(python)) else {
         println!(
             "Mitsuba is not to be had (--python PATH of one that imports it): what is measured beside it stays as it is"
@@ -54,6 +73,26 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     write(&place, BLOCKS, &found.blocks()?)?;
     write(&root.join(PERFORMANCE), SPEED, &found.speed()?)?;
     readme::beside(&found, root)
+}
+
+/// Makes those tables of docs/accuracy.md that no test makes, of next to nothing and in a copy.
+///
+/// # Errors
+/// What a command or the disk says.
+pub(crate) fn short(plan: &Plan) -> Result<(), String> {
+    let place = process::write("accuracy.md", &read(&root()?.join(ACCURACY))?)?;
+    renders(&plan.luxel, &place, &scratch()?, Form::Short)
+}
+
+/// What is measured by rendering scenes of the project; plots of studies go to `images`, a path as
+/// from the project's folder.
+fn renders(luxel: &Luxel, place: &Path, images: &Path, form: Form) -> Result<(), String> {
+    let root = root()?;
+    write(place, ASKED, &asked::table(root, form)?)?;
+    write(place, DENOISED, &denoised::table(luxel, root, form)?)?;
+    STUDIES
+        .iter()
+        .try_for_each(|study| write(place, &study.name(), &study.run(luxel, root, images, form)?))
 }
 
 /// Prints a part of a document, and puts it there.
@@ -87,7 +126,6 @@ fn luxel(luxel: &Luxel, folder: &Path, words: &[&str]) -> Command {
 mod tests {
     use super::*;
     use crate::generated::part;
-    use crate::process::read;
     use studied::Study;
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{answer, luxel};
+use super::{Form, answer, luxel};
 use crate::process::Luxel;
 
 /// A scene, and the error that its settings are to reach.
@@ -23,15 +23,21 @@ impl Study {
         format!("study-{}", self.scene)
     }
 
-    /// What the program tells, without what all studies begin with; its files are written beside the
-    /// document's pictures.
+    /// What the program tells, without what all studies begin with; its files are written to `images`.
     ///
     /// # Errors
     /// The program's words.
-    pub(super) fn run(&self, program: &Luxel, root: &Path) -> Result<String, String> {
+    pub(super) fn run(
+        &self,
+        program: &Luxel,
+        root: &Path,
+        images: &Path,
+        form: Form,
+    ) -> Result<String, String> {
         let scene = format!("scenes/{}.scene", self.scene);
-        let out = format!("docs/images/{}", self.name());
-        let words = ["study", &scene, "--target", self.target, "--time", "2min", "-o", &out];
+        let out = images.join(self.name()).display().to_string();
+        let time = form.pick("2min", "5s");
+        let words = ["study", &scene, "--target", self.target, "--time", time, "-o", &out];
         // A missed target is an answer too.
         let told = answer(&mut luxel(program, root, &words), &[0, 3])?;
         let from = told.find("configuration ").ok_or("the study told no table")?;

@@ -58,8 +58,8 @@ fn told(scene: &Path, with: &Luxel, without: &Luxel) -> Result<String, String> {
     Ok(format!("{:.3} | {low:.3} to {high:.3} | {word}", ratios.median()))
 }
 
-/// Processor time of a render, and the picture that it showed.
+/// Processor time of a render, and every byte of what it measured.
 fn shot(luxel: &Luxel, scene: &Path) -> Result<(f64, Vec<u8>), String> {
     let took = luxel.render_with(scene, SIZE, SPP, &["--threads=1"])?;
-    Ok((took.cpu, read(&scratch()?.join("picture.png"))?))
+    Ok((took.cpu, read(&scratch()?.join("picture.exr"))?))
 }

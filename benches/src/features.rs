@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::time::Instant;
 
 use luxel_core::files::MemoryFiles;
-use luxel_core::film::Film;
+use luxel_core::film::{Film, Layer};
 use luxel_core::render::{Control, Options, render};
 use luxel_core::scene::{Feature, Scene};
 use luxel_core::stage::{self, Stage};
@@ -30,17 +30,23 @@ const SCENES: [(&str, &str); 4] = [
     ("motion", include_str!("../../scenes/motion.scene")),
 ];
 
-/// Those above, each requiring one feature more.
-fn enriched() -> [(&'static str, String); 3] {
-    let layers = "albedo = true, normal = true, position = true, depth = true, material_id = true, \
-                  object_id = true, motion = true, cost = true";
-    let drop = "shape sphere \"drop\" {
-        center = (170, 100, 180), radius = 60, material = material dielectric { ior = 1.33 } }\n";
-    [
-        ("Cornell box by wavelength", include_str!("../scenes/cornell_spectral.scene").to_owned()),
-        ("Cornell box, all layers", BOX.replace("film rgb { ", &format!("film rgb {{ {layers}, "))),
-        ("water in glass", format!("{GLASS}\n{drop}")),
-    ]
+/// Within the glass ball of `GLASS`.
+const WATER: &str = "shape sphere \"water\" {
+    center = (170, 100, 180), radius = 60, material = material dielectric { ior = 1.33 } }";
+
+/// Two of those above, each requiring one feature more.
+fn enriched() -> Result<[(&'static str, Feature, Scene); 3], String> {
+    let mut layered = small(BOX)?;
+    for layer in Layer::ALL {
+        layered.add_layer(layer);
+    }
+    let spectral = small(include_str!("../scenes/cornell_spectral.scene"))?;
+    let nested = small(&format!("{GLASS}\n{WATER}\n"))?;
+    Ok([
+        ("Cornell box by wavelength", Feature::Spectral, spectral),
+        ("Cornell box, all layers", Feature::Layers, layered),
+        ("water in glass", Feature::Nested, nested),
+    ])
 }
 
 /// Prints for each scene and feature the time of the one over that of the other.
@@ -54,10 +60,10 @@ pub(crate) fn run() -> Result<(), String> {
     );
     println!("| scene | feature | | ratio | middle half | bits |\n|---|---|---|---|---|---|");
     for (name, text) in SCENES {
-        features(name, &small(text)?, true)?;
+        features(name, &small(text)?, &Feature::ALL)?;
     }
-    for (name, text) in enriched() {
-        features(name, &small(&text)?, false)?;
+    for (name, feature, scene) in enriched()? {
+        features(name, &scene, &[feature])?;
     }
     Ok(())
 }
@@ -70,16 +76,13 @@ fn small(text: &str) -> Result<Scene, String> {
     Ok(scene)
 }
 
-/// The rows of a scene: of the features that it requires, and of the others too if `all`.
-fn features(name: &str, scene: &Scene, all: bool) -> Result<(), String> {
+/// A scene's rows of these features.
+fn features(name: &str, scene: &Scene, of: &[Feature]) -> Result<(), String> {
     let derived = built(scene)?;
     println!("| {name} | as derived, twice | | {} |", told(&derived, &built(scene)?));
-    for feature in Feature::ALL {
+    for feature in of.iter().copied() {
         let mut other = scene.clone();
         let is_used = derived.needs(feature);
-        if !is_used && !all {
-            continue;
-        }
         let way = if is_used {
             other.leave_out(feature).map(|()| "used / dropped")
         } else {

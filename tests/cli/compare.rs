@@ -44,8 +44,6 @@ fn json_tells_the_verdict_the_numbers_and_what_would_have_been_seen() {
     let tenths = told["histogram"].as_array().unwrap();
     assert_eq!(tenths.len(), 10);
     assert_eq!(tenths.iter().map(|n| n.as_u64().unwrap()).sum::<u64>(), 16, "{told}");
-    // Brighter everywhere: p is small.
-    assert!(tenths[0].as_u64().unwrap() > 8, "{told}");
     let whole = &told["whole"][0];
     assert_eq!(whole["lane"], "luminance");
     assert!(whole["difference"].as_f64().unwrap() > 0.0, "{told}");

@@ -113,13 +113,18 @@ impl Judged {
     /// How many tiles have their p of luminance in each tenth from 0 to 1: about as many in each, if
     /// the pictures are the same and their standard errors are right.
     pub(super) fn histogram(&self) -> [usize; 10] {
-        let mut tenths = [0; 10];
-        for p in self.tiles.iter().filter_map(|tile| tile.lanes[0].p) {
-            let above = (1..10).filter(|tenth| p >= f64::from(*tenth) / 10.0).count();
-            tenths[above] += 1;
-        }
-        tenths
+        tenths(self.tiles.iter().filter_map(|tile| tile.lanes[0].p))
     }
+}
+
+/// How many of some numbers from 0 to 1 lie in each tenth; those between two in the upper one.
+fn tenths(ps: impl Iterator<Item = f64>) -> [usize; 10] {
+    let mut tenths = [0; 10];
+    for p in ps {
+        let above = (1..10).filter(|tenth| p >= f64::from(*tenth) / 10.0).count();
+        tenths[above] += 1;
+    }
+    tenths
 }
 
 /// The tiles of the whole picture, as far as they lie in a window.
@@ -177,6 +182,12 @@ mod tests {
     use luxel_sdk::sampling::Rng;
 
     use super::*;
+
+    #[test]
+    fn each_p_is_counted_in_its_tenth() {
+        let ps = [0.0, 0.05, 0.1, 0.29, 0.3, 0.999, 1.0];
+        assert_eq!(tenths(ps.into_iter()), [2, 1, 1, 1, 0, 0, 0, 0, 0, 2]);
+    }
 
     #[test]
     fn tiles_are_those_of_the_whole_picture() {

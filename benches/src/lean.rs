@@ -1,39 +1,62 @@
-//! What the code of features costs scenes that need none of it: whole renders by this program and by one
-//! that was built without that code, in turns, first one then the other first.
+//! What the code of features costs scenes that need none of it: whole renders by this program and by those
+//! that were built without that code, in turns, first one then the other first.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use crate::process::{Luxel, here, read, scratch};
 use crate::series::Series;
 
 /// Pairs of renders; the first is not counted.
-const PAIRS: usize = 25;
+const PAIRS: usize = 17;
 const SIZE: u32 = 192;
-const SPP: u32 = 32;
+const SPP: u32 = 16;
 
-/// Scenes that need no medium, no open surface, no nested refraction and no motion.
+/// Scenes that need no medium, no open surface, no nested refraction, no motion, one light and no layer.
 const SCENES: [&str; 3] = ["cornell_rgb.scene", "glass_metal.scene", "cornell_spectral.scene"];
 
-/// Prints for each scene the time of this program over that of the lean one.
+/// What a program says of a scene that it has no code for.
+const REFUSED: &str = "this program was built without";
+
+/// Prints for each program and scene the time of this program over that of the lean one; first over its
+/// own, to show the machine's noise.
 ///
 /// # Errors
-/// A program failed; its words. No lean one.
+/// A program failed; its words. No lean ones.
 pub(crate) fn run(luxel: &Luxel, lean: Option<&Path>) -> Result<(), String> {
-    let lean = lean.filter(|path| path.exists()).ok_or(
-        "--lean PATH: a program of `cargo build --release -p luxel --features luxel-core/lean \
-         --target-dir target/lean`",
-    )?;
-    let lean = Luxel { program: lean.to_owned() };
+    const WANTED: &str = "--lean DIRECTORY: of programs that were built without some code \
+                          (docs/performance.md says how)";
+    let mut programs = lean.and_then(programs).filter(|found| !found.is_empty()).ok_or(WANTED)?;
+    programs.insert(0, ("with all of it".to_owned(), luxel.program.clone()));
     println!(
         "{SIZE} x {SIZE}, {SPP} spp, one thread, processor time of the whole process, median of {} ratios of \
          interleaved pairs, with the middle half",
         PAIRS - 1
     );
-    println!("| scene | with the code / without | middle half | pictures |\n|---|---|---|---|");
-    for name in SCENES {
-        println!("| {name} | {} |", told(&here().join("scenes").join(name), luxel, &lean)?);
+    println!(
+        "| built | scene | with the code / without | middle half | pictures |\n|---|---|---|---|---|"
+    );
+    for (built, program) in programs {
+        let other = Luxel { program };
+        for name in SCENES {
+            let scene = here().join("scenes").join(name);
+            match told(&scene, luxel, &other) {
+                Ok(told) => println!("| {built} | {name} | {told} |"),
+                Err(words) if words.contains(REFUSED) => {}
+                Err(words) => return Err(words),
+            }
+        }
     }
     Ok(())
+}
+
+/// What lies in a directory, each with its name.
+fn programs(directory: &Path) -> Option<Vec<(String, PathBuf)>> {
+    let named = |path: PathBuf| Some((path.file_stem()?.to_str()?.replace('_', " "), path));
+    let found = fs::read_dir(directory).ok()?;
+    let mut found: Vec<_> = found.filter_map(|entry| named(entry.ok()?.path())).collect();
+    found.sort();
+    Some(found)
 }
 
 fn told(scene: &Path, with: &Luxel, without: &Luxel) -> Result<String, String> {

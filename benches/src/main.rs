@@ -1,8 +1,8 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
 //! `cargo run --release -p luxel-bench -- [WHAT] [--luxel PATH] [--python PATH] [--embree LIBRARY]
-//! [--lean PATH] [--write DOCUMENT]`; a word that it does not know makes it tell what it measures. The program under
-//! test is `target/release/luxel` beside this one unless given.
+//! [--lean DIRECTORY] [--write DOCUMENT]`; a word that it does not know makes it tell what it measures. The
+//! program under test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
@@ -109,7 +109,7 @@ fn usage() -> String {
     let names = names.join("|");
     format!(
         "usage: luxel-bench [all|{names}] [--luxel PATH] [--python PATH] [--embree LIBRARY] \
-         [--lean PATH] [--write DOCUMENT]"
+         [--lean DIRECTORY] [--write DOCUMENT]"
     )
 }
 

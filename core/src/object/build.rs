@@ -21,7 +21,7 @@ use crate::diag::{Diagnostic, Span};
 use crate::files::Files;
 use crate::registry::Registry;
 use crate::registry::dynamic::{Alarm, Head, Watch, remote};
-use crate::scene::{Argument, Color, Hash, Node, NodeId, Scene, Value};
+use crate::scene::{Argument, Color, Feature, Hash, Node, NodeId, Scene, Value};
 
 /// How colour is carried along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,6 +30,14 @@ pub enum ColorMode {
     Rgb,
     /// Lanes are four wavelengths.
     Spectral,
+}
+
+impl ColorMode {
+    /// Whether lanes are wavelengths.
+    #[inline(always)]
+    pub fn is_spectral(self) -> bool {
+        Feature::Spectral.is_compiled() && self == Self::Spectral
+    }
 }
 
 impl Kept for Arc<Object> {

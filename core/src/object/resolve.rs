@@ -18,6 +18,8 @@ use luxel_sdk::params::{BuildContext, ComplexIor, Fault, Kind, Param, Role, Type
 
 use super::Object;
 use super::block::Chunk;
+use crate::scene::Feature;
+
 use super::patch::{Target, TexturePatch};
 
 /// Chunks in a scratch: 4 KiB.
@@ -209,8 +211,10 @@ impl Object {
     fn fill(&self, at: &Site<'_>, scratch: &Scratch) -> Writer {
         let base = scratch.copy(self.template.chunks());
         let write = Writer { base, size: self.class.size };
-        self.fill_curves(write, at.palette);
-        self.fill_colours(write, at.palette);
+        if Feature::Spectral.is_compiled() {
+            self.fill_curves(write, at.palette);
+            self.fill_colours(write, at.palette);
+        }
         for patch in &self.patches.textures {
             fill_texture(write, patch, at, scratch);
         }

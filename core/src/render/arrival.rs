@@ -10,7 +10,7 @@ use luxel_sdk::num::{Frame, Ray, unit_again, unit_and_length};
 
 use super::path::{Path, Standing};
 use crate::cast::narrow;
-use crate::object::{ColorMode, Scratch, Site};
+use crate::object::{Scratch, Site};
 use crate::stage::{Crossing, FoundLight, Leaving, Moment, SceneHit, Seen, Skin, Stage};
 
 /// What is needed to shade: borrowed for one arrival.
@@ -248,7 +248,7 @@ impl Shader<'_, '_> {
     fn scattered(&mut self, local: &Local, sample: &Sample) -> Option<Scatter> {
         let wi = local.to_world(sample.wi)?;
         let mut weight = sample.weight * self.flight;
-        if sample.lobe.has(Lobe::DISPERSIVE) && self.stage.mode == ColorMode::Spectral {
+        if sample.lobe.has(Lobe::DISPERSIVE) && self.stage.mode.is_spectral() {
             weight *= self.path.end_secondary();
         }
         let usable = !weight.is_black();

@@ -4,7 +4,6 @@ use glam::DVec3;
 use luxel_sdk::color::{Observer, RgbSpace, Spectrum, Wavelengths, to_xyz};
 use luxel_sdk::kind::Output;
 
-use crate::object::ColorMode;
 use crate::stage::Stage;
 
 /// What samples become.
@@ -17,7 +16,7 @@ pub(super) struct Develop {
 impl Develop {
     pub(super) fn new(stage: &Stage, output: Output) -> Self {
         Self {
-            spectral: stage.mode == ColorMode::Spectral && output == Output::Value,
+            spectral: stage.mode.is_spectral() && output == Output::Value,
             observer: stage.film.observer,
             from_xyz: RgbSpace::LinearSrgb.from_xyz(),
         }

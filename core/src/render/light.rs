@@ -13,7 +13,6 @@ use super::arrival::sight;
 use super::jobs::Jobs;
 use super::tile::{Worker, moment};
 use crate::cast::index;
-use crate::object::ColorMode;
 use crate::stage::{EmissionNumbers, Emitted, Emitters};
 
 /// Light for a pixel, by its place in the picture's rows.
@@ -60,8 +59,8 @@ impl Worker<'_> {
         let [point, direction] = samples.next_2d_pair();
         let [light, side] = samples.next_2d();
         let numbers = EmissionNumbers { light, side, point, direction };
-        let u = samples.next_1d_if(stage.mode == ColorMode::Spectral);
-        if stage.mode == ColorMode::Spectral {
+        let u = samples.next_1d_if(stage.mode.is_spectral());
+        if stage.mode.is_spectral() {
             self.paths[lane].palette = Palette::new(Wavelengths::sample(u));
         }
         let moment = moment(stage, &samples);

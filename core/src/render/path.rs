@@ -5,7 +5,6 @@ use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
 use luxel_sdk::kind::CameraRay;
 use luxel_sdk::num::Ray;
 
-use crate::object::ColorMode;
 use crate::stage::{Emitted, Leaving, MediumStack, Moment, Stage};
 
 /// One path, beside the integrator's own state.
@@ -64,7 +63,7 @@ impl Path {
     /// A path begins at the camera at a moment; `u` chooses the wavelengths, if there are any.
     pub(super) fn start(&mut self, job: u32, found: &CameraRay, u: f32, stage: Moment<'_>) {
         self.time = stage.time;
-        if stage.mode == ColorMode::Spectral {
+        if stage.mode.is_spectral() {
             self.palette = Palette::new(Wavelengths::sample(u));
         }
         (self.job, self.weight, self.from) = (job, found.weight, found.ray.o);

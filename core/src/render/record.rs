@@ -8,6 +8,7 @@ use super::develop::Develop;
 use super::path::Path;
 use crate::film::{Holds, Layer, Of, Tile};
 use crate::object::Scratch;
+use crate::scene::Feature;
 use crate::stage::Stage;
 
 /// The numbers of samples in the making; nothing where a film holds colour alone.
@@ -43,12 +44,12 @@ impl Recorder {
 
     /// Whether anything is recorded.
     pub(super) fn is_on(&self) -> bool {
-        !self.ofs.is_empty()
+        Feature::Layers.is_compiled() && !self.ofs.is_empty()
     }
 
     /// Whether light of groups is told apart.
     pub(super) fn has_groups(&self) -> bool {
-        self.n_groups > 0
+        Feature::Layers.is_compiled() && self.n_groups > 0
     }
 
     /// So many samples follow.

@@ -23,7 +23,7 @@ use super::{Stop, shadow};
 use crate::accel::{Processor, Work};
 use crate::cast;
 use crate::film::{Holds, Rect, Tile};
-use crate::object::{ColorMode, Scratch};
+use crate::object::Scratch;
 use crate::stage::{Moment, Rooms, SceneHit, Stage};
 
 /// Paths in flight per worker: the best of 8…4096 measured; their state stays in the cache.
@@ -217,7 +217,7 @@ impl<'s> Worker<'s> {
         let mut samples = Samples::new(self.sampler, SampleAt { stream, index, dimension: 0 });
         let [in_pixel, lens] = samples.next_2d_pair();
         let [dx, dy] = self.stage.filter.fixed().filter().sample(in_pixel);
-        let u = samples.next_1d_if(self.stage.mode == ColorMode::Spectral);
+        let u = samples.next_1d_if(self.stage.mode.is_spectral());
         let stage = moment(self.stage, &samples);
         let offset = glam::DVec2::new(f64::from(dx), f64::from(dy));
         let p = pixel.as_dvec2() + 0.5 + offset;

@@ -49,6 +49,20 @@ impl Feature {
         Self::ALL.into_iter().find(|feature| feature.name() == name)
     }
 
+    /// Whether its code is in this program: not where the cargo feature `without_` and its name is on,
+    /// to measure what that code costs scenes that do without.
+    pub(crate) const fn is_compiled(self) -> bool {
+        match self {
+            Self::Spectral => cfg!(not(feature = "without_spectral")),
+            Self::Media => cfg!(not(feature = "without_media")),
+            Self::OpenSurfaces => cfg!(not(feature = "without_open_surfaces")),
+            Self::Nested => cfg!(not(feature = "without_nested")),
+            Self::Motion => cfg!(not(feature = "without_motion")),
+            Self::LightChoice => cfg!(not(feature = "without_light_choice")),
+            Self::Layers => cfg!(not(feature = "without_layers")),
+        }
+    }
+
     /// Why it is left out where no scene requires it.
     pub fn absent(self) -> &'static str {
         match self {

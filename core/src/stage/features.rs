@@ -20,33 +20,29 @@ pub struct Features {
     pub(super) light_choice: bool,
 }
 
-/// Whether the code of what most scenes do without is not in this program: to measure what its being
-/// there costs those scenes (the cargo feature `lean`).
-const LEAN: bool = cfg!(feature = "lean");
-
 impl Features {
     /// Something absorbs or scatters between surfaces.
     #[inline(always)]
     pub fn media(&self) -> bool {
-        !LEAN && self.media
+        Feature::Media.is_compiled() && self.media
     }
 
     /// Refracting shapes may lie within each other.
     #[inline(always)]
     pub fn nested(&self) -> bool {
-        !LEAN && self.nested
+        Feature::Nested.is_compiled() && self.nested
     }
 
     /// Something moves while the shutter is open.
     #[inline(always)]
     pub fn motion(&self) -> bool {
-        !LEAN && self.motion
+        Feature::Motion.is_compiled() && self.motion
     }
 
     /// There are several lights, or triangles of one, to choose from.
     #[inline(always)]
     pub fn light_choice(&self) -> bool {
-        self.light_choice
+        Feature::LightChoice.is_compiled() && self.light_choice
     }
 
     /// Whether paths have to know what they are inside of.
@@ -58,7 +54,7 @@ impl Features {
     /// Whether rays may pass surfaces on their way, some of which are only the boundary of a medium.
     #[inline(always)]
     pub fn is_open(&self) -> bool {
-        !LEAN && self.open_surfaces || self.nested()
+        Feature::OpenSurfaces.is_compiled() && self.open_surfaces || self.nested()
     }
 
     /// These, and those that a scene is to be rendered with in any case.
@@ -97,12 +93,14 @@ impl Stage {
     }
 }
 
-/// What a stage requires and this program has no code for: nothing, unless it is lean.
+/// What a stage requires and this program has no code for: nothing, unless it was built to be measured.
 pub(super) fn lacking(stage: &Stage) -> Option<Diagnostic> {
-    let lean = [Feature::Media, Feature::OpenSurfaces, Feature::Nested, Feature::Motion];
-    let missing = lean.into_iter().find(|feature| LEAN && stage.needs(*feature))?;
+    let is_lacking = |feature: &Feature| !feature.is_compiled() && stage.needs(*feature);
+    let missing = Feature::ALL.into_iter().find(is_lacking)?;
     let message = format!("this program was built without `{}`", missing.name());
-    Some(Diagnostic::unplaced("E0414", message).help("it was built with the cargo feature `lean`"))
+    Some(
+        Diagnostic::unplaced("E0414", message).help("it was built to measure what that code costs"),
+    )
 }
 
 /// Which nodes require a feature, each with the place that says so.

@@ -16,6 +16,7 @@ use self::triangle::Lit;
 use super::{Geometry, Mesh, Moment, Place, Placement};
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
+use crate::scene::Feature;
 
 pub use emission::{EmissionNumbers, Emitted, Emitters, Lamp};
 pub use quad::Quad;
@@ -135,7 +136,8 @@ impl Lights {
     #[inline(always)]
     fn choose(&self, u: f32) -> Option<Chosen<'_>> {
         let choice = self.choice.as_ref()?;
-        if let [source] = self.sources.as_slice() {
+        let is_one = !Feature::LightChoice.is_compiled() || self.sources.len() == 1;
+        if let (true, Some(source)) = (is_one, self.sources.first()) {
             return Some(Chosen { source, light: 0, chance: 1.0, u: f64::from(u) });
         }
         let drawn = choice.sample(f64::from(u));
@@ -179,7 +181,7 @@ fn power(light: &LightSource, radius: f64, mode: ColorMode) -> f32 {
 
 /// Lanes of what a light emits: RGB is uplifted where the path is spectral.
 fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palette) -> Spectrum {
-    if mode == ColorMode::Spectral && light.output() == Output::Rgb {
+    if mode.is_spectral() && light.output() == Output::Rgb {
         return palette.illuminant(value.rgb());
     }
     value

@@ -25,8 +25,8 @@ pub(crate) struct CheckpointArgs {
     /// is not there
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Seconds between two checkpoints, which wait for the end of a pass; 0 for none, not even after
-    /// Ctrl-C
+    /// Seconds between two checkpoints, which wait a few seconds for what is being measured; 0 for
+    /// none, not even after Ctrl-C
     #[arg(long = "checkpoint", value_name = "SECONDS", default_value = "60", value_parser = seconds)]
     every: Duration,
 }

@@ -76,7 +76,7 @@ pub(crate) fn measure(
     let standing = || *reached.lock().unwrap_or_else(PoisonError::into_inner);
     let mut told = start;
     let mut seen = |film: &Film, now: Reached| {
-        if shown {
+        if shown && now.is_whole {
             let mut found = Standing { total: control.samples_done() + now.left, ..standing() };
             if now.samples >= 2 && told.elapsed() >= PACE {
                 found.error = Errors::about(film).map(|errors| errors.median);

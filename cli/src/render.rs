@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use luxel_core::film::Film;
-use luxel_core::render::{Control, Options, Outcome, Reached, can_go_on};
+use luxel_core::render::{Control, Options, Outcome, Reached, can_go_on, is_owned};
 use luxel_core::stage::Stage;
 
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
@@ -170,8 +170,7 @@ fn begin(
     kept: &mut Checkpoint,
 ) -> Result<(Film, Options), Failure> {
     let options = args.options();
-    let is_owned = !can_go_on(stage);
-    if is_owned && !(stage.film.layers.is_empty() && stage.lights.groups.is_empty()) {
+    if is_owned(stage) && !(stage.film.layers.is_empty() && stage.lights.groups.is_empty()) {
         let message = "an integrator that owns the whole picture records nothing beside colour";
         report::warning(message);
     }
@@ -183,8 +182,8 @@ fn begin(
         }
         return Ok((empty, options));
     }
-    if is_owned {
-        let message = "an integrator that owns the whole picture cannot go on with one";
+    if !can_go_on(stage) {
+        let message = "this integrator owns the whole picture, and cannot go on with one";
         return Err(Failure::new(Exit::Input, message).help("render without --resume"));
     }
     if let Some((film, before)) = kept.read()? {

@@ -68,6 +68,10 @@ fn a_new_plugin_of_every_kind_builds_is_trusted_and_renders() {
         let small = ["--size", "16x12", "--spp", "2", "-o", &name];
         let done = folder.luxel(&[&["render", &scene][..], &search, &small].concat());
         assert_eq!((done.code, done.err.as_str()), (0, ""), "{done:?}");
+        if more.len() == 1 {
+            let on = folder.luxel(&[&["render", &scene, "--resume"][..], &search, &small].concat());
+            assert!(on.code == 1 && on.err.contains("and cannot go on with one"), "{on:?}");
+        }
         let page = folder.luxel(&[&["describe", kind, &name][..], &search].concat());
         assert!(page.out.starts_with(&format!("{kind} {name} ({name})")), "{page:?}");
     }

@@ -2,9 +2,11 @@
 
 use std::time::Duration;
 
+use luxel_core::film::Film;
 use luxel_sdk::sampling::Rng;
 
 use super::program::{Folder, SCENE};
+use super::until;
 
 /// Samples that take the program a second or two.
 const LONG: &str = "600";
@@ -36,6 +38,45 @@ fn a_render_that_is_killed_twenty_times_goes_on_to_the_same_picture() {
     assert_eq!(last.code, 0, "{last:?}");
     assert!(folder.read("left.exr") == folder.read("whole.exr"));
     assert!(!folder.path("left.checkpoint").exists());
+}
+
+/// Fog in which every path is scattered thousands of times: one sample of every pixel takes minutes.
+const SLOW: &str = r"scene 1
+camera perspective {
+  look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0))
+  fov = 40 deg
+}
+film rgb { resolution = (512, 512) }
+sampler sobol { samples = 4 }
+integrator path { max_depth = 4000, russian_roulette_from = 4000 }
+light constant { scale = 1 }
+medium homogeneous { sigma_t = 100 / (1 m), albedo = 1 }
+";
+
+#[test]
+fn what_is_measured_is_kept_before_every_pixel_has_a_sample() {
+    let folder = Folder::new("slow").with("a.scene", SLOW);
+    let args = ["render", "a.scene", "-o", "a", "--resume", "--checkpoint", "1"];
+    let mut running = folder.start(&args);
+    until("the first checkpoint", || folder.path("a.checkpoint").exists());
+    assert!(!running.is_over());
+    drop(running);
+    let first = folder.read("a.checkpoint");
+    let mut again = folder.start(&args);
+    until("the next checkpoint", || folder.read("a.checkpoint") != first);
+    assert!(!again.is_over());
+    drop(again);
+    let [before, after] = [first, folder.read("a.checkpoint")].map(|bytes| samples(&bytes));
+    assert!(0 < before && before < after && after < 512 * 512, "{before}, then {after}");
+}
+
+/// Bytes of a hash.
+const HASH: usize = 32;
+
+/// Of the film in a checkpoint: after two lines of text, and before a hash.
+fn samples(checkpoint: &[u8]) -> u64 {
+    let film = checkpoint.splitn(3, |byte| *byte == b'\n').nth(2).unwrap();
+    Film::load(&film[..film.len() - HASH]).unwrap().samples()
 }
 
 #[test]

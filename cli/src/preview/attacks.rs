@@ -186,7 +186,7 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
         let settings = stage::Film::default();
-        let seen = luxel_core::render::Reached { step: 1, samples: 1, left: 0 };
+        let seen = luxel_core::render::Reached { step: 1, samples: 1, left: 0, is_whole: true };
         Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
     };
     preview.screen().status("busy");

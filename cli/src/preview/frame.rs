@@ -226,7 +226,7 @@ fn halves(values: &[f32], unit: f64) -> Vec<f16> {
 mod tests {
     use super::*;
 
-    const ONE: Reached = Reached { step: 1, samples: 1, left: 0 };
+    const ONE: Reached = Reached { step: 1, samples: 1, left: 0, is_whole: true };
 
     fn read(bytes: &[u8]) -> (Value, &[u8]) {
         assert_eq!(&bytes[..4], b"LXL1");
@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn a_coarse_pass_sends_the_pixels_that_it_measured() {
         let film = Film::new(UVec2::new(32, 16), Rect::new(UVec2::new(5, 3), UVec2::new(17, 8)));
-        let seen = Reached { step: 8, samples: 1, left: 0 };
+        let seen = Reached { step: 8, samples: 1, left: 0, is_whole: true };
         let frame = Frame::of_film(&film, &stage::Film::default(), (seen, 1));
         let bytes = frame.encode();
         let (head, planes) = read(&bytes);

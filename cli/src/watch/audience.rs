@@ -54,7 +54,7 @@ impl Audience {
             if let Some(look) = &mut page {
                 look(film, now);
             }
-            if let Some(tev) = self.tev.as_ref().filter(|_| now.step == 1) {
+            if let Some(tev) = self.tev.as_ref().filter(|_| now.step == 1 && now.is_whole) {
                 tev.show(film);
             }
         }

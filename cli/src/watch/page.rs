@@ -165,7 +165,7 @@ impl Page {
         move |film: &Film, now: Reached| {
             let is_last = now.step == 1 && now.samples >= of_samples;
             let is_soon = now.samples > 1 && last.is_some_and(|at: Instant| at.elapsed() < PACE);
-            if !is_last && (is_soon || !screen.is_watched()) {
+            if !now.is_whole || !is_last && (is_soon || !screen.is_watched()) {
                 return;
             }
             // Held until it is shown, so that another exposure comes after it and not in between.

@@ -168,8 +168,9 @@ impl Sitting {
         let mut refused = None;
         let mut seen = |film: &Film, now: Reached| {
             look(film, now);
-            has_all |= now.step == 1;
-            let is_some = now.step == 1 && now.samples < of_samples;
+            let has_now = now.step == 1 && now.is_whole;
+            has_all |= has_now;
+            let is_some = has_now && now.samples < of_samples;
             // The picture before may still be on its way to the same file: it comes first.
             if first && is_some && !guard.is_saving() && !control.is_cancelled() {
                 first = false;

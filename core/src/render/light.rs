@@ -26,8 +26,8 @@ pub(super) struct Splat {
 /// Some of the light paths of a pass.
 pub(super) struct Bundle<'a> {
     pub(super) emitters: &'a Emitters,
-    /// Random numbers of this pass are not those of another.
-    pub(super) pass: u32,
+    /// Tells its random numbers from those of other runs.
+    pub(super) run: u32,
     /// Which of its paths.
     pub(super) paths: Range<u32>,
 }
@@ -52,8 +52,8 @@ impl Worker<'_> {
         lane: usize,
     ) -> Option<()> {
         let stage = self.stage;
-        // The paths of a pass share one sequence, so that together they cover the lights evenly.
-        let stream = hash_combine(hash_combine(self.seed, LIGHT), bundle.pass);
+        // The paths of a run share one sequence, so that together they cover the lights evenly.
+        let stream = hash_combine(hash_combine(self.seed, LIGHT), bundle.run);
         let at = SampleAt { stream, index: bundle.paths.start + index(job), dimension: 0 };
         let mut samples = Samples::new(self.sampler, at);
         let [point, direction] = samples.next_2d_pair();

@@ -7,6 +7,7 @@ mod goal;
 mod jobs;
 mod lattice;
 mod light;
+mod passes;
 mod path;
 mod picture;
 mod record;
@@ -15,17 +16,16 @@ mod tile;
 mod watched;
 
 use std::num::NonZeroUsize;
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use glam::UVec2;
-use luxel_sdk::kind::Wants;
+use luxel_sdk::kind::{PictureIntegrator, Wants};
 use rayon::prelude::*;
 
 use self::goal::Plan;
-use self::lattice::Lattice;
-use crate::film::{Film, Holds, Rect, Tile};
+use self::passes::{SLOW, passes, slices};
+use crate::film::{Film, Holds, Rect};
 use crate::registry::dynamic::remote;
 use crate::stage::Stage;
 
@@ -119,9 +119,13 @@ pub struct Reached {
     pub samples: u32,
     /// Samples that are missing, as far as one can tell.
     pub left: u64,
+    /// Whether all pixels of that step have them. If not, the pass goes on: what there is can be kept,
+    /// and is not meant to be shown.
+    pub is_whole: bool,
 }
 
-/// Sees a picture grow: told after each pass, while nothing is measured.
+/// Sees a picture grow: told after each pass, and a few seconds after it was last told, while nothing is
+/// measured.
 pub type Look<'a> = dyn FnMut(&Film, Reached) + Send + 'a;
 
 /// How far a render came.
@@ -134,9 +138,6 @@ pub enum Outcome {
     /// It was cancelled; pixels have different numbers of samples, some perhaps none.
     Cancelled,
 }
-
-/// Most samples of a pixel in one pass.
-const PASS: u32 = 16;
 
 /// What is prepared for paths from the camera.
 const FROM_CAMERA: Wants =
@@ -169,10 +170,20 @@ pub fn render_seen(
     (film, outcome)
 }
 
+/// Whether an integrator owns the whole picture of the stage.
+pub fn is_owned(stage: &Stage) -> bool {
+    owner(stage).is_some()
+}
+
+/// What owns the whole picture.
+fn owner(stage: &Stage) -> Option<&dyn PictureIntegrator> {
+    stage.integrator.fixed().integrator().as_picture()
+}
+
 /// Whether a picture of the stage that was left unfinished can be gone on with: not where an
-/// integrator owns the picture, which knows what it has seen.
+/// integrator owns the picture whose passes depend on what it has seen before.
 pub fn can_go_on(stage: &Stage) -> bool {
-    stage.integrator.fixed().integrator().as_picture().is_none()
+    owner(stage).is_none_or(PictureIntegrator::has_independent_passes)
 }
 
 /// Whether a finished picture of the stage can be gone on with for more samples: not where the sampler
@@ -190,7 +201,7 @@ pub fn bytes_of_pixel(stage: &Stage) -> usize {
 /// where an integrator owns the picture.
 pub fn empty_film(stage: &Stage, window: Rect) -> Film {
     let holds = || Holds { layers: stage.film.layers.clone(), groups: stage.lights.groups.clone() };
-    let holds = if can_go_on(stage) { holds() } else { Holds::default() };
+    let holds = if is_owned(stage) { Holds::default() } else { holds() };
     Film::holding(stage.film.resolution, window, holds)
 }
 
@@ -223,8 +234,8 @@ pub fn render_on(
     let turns = options.turns.unwrap_or_else(|| stage.is_for_turns());
     pool.install(|| {
         let integrator = stage.integrator.fixed().integrator();
-        if let Some(owner) = integrator.as_picture() {
-            assert!(film.samples() == 0, "a film that an integrator owns is begun anew");
+        if let Some(owner) = owner(stage) {
+            assert!(film.samples() == 0 || can_go_on(stage), "what it has seen is not known");
             return picture::render(owner, stage, (plan, seed), (film, look), (stop, end));
         }
         let holds = film.holds.clone();
@@ -234,18 +245,19 @@ pub fn render_on(
                 .in_turns(turns)
                 .recording(&holds)
         };
-        passes(film, &plan, options.coarse, &mut |film, Turn { lattice, longest, reached }| {
-            // Until each pixel has a sample no time is over.
-            let end = end.filter(|_| film.tiles().iter().all(|tile| tile.next > 0));
-            let stop = Stop { first: lattice.step() == lattice::COARSEST, end, ..stop };
-            film.tiles_mut().par_iter_mut().for_each_init(worker, |worker, tile| {
-                worker.pass(tile, next(tile, longest), lattice, stop);
-            });
-            if stop.is_asked() {
-                return false;
-            }
-            look(film, reached);
-            true
+        passes(film, &plan, options.coarse, &mut |film, turn| {
+            slices(film, turn, SLOW, look, &mut |film, ends, late| {
+                // Until each pixel has a sample no time is over.
+                let end = end.filter(|_| film.tiles().iter().all(|tile| tile.next > 0));
+                let stop = Stop { first: turn.lattice.step() == lattice::COARSEST, end, ..stop };
+                let tiles = film.tiles_mut().par_iter_mut().zip(ends).enumerate();
+                tiles.for_each_init(worker, |worker, (i, (tile, end))| {
+                    if !late.is_over(i) {
+                        worker.pass(tile, tile.next..*end, turn.lattice, stop);
+                    }
+                });
+                !stop.is_asked()
+            })
         });
     });
     match (stop.is_failure(), stop.is_asked()) {
@@ -270,66 +282,6 @@ fn give_way(_: bool) {}
 /// Steps of niceness.
 #[cfg(target_os = "linux")]
 const COURTESY: i32 = 5;
-
-/// The samples that a tile gets in the next pass. Passes grow: a first picture comes soon, later ones
-/// cost little to gather.
-fn next(tile: &Tile, longest: u32) -> Range<u32> {
-    let done = tile.next;
-    done..tile.aim.min(done.saturating_add(done.clamp(1, longest)))
-}
-
-/// One pass over the film.
-#[derive(Clone, Copy)]
-struct Turn {
-    /// Which pixels it is for.
-    lattice: Lattice,
-    /// Most samples of each.
-    longest: u32,
-    /// What is reached after it.
-    reached: Reached,
-}
-
-/// Longer than this no pass should take: between two the picture is seen and kept.
-const SLOW: Duration = Duration::from_secs(4);
-
-/// Passes over a film until no tile needs more, or until one says false.
-fn passes(
-    film: &mut Film,
-    plan: &Plan,
-    coarse: bool,
-    pass: &mut dyn FnMut(&mut Film, Turn) -> bool,
-) {
-    let mut longest = PASS;
-    while let Some(beyond) = plan.aim(film) {
-        while film.tiles().iter().any(|tile| tile.missing() > 0) {
-            let (is_first, start) = (film.samples() == 0, Instant::now());
-            for lattice in Lattice::steps(coarse && is_first) {
-                let reached = reached(film, (lattice, longest), beyond);
-                if !pass(film, Turn { lattice, longest, reached }) {
-                    return;
-                }
-            }
-            // How samples are gathered changes no bit.
-            longest = match start.elapsed() {
-                took if took > SLOW => (longest / 2).max(1),
-                took if took < SLOW / 4 => (longest * 2).min(PASS),
-                _ => longest,
-            };
-        }
-    }
-}
-
-/// What a pass comes to.
-fn reached(film: &Film, (lattice, longest): (Lattice, u32), beyond: u64) -> Reached {
-    let end = |tile: &Tile| next(tile, longest).end;
-    let left =
-        |tile: &Tile| u64::from(tile.aim.saturating_sub(end(tile))) * tile.pixels.len() as u64;
-    Reached {
-        step: lattice.step(),
-        samples: film.tiles().iter().map(end).max().unwrap_or(0),
-        left: beyond + film.tiles().iter().map(left).sum::<u64>(),
-    }
-}
 
 /// Whether to go on: polled between rounds.
 #[derive(Clone, Copy)]
@@ -390,36 +342,5 @@ mod tests {
         };
         let [before, courteous, after] = [false, true, false].map(nice);
         assert_eq!((courteous, after), (19.min(before + COURTESY), before));
-    }
-
-    #[test]
-    fn passes_are_each_sample_of_each_pixel_once() {
-        for (spp, coarse) in [0, 1, 2, 3, 17, 100].into_iter().flat_map(|n| [(n, false), (n, true)])
-        {
-            let size = UVec2::new(20, 3);
-            let mut film = Film::new(size, Rect::new(UVec2::ZERO, size));
-            let (mut steps, mut longest) = (vec![], 0);
-            let plan = Plan::new(Goal::default(), spp);
-            passes(
-                &mut film,
-                &plan,
-                coarse,
-                &mut |film, Turn { lattice, longest: most, reached }| {
-                    for tile in film.tiles_mut() {
-                        let range = next(tile, most);
-                        longest = longest.max(range.len());
-                        assert_eq!((range.start, range.end), (tile.next, reached.samples));
-                        tile.next = if lattice.step() == 1 { range.end } else { 0 };
-                    }
-                    steps.push(lattice.step());
-                    assert_eq!(reached.left, u64::from(spp - reached.samples) * 60);
-                    true
-                },
-            );
-            assert!(film.tiles().iter().all(|tile| tile.next == spp));
-            assert!(longest <= 16);
-            let coarser = steps.iter().filter(|step| **step > 1).count();
-            assert_eq!(coarser, if coarse && spp > 0 { 3 } else { 0 });
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! What the host does for an integrator that owns the whole picture.
 
-use std::cell::{Cell, OnceCell, RefCell};
+use std::cell::{OnceCell, RefCell};
 use std::time::Instant;
 
 use glam::DVec3;
@@ -8,6 +8,7 @@ use luxel_sdk::kind::{
     Arrival, ArrivalKind, Host, Output, PathsRef, PictureIntegrator, PictureJob, Raster, Wants,
 };
 use luxel_sdk::num::Ray;
+use luxel_sdk::sampling::hash_combine;
 use rayon::prelude::*;
 
 use super::goal::Plan;
@@ -36,8 +37,8 @@ pub(super) fn render(
 ) {
     let most = Wants(owner.wants().0 & (FROM_CAMERA.0 | Wants::SIGHT.0));
     let (window, output) = (film.window, owner.output());
-    let sum = vec![DVec3::ZERO; window.area()];
-    let pass = Pass { done: 0, broken: false, is_good: false, sum };
+    let (done, sum) = (film.most_samples(), vec![DVec3::ZERO; window.area()]);
+    let pass = Pass { done, calls: 0, broken: false, is_good: false, sum };
     owner.render(&PictureHost {
         stage,
         seed,
@@ -51,7 +52,6 @@ pub(super) fn render(
         look: RefCell::new(look),
         emitters: OnceCell::new(),
         pass: RefCell::new(pass),
-        calls: Cell::new(0),
     });
 }
 
@@ -70,14 +70,14 @@ struct PictureHost<'a> {
     look: RefCell<&'a mut Look<'a>>,
     emitters: OnceCell<Emitters>,
     pass: RefCell<Pass>,
-    /// Runs of light paths so far: each has numbers of its own.
-    calls: Cell<u32>,
 }
 
 /// One sample of every pixel in the making.
 struct Pass {
-    /// Passes that were finished.
+    /// Passes that were finished, those of a film that is gone on with among them.
     done: u32,
+    /// Runs of light paths in this pass so far: each has numbers of its own.
+    calls: u32,
     /// Whether something of it is missing.
     broken: bool,
     /// Whether the picture is as good as it is to be.
@@ -87,6 +87,12 @@ struct Pass {
 }
 
 impl Pass {
+    /// What tells the next run of light paths from all others of the picture.
+    fn next_run(&mut self) -> u32 {
+        self.calls = self.calls.wrapping_add(1);
+        hash_combine(self.done, self.calls)
+    }
+
     fn add(&mut self, splats: &[Splat], scale: f64, width: u32, window: Rect) {
         for Splat { pixel, rgb } in splats {
             let (x, y) = (pixel % width, pixel / width);
@@ -130,7 +136,7 @@ impl PictureJob for PictureHost<'_> {
     }
 
     fn is_cancelled(&self) -> bool {
-        self.pass.borrow().is_good || self.stop().is_asked()
+        !self.goes_on()
     }
 
     fn trace_n(&self, rays: &[Ray], out: &mut [Arrival]) {
@@ -190,8 +196,7 @@ impl PictureJob for PictureHost<'_> {
         }
         let paths = Watched(paths);
         let (stage, seed, stop, output) = (self.stage, self.seed, self.stop(), self.output);
-        let (most, call) = (self.most, self.calls.get());
-        self.calls.set(call.wrapping_add(1));
+        let (most, run) = (self.most, self.pass.borrow_mut().next_run());
         let emitters = self.emitters.get_or_init(|| stage.opening().emitters());
         let n_bundles = n.div_ceil(BUNDLE);
         for group in (0..n_bundles).step_by(GROUP as usize) {
@@ -202,7 +207,7 @@ impl PictureJob for PictureHost<'_> {
                     || Worker::new(stage, seed, &paths, most, output),
                     |worker, i| {
                         let paths = i * BUNDLE..n.min((i * BUNDLE).saturating_add(BUNDLE));
-                        worker.bundle(Bundle { emitters, pass: call, paths }, stop)
+                        worker.bundle(Bundle { emitters, run, paths }, stop)
                     },
                 )
                 .collect();
@@ -223,7 +228,7 @@ impl PictureJob for PictureHost<'_> {
             return;
         }
         let mut pass = self.pass.borrow_mut();
-        pass.done += 1;
+        (pass.done, pass.calls) = (pass.done + 1, 0);
         for tile in self.film.borrow_mut().tiles_mut() {
             tile.next = pass.done;
             for (at, estimate) in tile.rect.points().zip(&mut tile.pixels) {
@@ -236,7 +241,7 @@ impl PictureJob for PictureHost<'_> {
         let area = self.window.area() as u64;
         self.stop.control.add(area);
         let left = if pass.is_good { 0 } else { u64::from(self.plan.most() - pass.done) * area };
-        let reached = Reached { step: 1, samples: pass.done, left };
+        let reached = Reached { step: 1, samples: pass.done, left, is_whole: true };
         (self.look.borrow_mut())(&self.film.borrow(), reached);
     }
 }
@@ -264,7 +269,7 @@ mod tests {
         use glam::UVec2;
         let window = Rect::new(UVec2::new(1, 2), UVec2::new(2, 1));
         let sum = vec![DVec3::ZERO; window.area()];
-        let mut pass = Pass { done: 0, broken: false, is_good: false, sum };
+        let mut pass = Pass { done: 0, calls: 0, broken: false, is_good: false, sum };
         let splats: Vec<_> = (0..20).map(|pixel| Splat { pixel, rgb: DVec3::ONE }).collect();
         pass.add(&splats, 0.5, 4, window);
         pass.add(&[Splat { pixel: u32::MAX - 1, rgb: DVec3::ONE }], 0.5, 4, window);

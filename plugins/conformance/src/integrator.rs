@@ -6,7 +6,7 @@ use std::num::NonZeroUsize;
 use glam::{DAffine3, DVec3, UVec2};
 use luxel_core::diag::{SourceId, Span};
 use luxel_core::film::Film;
-use luxel_core::render::{Control, Options, render};
+use luxel_core::render::{Control, Options, can_go_on, render, render_on};
 use luxel_core::scene::{Color, NodeId, Placed, Scene, Target, Value};
 use luxel_core::stage::{Stage, build};
 use luxel_sdk::kind::{Kind, Output, Wants};
@@ -62,6 +62,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
         let spp = if i == 0 { MANY } else { SPP };
         let one = picture(&stage, 1, 1, SPP);
         is_deterministic(&stage, &one, set, judge);
+        goes_on(&stage, &one, set, judge);
         let bad = one.bad_samples();
         judge.holds("samples are finite", bad == 0, || format!("{}: {bad}", set.label));
         if !makes_light {
@@ -191,11 +192,27 @@ fn furnace(scene: &mut Scene) {
 fn is_deterministic(stage: &Stage, one: &Film, set: &Set, judge: &mut Judge) {
     for threads in [1, 3] {
         let other = picture(stage, 1, threads, SPP);
-        let same = one.pixels().zip(other.pixels()).all(|((_, a), (_, b))| {
-            a.n == b.n && a.mean.to_array().map(f64::to_bits) == b.mean.to_array().map(f64::to_bits)
-        });
+        let same = are_same(one, &other);
         judge.holds("same bits on all threads", same, || format!("{}: {threads}", set.label));
     }
+}
+
+fn are_same(one: &Film, other: &Film) -> bool {
+    one.pixels().zip(other.pixels()).all(|((_, a), (_, b))| {
+        a.n == b.n && a.mean.to_array().map(f64::to_bits) == b.mean.to_array().map(f64::to_bits)
+    })
+}
+
+/// A picture that was left half done goes on to the same bits, where the integrator says that it can.
+fn goes_on(stage: &Stage, one: &Film, set: &Set, judge: &mut Judge) {
+    if !can_go_on(stage) {
+        judge.skip("a picture goes on", "its passes depend on what it has seen before");
+        return;
+    }
+    let mut film = picture(stage, 1, 1, SPP / 2);
+    let options = Options { spp: Some(SPP), seed: Some(1), ..Options::default() };
+    render_on(&mut film, stage, &options, &Control::default(), &mut |_, _| {});
+    judge.holds("a picture goes on", are_same(one, &film), || set.label.clone());
 }
 
 /// What shows all bounces shows bright light in fog, as the suite's own path tracer does; and the light of

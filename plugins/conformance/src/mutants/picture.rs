@@ -42,6 +42,31 @@ macro_rules! picture {
     };
 }
 
+/// Says that its passes are independent, and follows other paths in the first of them.
+#[derive(Params, Clone, Copy)]
+#[repr(C)]
+struct Counts {}
+
+impl PictureIntegrator for Counts {
+    fn wants(&self) -> Wants {
+        PathIntegrator::wants(&Walk {})
+    }
+
+    fn has_independent_passes(&self) -> bool {
+        true
+    }
+
+    fn render(&self, job: &dyn PictureJob) {
+        for pass in 0..job.samples() {
+            match pass {
+                0 => job.run_camera_paths(PathsRef::new(&Blotches { seed: job.seed() })),
+                _ => job.run_camera_paths(PathsRef::new(&Walk {})),
+            }
+            job.finish_pass();
+        }
+    }
+}
+
 /// Longer than any end may take: the check allows a quarter of a second and four small pictures.
 const LATE: Duration = Duration::from_secs(4);
 
@@ -92,6 +117,10 @@ pub(super) const MUTANTS: &[Mutant] = &[
     Mutant {
         class: Class::picture_integrator::<Blotchy>("blotchy"),
         fault: "draws once for all samples",
+    },
+    Mutant {
+        class: Class::picture_integrator::<Counts>("counts"),
+        fault: "has another first pass, and says that it has none",
     },
     Mutant {
         class: Class::picture_integrator::<Dawdles>("dawdles"),

@@ -36,6 +36,10 @@ impl PictureIntegrator for LightTracer {
         Sky.wants().with(Light(*self).wants())
     }
 
+    fn has_independent_passes(&self) -> bool {
+        true
+    }
+
     fn render(&self, job: &dyn PictureJob) {
         let size = job.raster().size;
         for _ in 0..job.samples() {

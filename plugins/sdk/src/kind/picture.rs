@@ -29,6 +29,12 @@ pub trait PictureIntegrator: Send + Sync {
         Output::Value
     }
 
+    /// Whether a pass depends on nothing that earlier ones found or counted. Then a picture that was
+    /// left unfinished can be gone on with: the host counts the passes that it has.
+    fn has_independent_passes(&self) -> bool {
+        false
+    }
+
     /// Makes the picture: `job.samples()` times, what a pass consists of and `job.finish_pass()`.
     fn render(&self, job: &dyn PictureJob);
 }
@@ -45,7 +51,8 @@ pub trait PictureJob {
     /// The seed.
     fn seed(&self) -> u32;
 
-    /// Whether an end was asked for. What is asked of the host then does nothing.
+    /// Whether nothing more is wanted: an end was asked for, or every pass is done. What is asked of the
+    /// host then does nothing.
     fn is_cancelled(&self) -> bool;
 
     /// Where rays arrive: positions alone, as `Wants::POSITION`. Media do not count, nor do surfaces

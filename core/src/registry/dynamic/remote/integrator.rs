@@ -67,6 +67,12 @@ impl PictureIntegrator for RemoteIntegrator {
         Integrator::output(self)
     }
 
+    fn has_independent_passes(&self) -> bool {
+        // SAFETY: the struct behind the head is of the class that the table belongs to.
+        let answer = unsafe { self.table().has_independent_passes(self.0.at()) };
+        self.0.found(answer) == Some(1)
+    }
+
     fn render(&self, job: &dyn PictureJob) {
         if self.0.is_poisoned() {
             return;

@@ -3,7 +3,9 @@ use std::marker::PhantomData;
 use glam::DVec3;
 
 use super::{PictureJobRef, SamplerRef, table};
-use crate::kind::{Ask, Host, Job, Lane, PathIntegrator, Requests, Round, Wants, arrive_n};
+use crate::kind::{
+    Ask, Host, Job, Lane, PathIntegrator, PictureIntegrator, Requests, Round, Wants, arrive_n,
+};
 use crate::num::Ray;
 use crate::wire::Slice;
 use crate::wire::expect;
@@ -154,6 +156,12 @@ table! {
         fn render(integrator, job: &PictureJobRef<'_>) -> u32 {
             integrator.as_picture()?.render(job);
             Some(0)
+        }
+        /// Whether it owns the picture and no pass of it depends on what earlier ones found or counted, so
+        /// that the host may leave out those that a picture has: 1 or 0. May be null: it does.
+        fn has_independent_passes(integrator) -> u32 {
+            let owner = integrator.as_picture();
+            Some(u32::from(owner.is_some_and(PictureIntegrator::has_independent_passes)))
         }
     }
 }

@@ -2,14 +2,12 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write;
-use std::path::Path;
 
 use glam::DVec3;
 use luxel_core::film::{Pixel, half_width_95};
 use luxel_sdk::sampling::{Rng, sobol_owen_2d};
 
-use crate::disk::{root, text};
-use crate::generated::{part, replaced};
+use crate::published;
 
 /// Runs of each case.
 const RUNS: u32 = 1000;
@@ -145,9 +143,6 @@ fn table(rows: &[Row]) -> String {
     out
 }
 
-/// Where the table stands.
-const PUBLISHED: &str = "docs/accuracy.md";
-
 #[test]
 fn intervals_hold_the_truth_as_often_as_is_published() {
     let found = rows();
@@ -161,22 +156,5 @@ fn intervals_hold_the_truth_as_often_as_is_published() {
         // tell their spread to 2.2 %, four times which is allowed.
         assert!(row.is_skewed || row.said_over_true > 0.91, "{of}, {n} samples\n{table}");
     }
-    #[expect(clippy::disallowed_methods, reason = "whoever runs the test says so")]
-    let is_asked_to_write = std::env::var("LUXEL_WRITE_DOCS").is_ok_and(|value| value == "1");
-    if is_asked_to_write {
-        let place = root().join(PUBLISHED);
-        write(&place, &replaced(&text(&place), "coverage", &table).unwrap());
-    }
-    let document = text(&root().join(PUBLISHED));
-    let published = part(&document, "coverage").unwrap();
-    assert_eq!(
-        published.trim(),
-        table.trim(),
-        "LUXEL_WRITE_DOCS=1 cargo test -p luxel-tests coverage"
-    );
-}
-
-#[expect(clippy::disallowed_methods, reason = "whoever runs the test asks for it")]
-fn write(place: &Path, document: &str) {
-    std::fs::write(place, document).unwrap();
+    published::hold("coverage", &table);
 }

@@ -1,6 +1,8 @@
 //! Whole-system tests.
 
 #[cfg(test)]
+mod asked;
+#[cfg(test)]
 mod assets;
 #[cfg(test)]
 mod bad_input;
@@ -55,6 +57,8 @@ mod pages;
 mod plant;
 #[cfg(test)]
 mod probe;
+#[cfg(test)]
+mod published;
 #[cfg(test)]
 mod scenes;
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What features cost: each that a scene does not require, with its code and without; each that it
-//! requires, dropped and not. Pairs are rendered one after the other, first one then the other first.
+//! requires, dropped and not, or beside a scene that looks alike where it cannot be dropped. Pairs are
+//! rendered one after the other, first one then the other first.
 
 use std::num::NonZeroUsize;
 use std::time::Instant;
@@ -49,6 +50,37 @@ fn enriched() -> Result<[(&'static str, Feature, Scene); 3], String> {
     ])
 }
 
+/// The lamp of `BOX`, and the same in two halves.
+const LAMP: &str = "light area \"lamp\" {
+  shape    = shape rectangle {
+    center   = (278, 548.3, 279.5)
+    u        = (130, 0, 0)";
+const HALVES: &str = "for x in [245.5, 310.5] { light area {
+  shape    = shape rectangle {
+    center   = (x, 548.3, 279.5)
+    u        = (65, 0, 0)";
+/// Where the lamp ends.
+const LAMP_END: &str = "  scale    = 1\n}";
+
+/// Thin fog everywhere, and in a ball around the box and the camera.
+const FOG: &str = "medium homogeneous { sigma_t = 1 / (3 m), albedo = 0.8 }";
+const FOG_BALL: &str = "shape sphere \"fog\" { center = (278, 273, 0), radius = 4000,
+    interior = medium homogeneous { sigma_t = 1 / (3 m), albedo = 0.8 } }";
+
+/// Name, feature, and a scene that needs it with one that does not.
+type Alike = (&'static str, Feature, [Scene; 2]);
+
+/// What cannot be dropped: scenes that need it, each with one that looks alike and does not.
+fn alike() -> Result<[Alike; 2], String> {
+    let halves = BOX.replacen(LAMP_END, &format!("{LAMP_END} }}"), 1).replacen(LAMP, HALVES, 1);
+    let lamps = [small(&halves)?, small(BOX)?];
+    let fogs = [small(&format!("{BOX}\n{FOG_BALL}\n"))?, small(&format!("{BOX}\n{FOG}\n"))?];
+    Ok([
+        ("Cornell box, its lamp in two halves", Feature::LightChoice, lamps),
+        ("Cornell box in a ball of fog", Feature::OpenSurfaces, fogs),
+    ])
+}
+
 /// Prints for each scene and feature the time of the one over that of the other.
 ///
 /// # Errors
@@ -64,6 +96,13 @@ pub(crate) fn run() -> Result<(), String> {
     }
     for (name, feature, scene) in enriched()? {
         features(name, &scene, &[feature])?;
+    }
+    for (name, feature, [with, without]) in alike()? {
+        let [with, without] = [built(&with)?, built(&without)?];
+        let is_told = with.needs(feature) && !without.needs(feature);
+        let is_told = is_told.then(|| told(&with, &without));
+        let ratios = is_told.ok_or_else(|| format!("{name}: which needs `{}`?", feature.name()))?;
+        println!("| {name} | `{}` | used / alike without | {ratios} |", feature.name());
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 
 mod asked;
 mod denoised;
+mod furnace;
 mod peers;
 mod readme;
 mod studied;
@@ -24,6 +25,8 @@ const IMAGES: &str = "docs/images";
 /// The names of their parts.
 const ASKED: &str = "asked";
 const DENOISED: &str = "denoised";
+const MANY: &str = "many";
+const FURNACE: &str = "furnace";
 const REGIONS: &str = "peers";
 const BLOCKS: &str = "peers-blocks";
 const SPEED: &str = "peers-speed";
@@ -60,6 +63,7 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     errors::run(Some(&place))?;
     let tests = ["test", "-p", "luxel-tests", "intervals_hold_the_truth"];
     told(Command::new("cargo").args(tests).env("LUXEL_WRITE_DOCS", "1").current_dir(root))?;
+    write(&place, MANY, &many(root, "1e9")?)?;
     renders(luxel, &place, Path::new(IMAGES), Form::Whole)?;
     readme::alone(plan, root)?;
     let Some(python) = plan.python.as_deref().filter(|python| has_mitsuba(python)) else {
@@ -68,6 +72,7 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
         );
         return Ok(());
     };
+    write(&place, FURNACE, &furnace::tables(root, Some(python), Form::Whole)?)?;
     let found = Found::measure(luxel, python)?;
     write(&place, REGIONS, &found.regions()?)?;
     write(&place, BLOCKS, &found.blocks()?)?;
@@ -81,7 +86,19 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
 /// What a command or the disk says.
 pub(crate) fn short(plan: &Plan) -> Result<(), String> {
     let place = process::write("accuracy.md", &read(&root()?.join(ACCURACY))?)?;
+    write(&place, MANY, &many(root()?, "1e6")?)?;
+    write(&place, FURNACE, &furnace::tables(root()?, None, Form::Short)?)?;
     renders(&plan.luxel, &place, &scratch()?, Form::Short)
+}
+
+/// What the film's test of the mean of so many samples of a pixel says.
+fn many(root: &Path, samples: &str) -> Result<String, String> {
+    let words = ["test", "-p", "luxel-core", "--lib", "a_mean_of_many", "--", "--nocapture"];
+    let said =
+        told(Command::new("cargo").args(words).env("LUXEL_SAMPLES", samples).current_dir(root))?;
+    let line = said.lines().find(|line| line.starts_with("relative error of the mean"));
+    let line = line.ok_or_else(|| format!("the test of the mean says nothing of it: {said}"))?;
+    Ok(format!("```\n{line}\n```"))
 }
 
 /// What is measured by rendering scenes of the project; plots of studies go to `images`, a path as
@@ -133,7 +150,18 @@ mod tests {
         let text =
             |document| String::from_utf8(read(&here().join("..").join(document)).unwrap()).unwrap();
         let accuracy = text(ACCURACY);
-        for name in ["truths", "errors", "coverage", ASKED, DENOISED, REGIONS, BLOCKS] {
+        for name in [
+            "truths",
+            "errors",
+            "coverage",
+            "coverage-asked",
+            ASKED,
+            MANY,
+            DENOISED,
+            FURNACE,
+            REGIONS,
+            BLOCKS,
+        ] {
             part(&accuracy, name).unwrap();
         }
         for name in STUDIES.iter().map(Study::name) {

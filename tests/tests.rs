@@ -5,6 +5,9 @@ mod asked;
 #[cfg(test)]
 mod assets;
 #[cfg(test)]
+#[path = "../benches/src/attack_texts.rs"]
+mod attack_texts;
+#[cfg(test)]
 mod bad_input;
 #[cfg(test)]
 mod builder;

@@ -12,11 +12,12 @@ use twofloat::TwoFloat;
 
 use crate::{document, scene};
 
-/// Rays of each case.
-const RAYS: u32 = 20_000;
+/// Rays of each case that tell.
+pub(crate) const RAYS: u32 = 20_000;
 
 /// A shape of radius `size` about `centre`, hit by rays from `distance` radii away.
 struct Case {
+    rays: u32,
     size: f64,
     centre: DVec3,
     distance: f64,
@@ -38,16 +39,17 @@ struct Worst {
 ///
 /// # Errors
 /// If a scene of this program does not build; if the document has no place for them.
-pub(crate) fn run(path: Option<&Path>) -> Result<(), String> {
-    let tables = tables()?;
+pub(crate) fn run(path: Option<&Path>, rays: u32) -> Result<(), String> {
+    let tables = tables(rays)?;
     println!("{tables}");
     path.map_or(Ok(()), |path| document::write(path, "errors", &tables))
 }
 
-fn tables() -> Result<String, String> {
+fn tables(rays: u32) -> Result<String, String> {
     let mut out = vec![];
     let powers = |exponents: &[i32]| exponents.iter().map(|e| 10f64.powi(*e)).collect::<Vec<_>>();
-    let at = |size, away, distance| Case { size, centre: DVec3::new(away, -away, away), distance };
+    let at =
+        |size, away, distance| Case { rays, size, centre: DVec3::new(away, -away, away), distance };
     let distances = powers(&[0, 1, 2, 3, 4, 5, 6, 7]).into_iter();
     table(
         &mut out,
@@ -105,7 +107,7 @@ fn worst(case: &Case, precision: Option<Precision>) -> Result<Worst, String> {
     let text = if precision.is_some() { octahedron(case) } else { sphere(case) };
     let stage = stage_of(&text, precision.unwrap_or_default())?;
     let mut worst = Worst::default();
-    for i in 0..RAYS {
+    for i in 0..case.rays {
         let [from, to] = [1, 2].map(|k| uniform_sphere(sobol_owen_2d(i, k)).as_dvec3());
         let o = case.centre + from * (case.distance * case.size);
         // Into the ball that even an octahedron holds.

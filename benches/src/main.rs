@@ -7,6 +7,7 @@
 #![deny(unsafe_code)]
 #![expect(clippy::print_stdout, reason = "the report is this program's output")]
 
+mod attack_texts;
 mod attacks;
 mod boundary;
 mod document;
@@ -85,7 +86,7 @@ const BENCHES: [Bench; 23] = [
         rays::builds(plan.embree.as_deref(), plan.python.as_deref());
         Ok(())
     }),
-    of_crates("errors", |plan| errors::run(plan.document.as_deref())),
+    of_crates("errors", |plan| errors::run(plan.document.as_deref(), errors::RAYS)),
     of_crates("strands", |_| strands::run()),
     of_crates("leaks", |plan| {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 40_000);

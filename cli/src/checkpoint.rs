@@ -25,14 +25,14 @@ pub(crate) struct CheckpointArgs {
     /// is not there
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Seconds between two checkpoints, which wait a few seconds for what is being measured; 0 for
-    /// none, not even after Ctrl-C
+    /// Seconds between two checkpoints, or four times as long as one takes; each waits a few seconds
+    /// for what is being measured; 0 for none, not even after Ctrl-C
     #[arg(long = "checkpoint", value_name = "SECONDS", default_value = "60", value_parser = seconds)]
     every: Duration,
 }
 
-/// Time that may go into checkpoints: one part in so many.
-const SHARE: u32 = 20;
+/// Time that may go into checkpoints: one part for so many of rendering.
+const SHARE: u32 = 4;
 /// Bytes of the first two lines, at most.
 const MOST_HEAD: u64 = 4096;
 /// Bytes of a hash.

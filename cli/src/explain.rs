@@ -65,11 +65,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let Loaded { stage: Some(stage), scene: Some(scene), sources, .. } = &loaded else {
         return Ok(Exit::Input);
     };
-    let mut prices = vec![];
+    let mut prices = None;
     if args.cost {
         let options = Options { threads: args.threads, ..Options::default() };
         let run = Run::new(plugins, options)?.silent();
-        prices = study::prices((&args.file, scene), stage, &loaded, &run)?;
+        prices = Some(study::prices((&args.file, scene), stage, &loaded, &run)?);
     }
     let told = Told { file: &args.file, stage, sources, prices };
     report::out(&if args.json { format!("{}\n", told.object()) } else { told.text() })?;
@@ -85,7 +85,7 @@ struct Told<'a> {
     stage: &'a Stage,
     sources: &'a Sources,
     /// What was measured, if that was asked for.
-    prices: Vec<Price>,
+    prices: Option<Vec<Price>>,
 }
 
 impl Told<'_> {
@@ -98,13 +98,17 @@ impl Told<'_> {
             page.push_str("  none of the features below\n");
         }
         for feature in needed {
-            let cost = self.cost(feature).map(|cost| format!(": {cost} the time without it"));
+            let why = feature.dropped().err().map(|_| "it cannot be dropped");
+            let cost = self.cost(feature, "the time without it", why);
+            let cost = cost.map(|cost| format!(": {cost}"));
             page.extend(["  ", feature.name(), &cost.unwrap_or_default(), "\n"]);
             self.reasons(feature, &mut page);
         }
         page.push_str("left out\n");
         for feature in rest {
-            let cost = self.cost(feature).map(|cost| format!("; {cost} the time if it ran"));
+            let why = feature.unrequirable().map(|_| "it cannot be required");
+            let cost = self.cost(feature, "the time if it ran", why);
+            let cost = cost.map(|cost| format!("; {cost}"));
             let why = absence(stage, feature) + &cost.unwrap_or_default();
             let _ = writeln!(page, "  {:14}{why}", feature.name());
         }
@@ -132,12 +136,17 @@ impl Told<'_> {
     }
 
     fn price(&self, feature: Feature) -> Option<[f64; 3]> {
-        self.prices.iter().find(|price| price.feature == feature).map(|price| price.ratio)
+        let mut prices = self.prices.iter().flatten();
+        prices.find(|price| price.feature == feature).map(|price| price.ratio)
     }
 
-    /// `1.93 × (1.90–1.97)`
-    fn cost(&self, feature: Feature) -> Option<String> {
-        self.price(feature).map(|[low, median, high]| format!("{median:.2} × ({low:.2}–{high:.2})"))
+    /// `1.93 × (1.90–1.97) the time without it`, or why that is not known; nothing if nobody asked.
+    fn cost(&self, feature: Feature, of: &str, why: Option<&str>) -> Option<String> {
+        self.prices.as_ref()?;
+        let Some([low, median, high]) = self.price(feature) else {
+            return why.map(|why| format!("no cost is known, as {why}"));
+        };
+        Some(format!("{median:.2} × ({low:.2}–{high:.2}) {of}"))
     }
 
     fn object(&self) -> Value {

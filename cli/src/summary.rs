@@ -129,6 +129,7 @@ impl Summary {
             "color": self.mode,
             "integrator": self.integrator,
             "error_asked": self.goal.error,
+            "time_asked": self.goal.time.map(|time| time.as_secs_f64()),
             "complete": self.outcome == Outcome::Complete && self.is_reached(),
         })
     }

@@ -46,7 +46,7 @@ impl Default for Budgets {
             includes: 10_000,
             brackets: 128,
             operators: 4096,
-            steps: 40_000_000,
+            steps: 30_000_000,
             list: 10_000_000,
             nodes: 1_000_000,
             instances: 100_000_000,

@@ -68,6 +68,13 @@ fn costs_are_measured_of_what_can_be_left_out_and_of_what_could_run_for_nothing(
     }
     // RGB and layers cannot be required, open surfaces not be dropped.
     assert_eq!(measured, ["media", "nested", "motion", "light_choice"]);
+    let text = folder.luxel(&["explain", "a.scene", "--cost"]).out;
+    for told in [
+        "open_surfaces: no cost is known, as it cannot be dropped",
+        "no cost is known, as it cannot be required",
+    ] {
+        assert!(text.contains(told), "{text}");
+    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The program as a person runs it: exit codes, files, interrupts.
 
 #[cfg(test)]
+mod attacks;
+#[cfg(test)]
 mod compare;
 #[cfg(test)]
 mod denoise;

@@ -13,16 +13,25 @@ const LONG: &str = "600";
 
 #[test]
 fn a_render_that_is_killed_twenty_times_goes_on_to_the_same_picture() {
+    killed(&["--spp", LONG], 20);
+}
+
+#[test]
+fn so_does_one_that_an_error_is_asked_of() {
+    killed(&["--error", "0.15%"], 10);
+}
+
+/// Kills a render with these arguments so many times at random moments, and lets it go on.
+fn killed(asked: &[&str], times: u32) {
     let folder = Folder::new("kill").with("a.scene", SCENE);
-    let whole = folder.luxel(&["render", "a.scene", "--spp", LONG, "-o", "whole"]);
-    assert_eq!(whole.code, 0, "{whole:?}");
+    let whole = folder.luxel(&[&["render", "a.scene", "-o", "whole"], asked].concat());
     let mut rng = Rng::new(11);
-    let args =
-        ["render", "a.scene", "--spp", LONG, "-o", "left", "--resume", "--checkpoint", "0.02"];
-    let (mut killed, mut kept) = (0, 0);
+    let of = ["render", "a.scene", "-o", "left", "--resume", "--checkpoint", "0.02"];
+    let args = [&of, asked].concat();
+    let (mut killed, mut kept, mut last) = (0, 0, vec![]);
     // More than are wanted: a render that comes to its end is none, and the next begins anew.
-    for _ in 0..60 {
-        if killed == 20 {
+    for _ in 0..3 * times {
+        if killed == times {
             break;
         }
         let mut running = folder.start(&args);
@@ -30,12 +39,14 @@ fn a_render_that_is_killed_twenty_times_goes_on_to_the_same_picture() {
         killed += u32::from(!running.is_over());
         // Killed, not asked: nothing can be said or saved any more.
         drop(running);
-        kept += u32::from(folder.path("left.checkpoint").exists());
+        let now = folder.read("left.checkpoint");
+        kept += u32::from(now != last);
+        last = now;
     }
-    assert_eq!(killed, 20, "renders that were still at work");
-    assert!(kept >= 10, "of the runs only {kept} left something to go on with, less than half");
+    assert_eq!(killed, times, "renders that were still at work");
+    assert!(2 * kept >= times, "only {kept} runs left something new, less than half");
     let last = folder.luxel(&[&args[..], &["--json"]].concat());
-    assert_eq!(last.code, 0, "{last:?}");
+    assert_eq!((last.code, whole.code), (0, 0), "{last:?}");
     assert!(folder.read("left.exr") == folder.read("whole.exr"));
     assert!(!folder.path("left.checkpoint").exists());
 }

@@ -1,6 +1,7 @@
 //! `luxel verify FILE`: what scenes say of their pictures, held against them.
 
 use super::program::{Done, Folder, SCENE};
+use crate::disk::{files_below, root};
 
 /// A white furnace, empty: every pixel is 1. What it says follows.
 const WHITE: &str = r"scene 1
@@ -47,6 +48,33 @@ fn what_is_said_of_the_whole_of_pixels_and_of_parts_holds() {
 }
 
 #[test]
+fn what_the_projects_scenes_say_holds() {
+    let folder = Folder::new("verify-scenes");
+    let scenes = files_below(&root().join("scenes"), "scene");
+    let scenes: Vec<String> = scenes.iter().map(|path| path.display().to_string()).collect();
+    let args = scenes.iter().map(String::as_str);
+    let done = folder.luxel(&["verify"].into_iter().chain(args).collect::<Vec<_>>());
+    assert!(done.code == 0 && done.out.ends_with("\nall 4 hold\n"), "{done:?}");
+    assert!(done.err.contains("cornell.scene` expects nothing of its picture"), "{done:?}");
+}
+
+#[test]
+fn scenes_that_all_expect_nothing_are_no_test() {
+    let folder = Folder::new("verify-mute").with("a.scene", SCENE);
+    let done = folder.luxel(&["verify", "a.scene"]);
+    let told = done.err.contains("error: no scene expects anything of its picture");
+    assert!(done.code == 1 && told, "{done:?}");
+}
+
+#[test]
+fn rows_come_in_the_order_of_the_file() {
+    let said = "expect mean = 2 where { bright = 2 }\nexpect mean = 1\nexpect mean = 2 where { bright = 2 }";
+    let done = verify(said, &[]);
+    let lines: Vec<&str> = done.out.lines().filter_map(|line| line.get(..10)).collect();
+    assert_eq!(lines[1..4], ["a.scene:12", "a.scene:13", "a.scene:14"], "{done:?}");
+}
+
+#[test]
 fn a_scene_that_cannot_be_tested_is_told_at_the_end() {
     let folder = Folder::new("verify-untested").with("a.scene", &white("expect mean = 1"));
     folder.write("b.scene", "scene 1\ncamera none {}\n");
@@ -72,7 +100,7 @@ fn noise_buys_no_pass_and_more_samples_end_it() {
     let folder = Folder::new("noisy").with("a.scene", &said);
     let few = folder.luxel(&["verify", "a.scene"]);
     assert!(few.code == 1 && row(&few, "a.scene").ends_with("NOISY"), "{few:?}");
-    assert!(few.out.contains(" too noisy to tell\n") && !few.out.contains("hold"), "{few:?}");
+    assert!(few.out.contains(" too noisy to tell; ") && !few.out.contains("hold"), "{few:?}");
     let many = folder.luxel(&["verify", "a.scene", "--spp", "256"]);
     assert!(many.code == 0 && row(&many, "a.scene").ends_with("ok"), "{many:?}");
 }

@@ -29,20 +29,21 @@ fn rows(done: &Done) -> Vec<Value> {
     done.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// The truths that were tried, every one of which holds.
-fn held(done: &Done) -> BTreeSet<String> {
+/// Name and case of the truths that were tried, every one of which holds.
+fn held(done: &Done) -> BTreeSet<[String; 2]> {
     let rows = rows(done);
     let wrong: Vec<_> = rows.iter().filter(|row| row["verdict"] != "ok").collect();
     assert!(wrong.is_empty(), "truths that do not hold: {wrong:#?}");
     assert!(done.code == 0 && done.err.is_empty(), "{done:?}");
-    rows.iter().map(|row| row["id"].as_str().unwrap().to_owned()).collect()
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    rows.iter().map(|row| [text(&row["id"]), text(&row["case"])]).collect()
 }
 
-/// The truths of a document's table.
-fn published(document: &str) -> BTreeSet<String> {
+/// The first cells of each row of a document's table: name, case, expected value.
+fn published<const N: usize>(document: &str) -> BTreeSet<[String; N]> {
     let rows = part(document, "truths").unwrap().trim().lines().skip(2);
-    let id = |row: &str| row.split('|').nth(1).map(|id| id.trim().to_owned());
-    rows.filter_map(id).collect()
+    let cell = |row: &str, i: usize| row.split('|').nth(i + 1).unwrap().trim().to_owned();
+    rows.map(|row| std::array::from_fn(|i| cell(row, i))).collect()
 }
 
 #[test]
@@ -53,8 +54,11 @@ fn truths_hold_and_every_one_is_published_and_no_other() {
     assert_eq!(published(&document), held(&done), "luxel verify --write {PUBLISHED}");
     let rows = rows(&done);
     assert!(rows.len() > 200, "only {} truths were tried", rows.len());
+    let told = text(&root().join("README.md")).matches(&rows.len().to_string()).count();
+    assert_eq!(told, 2, "README.md tells how many truths there are, twice: {}", rows.len());
     // What is written is what was measured, and the rest of the document stays.
     let written = String::from_utf8(folder.read("a.md")).unwrap();
+    assert_eq!(published::<3>(&written), published(&document), "luxel verify --write {PUBLISHED}");
     let table = part(&written, "truths").unwrap();
     assert_eq!(table.trim().lines().count(), 2 + rows.len());
     assert_eq!(written, replaced(&document, "truths", table).unwrap());
@@ -105,7 +109,8 @@ fn truths_that_are_too_noisy_to_tell_are_counted() {
     let folder = Folder::new("truths-noisy");
     let done = verify(&folder, &["--spp", "4", "--only", "stat.rr_furnace"]);
     assert!(done.code == 1 && done.out.contains("NOISY"), "{done:?}");
-    assert!(done.out.ends_with("\n2 of 2 are too noisy to tell\n"), "{done:?}");
+    assert!(done.out.contains("\n2 of 2 are too noisy to tell; "), "{done:?}");
+    assert!(done.out.ends_with(" times the samples would (--spp)\n"), "{done:?}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod denoised;
 mod furnace;
 mod peers;
 mod readme;
+mod said;
 mod studied;
 
 use std::path::Path;
@@ -24,6 +25,7 @@ const IMAGES: &str = "docs/images";
 
 /// The names of their parts.
 const ASKED: &str = "asked";
+const SAID: &str = "said";
 const DENOISED: &str = "denoised";
 const MANY: &str = "many";
 const FURNACE: &str = "furnace";
@@ -60,7 +62,7 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     let root = root()?;
     let (luxel, place) = (&plan.luxel, root.join(ACCURACY));
     told(Command::new(&luxel.program).args(["verify", "--write"]).arg(&place))?;
-    errors::run(Some(&place))?;
+    errors::run(Some(&place), errors::RAYS)?;
     let tests = ["test", "-p", "luxel-tests", "intervals_hold_the_truth"];
     told(Command::new("cargo").args(tests).env("LUXEL_WRITE_DOCS", "1").current_dir(root))?;
     write(&place, MANY, &many(root, "1e9")?)?;
@@ -86,6 +88,7 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
 /// What a command or the disk says.
 pub(crate) fn short(plan: &Plan) -> Result<(), String> {
     let place = process::write("accuracy.md", &read(&root()?.join(ACCURACY))?)?;
+    errors::run(Some(&place), 100)?;
     write(&place, MANY, &many(root()?, "1e6")?)?;
     write(&place, FURNACE, &furnace::tables(root()?, None, Form::Short)?)?;
     renders(&plan.luxel, &place, &scratch()?, Form::Short)
@@ -105,6 +108,7 @@ fn many(root: &Path, samples: &str) -> Result<String, String> {
 /// from the project's folder.
 fn renders(luxel: &Luxel, place: &Path, images: &Path, form: Form) -> Result<(), String> {
     let root = root()?;
+    write(place, SAID, &said::table(root, form)?)?;
     write(place, ASKED, &asked::table(root, form)?)?;
     write(place, DENOISED, &denoised::table(luxel, root, form)?)?;
     STUDIES
@@ -155,6 +159,7 @@ mod tests {
             "errors",
             "coverage",
             "coverage-asked",
+            SAID,
             ASKED,
             MANY,
             DENOISED,
@@ -162,11 +167,11 @@ mod tests {
             REGIONS,
             BLOCKS,
         ] {
-            part(&accuracy, name).unwrap();
+            assert!(!part(&accuracy, name).unwrap().trim().is_empty(), "{name}");
         }
         for name in STUDIES.iter().map(Study::name) {
-            part(&accuracy, &name).unwrap();
+            assert!(!part(&accuracy, &name).unwrap().trim().is_empty(), "{name}");
         }
-        part(&text(PERFORMANCE), SPEED).unwrap();
+        assert!(!part(&text(PERFORMANCE), SPEED).unwrap().trim().is_empty());
     }
 }

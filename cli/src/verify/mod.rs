@@ -29,8 +29,9 @@ use crate::report::{self, Form, Stream};
 /// Without a scene, tests every closed-form truth that the program carries: pictures, and functions of
 /// light and colour. Of a scene, renders it as its own sampler says, and holds each `expect` against
 /// the picture. A value passes within four standard errors and its tolerance, unless the standard
-/// errors are so large that it could hardly have failed (NOISY). Exit code 0 if everything holds, 1 if
-/// something does not or a scene expects nothing. Ctrl-C ends early with what was tested and exit code 3.
+/// errors are so large that it could hardly have failed (NOISY); z is what it is off beyond the tolerance.
+/// Exit code 0 if everything holds, 1 if something does not or no scene expects anything. Ctrl-C ends
+/// early with what was tested and exit code 3.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -124,10 +125,11 @@ fn scenes(
     run: &Run,
     rows: &mut Vec<Row>,
 ) -> Result<usize, Failure> {
-    let mut untested = 0;
+    let (mut untested, mut silent) = (0, 0);
     for file in files {
         match said::test(file, &args.load, run, args.form(), rows) {
-            Ok(()) => {}
+            Ok(true) => {}
+            Ok(false) => silent += 1,
             // One scene's mistake keeps no other from being tested.
             Err(failure) if failure.exit == Exit::Input => {
                 report::failure(&failure);
@@ -135,6 +137,11 @@ fn scenes(
             }
             Err(failure) => return Err(failure),
         }
+    }
+    if silent == files.len() {
+        let message = "no scene expects anything of its picture";
+        return Err(Failure::new(Exit::Input, message)
+            .help("say what is true of it, as in `expect mean = 0.5 ± 0.01`"));
     }
     Ok(untested)
 }
@@ -155,9 +162,16 @@ fn tell(args: &Args, rows: &[Row], untested: usize) -> Result<(), Failure> {
         (0, _) => format!("{noisy} of {} are too noisy to tell", rows.len()),
         _ => format!("{off} of {} do not hold, {noisy} are too noisy to tell", rows.len()),
     };
+    let times = rows.iter().filter(|row| row.verdict == Verdict::Noisy).map(Row::times);
+    let more = match times.fold(0.0, f64::max) {
+        times if times.is_finite() && times > 0.0 => {
+            format!("; {:.0} times the samples would (--spp)", times.ceil())
+        }
+        _ => String::new(),
+    };
     let rest = match untested {
         0 => String::new(),
         _ => format!("; {untested} of {} scenes could not be tested", args.files.len()),
     };
-    report::out(&format!("{}\n{verdict}{rest}\n", row::columns(rows)))
+    report::out(&format!("{}\n{verdict}{more}{rest}\n", row::columns(rows)))
 }

@@ -86,10 +86,17 @@ impl Row {
         if bad == 0 { self } else { Self { verdict: Verdict::NotFinite, ..self } }
     }
 
-    /// How many standard errors it is off, if it has any.
+    /// How many standard errors it is off beyond its tolerance, if it has any and is beyond it.
     fn z(&self) -> Option<f64> {
         let Measured { value, error } = self.measured;
-        (error > 0.0).then(|| (value - self.expected) / error)
+        let off = value - self.expected;
+        let beyond = off.abs() - self.tolerance;
+        (error > 0.0 && beyond > 0.0).then(|| (beyond / error).copysign(off))
+    }
+
+    /// How many times the samples would tell, of a value that is too noisy: errors fall as their root.
+    pub(super) fn times(&self) -> f64 {
+        (self.measured.error * SIGMAS / allowed(self.expected, self.tolerance)).powi(2)
     }
 
     fn cells(&self) -> [String; 7] {
@@ -121,9 +128,14 @@ fn verdict(expected: f64, Measured { value, error }: Measured, tolerance: f64) -
     match near {
         // Nothing is near a number that is none.
         false => Verdict::Wrong,
-        true if noise > RESOLUTION * expected.abs() + tolerance => Verdict::Noisy,
+        true if noise > allowed(expected, tolerance) => Verdict::Noisy,
         true => Verdict::Holds,
     }
+}
+
+/// What four standard errors may reach.
+fn allowed(expected: f64, tolerance: f64) -> f64 {
+    RESOLUTION * expected.abs() + tolerance
 }
 
 /// What the columns are.
@@ -182,17 +194,20 @@ mod tests {
 
     #[test]
     fn tables_show_every_figure() {
-        let rows = [row(1.01, 0.003), Row::exact("c", "", (1e-9, 1e-9), (1e-3, 0.0))];
+        let rows =
+            [row(1.01, 0.003), row(1.0005, 1e-6), Row::exact("c", "", (1e-9, 1e-9), (1e-3, 0.0))];
         let told = "\
 | truth | case | expected | measured | SE | z | verdict |
 |---|---|---|---|---|---|---|
-| a | b | 1.0000000 | 1.0100000 | 3.0e-3 | +3.3 | ok |
+| a | b | 1.0000000 | 1.0100000 | 3.0e-3 | +3.0 | ok |
+| a | b | 1.0000000 | 1.0005000 | 1.0e-6 | – | ok |
 | c |  | 1.000000e-9 | 1.000000e-9 | 0.0e0 | – | ok |
 ";
         assert_eq!(document(&rows), told);
         let told = "\
 truth  case  expected     measured     SE      z     verdict
-a      b     1.0000000    1.0100000    3.0e-3  +3.3  ok
+a      b     1.0000000    1.0100000    3.0e-3  +3.0  ok
+a      b     1.0000000    1.0005000    1.0e-6  –     ok
 c            1.000000e-9  1.000000e-9  0.0e0   –     ok
 ";
         assert_eq!(columns(&rows), told);

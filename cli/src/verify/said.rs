@@ -29,22 +29,22 @@ struct Ready {
     sources: Sources,
 }
 
-/// Tests everything that a file says, once for each set of parameters under which it says something.
+/// Tests everything that a file says, once for each set of parameters under which it says something, and
+/// gives the rows in the file's order. Whether it says anything.
 ///
 /// # Errors
-/// A scene that cannot be read, or that expects nothing; what `Run::film` says.
+/// A scene that cannot be read; what `Run::film` says.
 pub(super) fn test(
     file: &Path,
     args: &LoadArgs,
     run: &Run,
     form: Form,
     rows: &mut Vec<Row>,
-) -> Result<(), Failure> {
+) -> Result<bool, Failure> {
     let first = ready(file, args, run, form)?;
     if first.expectations.is_empty() {
-        let message = format!("`{}` expects nothing of its picture", file.display());
-        return Err(Failure::new(Exit::Input, message)
-            .help("say what is true of it, as in `expect mean = 0.5 ± 0.01`"));
+        report::warning(&format!("`{}` expects nothing of its picture", file.display()));
+        return Ok(false);
     }
     let mut sets: Vec<&[(String, String)]> = vec![];
     for said in &first.expectations {
@@ -52,7 +52,8 @@ pub(super) fn test(
             sets.push(&said.given);
         }
     }
-    for given in sets {
+    let mut found = vec![];
+    let done = sets.into_iter().try_for_each(|given| {
         let mut again = None;
         if !given.is_empty() {
             let mut args = args.clone();
@@ -61,9 +62,11 @@ pub(super) fn test(
         }
         let ready = again.as_ref().unwrap_or(&first);
         let said = under(given, &first, ready, file)?;
-        picture(file, (ready, &said), args, run, form, rows)?;
-    }
-    Ok(())
+        picture(file, (ready, &said), args, run, form, &mut found)
+    });
+    found.sort_by_key(|(place, _)| *place);
+    rows.extend(found.into_iter().map(|(_, row)| row));
+    done.map(|()| true)
 }
 
 /// Reads a scene and makes it ready.
@@ -108,25 +111,25 @@ fn place(file: &Path, said: &Expectation, sources: &Sources) -> String {
     format!("{}:{line}", file.display())
 }
 
-/// Renders a scene and tests what is said of it.
+/// Renders a scene and tests what is said of it: rows, each with the place that says it.
 fn picture(
     file: &Path,
     (ready, said): (&Ready, &[&Expectation]),
     args: &LoadArgs,
     run: &Run,
     form: Form,
-    rows: &mut Vec<Row>,
+    rows: &mut Vec<(usize, Row)>,
 ) -> Result<(), Failure> {
     let options = Options { crop: needed(said), ..run.options.clone() };
     let film = run.film((file, &ready.stage), &options)?;
     for said in said {
-        let id = place(file, said, &ready.sources);
+        let (id, at) = (place(file, said, &ready.sources), said.span.range().start);
         let given = said.given.iter().map(|(name, value)| format!(" {name}={value}"));
         let given = given.collect::<Vec<_>>().concat();
         match &said.claim {
             Claim::Mean { of, value, tolerance } => {
                 let found = means(&film, *of, (*value, *tolerance), (&id, &given));
-                rows.extend(found.into_iter().map(|row| row.without(film.bad_samples())));
+                rows.extend(found.into_iter().map(|row| (at, row.without(film.bad_samples()))));
             }
             Claim::SameAs { name, path } => {
                 let own = LoadArgs { set: vec![], ..args.clone() };
@@ -137,7 +140,7 @@ fn picture(
                 let other = run.film((path, &other.stage), &options)?;
                 let case = format!("same_as {name:?}{given}");
                 let bad = film.bad_samples() + other.bad_samples();
-                rows.push(same::test((&id, &case), &film, &other)?.without(bad));
+                rows.push((at, same::test((&id, &case), &film, &other)?.without(bad)));
             }
         }
     }

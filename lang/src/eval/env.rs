@@ -1,7 +1,7 @@
 //! Names in sight while a file is evaluated.
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -9,6 +9,7 @@ use std::sync::Arc;
 use luxel_core::diag::Span;
 use luxel_sdk::params::Dimension;
 
+use super::by_name::ByName;
 use super::value::Value;
 
 /// What is the same in all of a file.
@@ -46,7 +47,7 @@ const MANY: usize = 8;
 struct Names {
     list: Vec<(Arc<str>, Value)>,
     /// Where in the list each stands, if they are many.
-    places: HashMap<Arc<str>, usize>,
+    places: ByName<usize>,
 }
 
 impl Names {

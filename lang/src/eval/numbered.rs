@@ -1,8 +1,8 @@
 //! Names as numbers, so that those of a hundred thousand statements are looked through at once.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::by_name::ByName;
 use super::names::Facts;
 
 /// Nobody defines it.
@@ -11,7 +11,7 @@ const NONE: u32 = u32::MAX;
 /// Names, each with its number.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Known {
-    numbers: HashMap<Arc<str>, u32>,
+    numbers: ByName<u32>,
     names: Vec<Arc<str>>,
 }
 

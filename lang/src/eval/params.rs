@@ -18,6 +18,9 @@ use super::value::{FieldValue, ObjectValue, Value, What, show_number};
 use crate::syntax::{self, Expr, ExprNode, Name, ParamDef, StmtNode, Tree};
 use crate::{ParamInfo, ParamLimits, ParamValue};
 
+/// Steps that a `set` counts, which builds an object anew.
+const SET: u64 = 40;
+
 impl Evaluator<'_> {
     /// The value of a declared parameter: from outside, or its default.
     pub(super) fn param(&mut self, def: &ParamDef, env: &Env) -> Value {
@@ -222,7 +225,7 @@ impl Evaluator<'_> {
     /// Changes what `set` names; each object is checked against its schema again.
     pub(super) fn apply_sets(&mut self) {
         for set in std::mem::take(&mut self.labels.sets) {
-            if !self.tick(1, set.field.span) {
+            if !self.tick(SET, set.field.span) {
                 return;
             }
             let Some(objects) = self.labels.objects.get(&set.label.text).cloned() else {

@@ -2,12 +2,13 @@
 //!
 //! After this, an unknown name is poison that says nothing more.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use luxel_sdk::params::Unit;
 
+use super::by_name::ByName;
 use super::mention::mention_body;
 use super::{builtins, types};
 use crate::sink::Sink;
@@ -38,12 +39,12 @@ pub(super) fn is_constant(expr: &Expr) -> bool {
 /// The names of one block.
 #[derive(Default)]
 pub(super) struct Scope {
-    pub(super) names: HashMap<Arc<str>, Span>,
+    pub(super) names: ByName<Span>,
     /// Every name that the block defines anywhere.
-    pub(super) later: HashMap<Arc<str>, Span>,
+    pub(super) later: ByName<Span>,
     /// What the functions of the block mention.
     pub(super) mentions: BTreeMap<Arc<str>, BTreeSet<Arc<str>>>,
-    pub(super) labels: HashMap<Arc<str>, Span>,
+    pub(super) labels: ByName<Span>,
 }
 
 pub(super) struct Resolver<'a> {

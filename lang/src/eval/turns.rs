@@ -1,13 +1,12 @@
 //! A large file: its statements are evaluated and forgotten while later ones are still to be read, so
 //! that its whole tree never stands in memory.
 
-use std::collections::HashMap;
 use std::path::Path;
-use std::sync::Arc;
 
 use luxel_core::diag::{SourceId, Span};
 
 use super::Evaluator;
+use super::by_name::ByName;
 use super::exec::{Body, Place};
 use super::names::{Around, Facts, Mentions, Odd, tell_odd};
 use crate::sink::Sink;
@@ -96,8 +95,8 @@ impl Evaluator<'_> {
 struct Seen {
     n_stmts: usize,
     /// The statement that defines each name first, and where.
-    defines: HashMap<Arc<str>, (u32, Span)>,
-    labels: HashMap<Arc<str>, (u32, Span)>,
+    defines: ByName<(u32, Span)>,
+    labels: ByName<(u32, Span)>,
     mentions: Mentions,
     /// Statements with something wrong about their names, with how many mistakes they make.
     odd: Vec<(usize, Stmt, Facts)>,
@@ -128,12 +127,16 @@ impl Seen {
 
     /// Tells what is wrong with names.
     fn tell(mut self, text: &str, sink: &mut Sink) {
+        if self.odd.is_empty() {
+            return;
+        }
         let mut mentions = Some(std::mem::take(&mut self.mentions));
+        let around = InOrder::of(&self);
         for (i, stmt, facts) in &self.odd {
             let stmts = std::slice::from_ref(stmt);
             let odd = Odd { i: *i, text, stmts, facts };
             let mut part = sink.rest();
-            tell_odd(&odd, &self, &mut mentions, &mut part);
+            tell_odd(&odd, &around, &mut mentions, &mut part);
             sink.absorb(part);
         }
         sink.count(self.n_more);
@@ -141,7 +144,7 @@ impl Seen {
 }
 
 /// Puts in names that are not there; how many are.
-fn first(seen: &mut HashMap<Arc<str>, (u32, Span)>, names: &[Name], stmt: u32) -> usize {
+fn first(seen: &mut ByName<(u32, Span)>, names: &[Name], stmt: u32) -> usize {
     let mut n_twice = 0;
     for name in names {
         let there = seen.entry(name.text.clone()).or_insert((stmt, name.span));
@@ -150,18 +153,34 @@ fn first(seen: &mut HashMap<Arc<str>, (u32, Span)>, names: &[Name], stmt: u32) -
     n_twice
 }
 
-impl Around for Seen {
+/// The names of all statements, those that they define in their order too.
+struct InOrder<'s> {
+    seen: &'s Seen,
+    /// The statement that defines each name first.
+    defines: Vec<(u32, &'s str)>,
+}
+
+impl<'s> InOrder<'s> {
+    fn of(seen: &'s Seen) -> Self {
+        let defines = seen.defines.iter().map(|(name, (stmt, _))| (*stmt, &**name));
+        let mut defines: Vec<_> = defines.collect();
+        defines.sort_unstable_by_key(|(stmt, _)| *stmt);
+        Self { seen, defines }
+    }
+}
+
+impl Around for InOrder<'_> {
     fn definer(&self, name: &str) -> Option<(usize, Span)> {
-        self.defines.get(name).map(|(stmt, span)| (*stmt as usize, *span))
+        self.seen.defines.get(name).map(|(stmt, span)| (*stmt as usize, *span))
     }
 
     fn labeller(&self, label: &str) -> Option<(usize, Span)> {
-        self.labels.get(label).map(|(stmt, span)| (*stmt as usize, *span))
+        self.seen.labels.get(label).map(|(stmt, span)| (*stmt as usize, *span))
     }
 
     fn before(&self, stmt: usize) -> Vec<&str> {
-        let before = self.defines.iter().filter(|(_, (at, _))| (*at as usize) < stmt);
-        before.map(|(name, _)| &**name).collect()
+        let end = self.defines.partition_point(|(at, _)| (*at as usize) < stmt);
+        self.defines[..end].iter().map(|(_, name)| *name).collect()
     }
 }
 

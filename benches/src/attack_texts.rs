@@ -1,0 +1,103 @@
+//! Scenes that are meant to hurt.
+
+/// A scene, and files beside it.
+pub(crate) struct Attack {
+    pub(crate) name: &'static str,
+    pub(crate) scene: String,
+    /// Their names and texts.
+    pub(crate) files: Vec<(String, String)>,
+}
+
+fn attack(name: &'static str, body: impl AsRef<str>) -> Attack {
+    Attack { name, scene: format!("scene 1\n{}", body.as_ref()), files: vec![] }
+}
+
+/// Bytes of the largest texts.
+const MUCH: usize = 60 << 20;
+
+/// All of them.
+pub(crate) fn all() -> impl Iterator<Item = Attack> {
+    // One sort after the other: their texts are large.
+    let sorts: [fn() -> Vec<Attack>; 3] = [evaluated, read, files];
+    sorts.into_iter().flat_map(|sort| sort())
+}
+
+fn lines(n: usize, line: impl Fn(usize) -> String) -> String {
+    (0..n).map(line).collect()
+}
+
+/// What is spent in evaluation.
+fn evaluated() -> Vec<Attack> {
+    let doubled = lines(60, |i| format!("let x{} = [x{i}, x{i}]\n", i + 1));
+    vec![
+        attack("nested loops", "for i in 0..1000000 { for j in 0..1000000 { let x = i * j } }"),
+        attack("empty loops", "for i in 0..1000000 { for j in 0..1000000 { } }"),
+        attack("list of lists", "let a = [for i in 0..10000000 => [for j in 0..10000000 => i]]"),
+        attack("list of texts", "let a = [for i in 0..10000000 => \"a\"]"),
+        attack(
+            "many lists",
+            lines(10, |i| format!("let a{i} = [for i in 0..9000000 => (i, i)]\n")),
+        ),
+        attack("doubling lists", format!("let x0 = [true]\n{doubled}assert x60 == x60, \"a\"")),
+        attack(
+            "growing records",
+            lines(5000, |i| match i {
+                0 => "let r0 = { a = 1 }\n".to_owned(),
+                i => format!("let r{i} = r{} with {{ a{i} = 1 }}\n", i - 1),
+            }),
+        ),
+        attack(
+            "doubling functions",
+            lines(60, |i| match i {
+                0 => "fn f0(x: int) = [x]\n".to_owned(),
+                i => format!("fn f{i}(x: int) = [f{0}(x), f{0}(x)]\n", i - 1),
+            }) + "let a = f59(1)",
+        ),
+        attack("nodes", "for i in 0..2000000 { shape sphere { radius = 1 m } }"),
+        attack(
+            "sets",
+            "shape sphere \"b\" { radius = 1 m }\n".to_owned()
+                + &"set b.radius = 2 m\n".repeat(1_000_000),
+        ),
+        attack("definitions", lines(1_000_000, |i| format!("let a{i} = 1\n"))),
+        attack("unknown names", lines(500_000, |i| format!("let a{i} = nope{i}\n"))),
+    ]
+}
+
+/// What is spent in reading one text.
+fn read() -> Vec<Attack> {
+    vec![
+        attack("open braces", "{".repeat(MUCH)),
+        attack("closing braces", "}".repeat(MUCH)),
+        attack("wrong brackets", "[)".repeat(MUCH / 2)),
+        attack("open comment", format!("/*{}", "x ".repeat(MUCH / 2))),
+        attack("open text", format!("let a = \"{}", "x".repeat(MUCH))),
+        attack("open texts", "let a = \"\n".repeat(5_000_000)),
+        attack("open table", format!("let a = #[{}", "1 ".repeat(MUCH / 2))),
+        attack("long table", format!("let a = #[{}]", "1 ".repeat(MUCH / 2))),
+        attack("long text", format!("let a = \"{}\"", "x".repeat(MUCH))),
+        attack("long texts", format!("let a = \"{}\"\n", "x".repeat(1 << 20)).repeat(58)),
+        attack("long path", format!("let a = b{}", ".a".repeat(MUCH / 2))),
+        attack("long name", format!("let a = {}", "b".repeat(MUCH))),
+        attack("long list", format!("let a = [{}]", "x, ".repeat(MUCH / 3))),
+        attack("operators", format!("let a = 1{}", " + 1".repeat(MUCH / 4))),
+        attack("else if", format!("if true {{ }} {}", "else if true { } ".repeat(3_000_000))),
+        attack("words", "x ".repeat(MUCH / 2)),
+        attack("mistakes", "let a = = 1\n".repeat(1_000_000)),
+    ]
+}
+
+/// What is spent in files.
+fn files() -> Vec<Attack> {
+    let beside = |name, body: String, files| Attack { files, ..attack(name, body) };
+    let fan = (0..31).map(|i| {
+        let next = format!("include \"{}.scene\"\n", i + 1).repeat(if i < 30 { 2 } else { 0 });
+        (format!("{i}.scene"), format!("scene 1\n{next}"))
+    });
+    let big = |i| (format!("{i}.scene"), format!("scene 1\n//{}", "x".repeat(MUCH)));
+    let includes = |n| lines(n, |i| format!("include \"{i}.scene\"\n"));
+    vec![
+        beside("include fan", "include \"0.scene\"".to_owned(), fan.collect()),
+        beside("large includes", includes(5), (0..5).map(big).collect()),
+    ]
+}

@@ -205,6 +205,24 @@ const tests = {
     await end();
   },
 
+  async "a camera without perspective shows less where another comes closer"({ browser }) {
+    const camera = CAMERA.replace("perspective", "orthographic").replace("fov = 40 deg", "height = 4 m");
+    const { page, end } = await begun(browser, scene({ camera }));
+    const before = (await readback(page)).data;
+    await press(page, "o");
+    await page.mouse.move(600, 120);
+    await page.mouse.wheel(0, -240);
+    const height = async () => Number((await text(page, "camera-text")).match(/height = ([\d.]+) m/)?.[1]);
+    await until("less to be seen", async () => (await height()) < 4);
+    await page.waitForTimeout(300);
+    await done(page);
+    await shows(page, rendered(scene({ camera: await text(page, "camera-text") })));
+    assert.ok(worst((await readback(page)).data, before) > 20, "another picture");
+    await press(page, "Escape");
+    await until("the file's camera", async () => worst((await readback(page)).data, before) === 0);
+    await end();
+  },
+
   async "the camera is turned, moved and brought closer, pasted, and goes back bit for bit"({ browser }) {
     const { page, save, end } = await begun(browser, scene({ camera: CAMERA.replace("}", ", shift = (0.1, 0) }") }));
     const before = (await readback(page)).data;

@@ -57,6 +57,9 @@ pub(crate) struct Camera {
     /// By how much the rays of neighbouring pixels in the middle differ: in metres at their
     /// beginning, and in metres for each metre of their length.
     pub(crate) spread: [f64; 2],
+    /// How many times as much is seen as the file says, if its rays are parallel: such a camera comes no
+    /// closer, but can show less.
+    pub(crate) zoom: Option<f64>,
     /// Whether it stands where the page wants it and not where the file says.
     pub(crate) moved: bool,
     /// The camera as a scene file writes it.

@@ -48,6 +48,9 @@ pub(crate) struct View {
     pub(crate) to: [f64; 3],
     /// Which way is up.
     pub(crate) up: [f64; 3],
+    /// How many times as much is to be seen as the file says, of a camera whose rays are parallel; 1
+    /// if absent.
+    pub(crate) zoom: Option<f64>,
 }
 
 /// What a page says.

@@ -100,7 +100,7 @@ impl Page {
 
     /// Tells where the camera of a scene stands that is shown from now on.
     pub(super) fn stands_at(&self, stage: &Stage, registry: &Registry, read: &Read) {
-        let told = || camera::told(stage, (registry, &read.sources), self.wishes.is_moved());
+        let told = || camera::told(stage, (registry, &read.sources), self.wishes.wished());
         // Shapes are asked what the middle shows; one that panics is told of by the render.
         self.screen.camera(blaming("", told).ok().flatten().as_ref());
     }

@@ -6,8 +6,8 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use luxel_core::scene::{Hash, Pose};
-use luxel_sdk::params::Look;
 
+use super::camera::Wished;
 use super::changes::Wake;
 
 /// More `param`s than this are not set; what is not declared is forgotten at the next load.
@@ -19,7 +19,7 @@ pub(super) struct Wish {
     /// Values of `param`s, as `--set` takes them, in the order in which they were first set.
     pub(super) set: Vec<(String, String)>,
     /// Where the camera is to stand, in the world.
-    pub(super) view: Option<Look>,
+    pub(super) view: Option<Wished>,
 }
 
 impl Wish {
@@ -88,7 +88,7 @@ impl Wishes {
 
     /// Where the camera is to stand in a scene whose file says this of it: if that is something else
     /// than before, nowhere else.
-    pub(super) fn view(&self, written: Written) -> Option<Look> {
+    pub(super) fn view(&self, written: Written) -> Option<Wished> {
         let mut state = self.state();
         if state.camera.as_ref().is_some_and(|before| *before != written) {
             state.wish.view = None;
@@ -97,9 +97,9 @@ impl Wishes {
         state.wish.view
     }
 
-    /// Whether the camera is asked to stand elsewhere than in the file.
-    pub(super) fn is_moved(&self) -> bool {
-        self.state().wish.view.is_some()
+    /// Where the camera is asked to stand, if elsewhere than in the file.
+    pub(super) fn wished(&self) -> Option<Wished> {
+        self.state().wish.view
     }
 }
 
@@ -108,6 +108,7 @@ mod tests {
     use std::sync::mpsc;
 
     use glam::DVec3;
+    use luxel_sdk::params::Look;
 
     use super::*;
 
@@ -141,12 +142,13 @@ mod tests {
     fn the_camera_stays_where_it_is_wished_until_the_files_is_another() {
         let (wishes, _wakes) = wishes();
         let look = Look { from: DVec3::ZERO, to: DVec3::X, up: DVec3::Y };
+        let look = Wished { look, zoom: 1.0 };
         let written = |hash: u8| (Some([hash; 32]), Pose::IDENTITY);
         assert_eq!(wishes.view(written(1)), None);
         wishes.change(|wish| wish.view = Some(look));
         assert_eq!(wishes.view(written(1)), Some(look));
-        assert!(wishes.is_moved());
+        assert_eq!(wishes.wished(), Some(look));
         assert_eq!(wishes.view(written(2)), None);
-        assert!(!wishes.is_moved());
+        assert_eq!(wishes.wished(), None);
     }
 }

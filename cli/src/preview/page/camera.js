@@ -21,21 +21,28 @@ const turned = (v, axis, angle) => {
   return v.map((x, i) => x * c + side[i] * s + axis[i] * along);
 };
 
-export function orbited({ from, to, up }, dx, dy) {
+export function orbited(view, dx, dy) {
+  const { from, to, up } = view;
   const axis = unit(up), off = add(from, to, -1), side = unit(cross(axis, off));
   const polar = Math.acos(Math.min(Math.max(dot(unit(off), axis), -1), 1));
   const tilt = Math.min(Math.max(polar - dy * TURN, POLE), Math.PI - POLE) - polar;
-  return { from: add(to, turned(turned(off, side, tilt), axis, -dx * TURN)), to, up };
+  return { ...view, from: add(to, turned(turned(off, side, tilt), axis, -dx * TURN)) };
 }
 
 // `metres` is what a pixel of the screen is where the camera looks.
-export function panned({ from, to, up }, dx, dy, metres) {
+export function panned(view, dx, dy, metres) {
+  const { from, to, up } = view;
   const back = unit(add(from, to, -1)), right = unit(cross(up, back)), over = cross(back, right);
   const by = add(right.map((x) => -x * dx * metres), over, dy * metres);
-  return { from: add(from, by), to: add(to, by), up };
+  return { ...view, from: add(from, by), to: add(to, by) };
 }
 
-export const dollied = ({ from, to, up }, factor) => ({ from: add(to, add(from, to, -1), factor), to, up });
+// A camera whose rays are parallel comes no closer: it shows less.
+export function dollied(view, factor) {
+  const { from, to, zoom } = view;
+  if (zoom) return { ...view, zoom: zoom * factor };
+  return { ...view, from: add(to, add(from, to, -1), factor) };
+}
 
 export class Camera {
   constructor(ask, pan) {
@@ -49,7 +56,10 @@ export class Camera {
     $("camera-on").hidden = !camera;
     if (!camera) this.on = false;
     const own = Date.now() - this.last < OWN;
-    if (camera && !(own && this.view)) this.view = { from: camera.from, to: camera.to, up: camera.up };
+    if (camera && !(own && this.view)) {
+      const { from, to, up, zoom } = camera;
+      this.view = zoom ? { from, to, up, zoom } : { from, to, up };
+    }
     this.show();
   }
 

@@ -21,8 +21,27 @@ const MOST_PLACES: u8 = 15;
 /// A pose that differs from a rigid one by so much bends a picture of 65536 pixels by less than one.
 const RIGID: f64 = 1e-9;
 
+/// Where a page wants the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wished {
+    pub(super) look: Look,
+    /// How many times as much is to be seen as the file says, where rays are parallel.
+    pub(super) zoom: f64,
+}
+
+/// How many times as much or as little may be asked for.
+const MOST_ZOOM: f64 = 1e9;
+/// What says how much a camera with parallel rays sees.
+const HEIGHT: &str = "height";
+
 /// Where a page wants the camera, rounded to what is seen; none that is no view.
-pub(super) fn view(wished: &View) -> Option<Look> {
+pub(super) fn view(wished: &View) -> Option<Wished> {
+    let zoom = wished.zoom.unwrap_or(1.0);
+    let is_sound = (MOST_ZOOM.recip()..=MOST_ZOOM).contains(&zoom);
+    look(wished).filter(|_| is_sound).map(|look| Wished { look, zoom })
+}
+
+fn look(wished: &View) -> Option<Look> {
     let [from, to, up] = [wished.from, wished.to, wished.up].map(DVec3::from_array);
     let look = sound(Look { from, to, up })?;
     let places = PLACES - (to - from).length().log10().floor();
@@ -54,13 +73,18 @@ fn sound(look: Look) -> Option<Look> {
 /// Stands the scene's camera there, in the world; where the scene has none, that which an asset
 /// brought to the stage before. One that moves goes on to move from there. A class without a view
 /// stays where it is.
-pub(super) fn stand(scene: &mut Scene, before: Option<&Stage>, view: &Look) {
+pub(super) fn stand(scene: &mut Scene, before: Option<&Stage>, view: &Wished) {
     let own = scene.camera.map(|id| (scene.node(id).clone(), scene.camera_pose.clone()));
     let brought = || before.and_then(|stage| camera_of(&stage.scene));
     let Some((mut node, pose)) = own.or_else(brought) else { return };
-    let Some((look, pose)) = placed(view, &pose, before) else { return };
+    let Some((look, pose)) = placed(&view.look, &pose, before) else { return };
     let Some(own) = look_of(&mut node) else { return };
     own.value = Value::Look(look);
+    if view.zoom != 1.0
+        && let Some(Value::Number(height, _)) = height_of(&mut node)
+    {
+        *height = significant(*height * view.zoom);
+    }
     if scene.camera.is_none() {
         // It is written nowhere.
         node.span = Span::new(SourceId(0), 0, 0);
@@ -78,6 +102,16 @@ fn camera_of(scene: &Scene) -> Option<Standing> {
 
 fn look_of(node: &mut Node) -> Option<&mut Argument> {
     node.params.iter_mut().find(|argument| matches!(argument.value, Value::Look(_)))
+}
+
+fn height_of(node: &mut Node) -> Option<&mut Value> {
+    let mut params = node.params.iter_mut();
+    params.find(|argument| argument.name == HEIGHT).map(|argument| &mut argument.value)
+}
+
+/// A number in seven digits.
+fn significant(x: f64) -> f64 {
+    format!("{x:.6e}").parse().unwrap_or(x)
 }
 
 /// A view in the world as a camera's parameter in a frame: the world itself, where the frame is as
@@ -102,12 +136,14 @@ fn is_rigid(pose: &DAffine3) -> bool {
     worst <= RIGID && m.determinant() > 0.0
 }
 
-/// The camera of a stage for the page; none if it has no view that could be changed.
+/// The camera of a stage for the page, which perhaps stands where it is wished; none if it has no view that
+/// could be changed.
 pub(super) fn told(
     stage: &Stage,
     (registry, sources): (&Registry, &Sources),
-    moved: bool,
+    wished: Option<Wished>,
 ) -> Option<Camera> {
+    let moved = wished.is_some();
     let (mut node, pose) = camera_of(&stage.scene)?;
     let Value::Look(local) = look_of(&mut node)?.value else { return None };
     let place = stage.camera_place.first();
@@ -120,11 +156,15 @@ pub(super) fn told(
     let world = Look { from, to: ahead, up: vector(local.up) };
     // As it would be written, whether or not it was moved.
     let (look, pose) = placed(&world, &pose, Some(stage))?;
+    let spread = spread(stage);
+    let has_height = matches!(height_of(&mut node), Some(Value::Number(..)));
+    let zooms = spread[0] > 0.0 && spread[1] == 0.0 && has_height;
     let camera = Camera {
         from: from.to_array(),
         to: to.to_array(),
         up: vector(local.up).normalize().to_array(),
-        spread: spread(stage),
+        spread,
+        zoom: zooms.then(|| wished.map_or(1.0, |wished| wished.zoom)),
         moved,
         text: text::block((&node, &pose), &look, registry, sources),
     };

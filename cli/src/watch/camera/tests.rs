@@ -33,9 +33,9 @@ fn built(scene: &Scene, registry: &Registry) -> Stage {
     stage::build(scene, registry, &MemoryFiles::default(), None).unwrap().stage
 }
 
-fn moved() -> Look {
+fn moved() -> Wished {
     let (from, to) = ([3.123456789, 0.1, 4.0], [0.2, 0.3, -0.7]);
-    view(&View { from, to, up: [0.0, 1.0, 0.0] }).unwrap()
+    view(&View { from, to, up: [0.0, 1.0, 0.0], zoom: None }).unwrap()
 }
 
 /// Cameras whose other parameters are odd, with what is said of their place.
@@ -56,15 +56,15 @@ fn the_text_of_a_camera_gives_the_same_camera_moved_or_not() {
         let camera = format!("camera {}", camera.replace("LOOK", LOOK));
         let (mut scene, sources) = read(&camera, &registry);
         let stage = built(&scene, &registry);
-        let told = |stage: &Stage, moved| told(stage, (&registry, &sources), moved).unwrap();
+        let told = |stage: &Stage| told(stage, (&registry, &sources), Some(moved())).unwrap();
         stand(&mut scene, Some(&stage), &moved());
         let stage = built(&scene, &registry);
-        let Camera { text, from, .. } = told(&stage, true);
-        let off = (DVec3::from_array(from) - moved().from).length();
+        let Camera { text, from, .. } = told(&stage);
+        let off = (DVec3::from_array(from) - moved().look.from).length();
         // A dozen roundings of numbers below ten, and as many of the inverse.
         assert!(off < 1e-13, "{camera}: {off}");
         let (again, _) = read(&text, &registry);
-        let told_again = told(&built(&again, &registry), true);
+        let told_again = told(&built(&again, &registry));
         assert_eq!(told_again.text, text, "{camera}");
         if !camera.contains("scale") {
             assert_eq!(again.hash(), scene.hash(), "{camera} gave\n{text}");
@@ -86,7 +86,7 @@ fn the_middle_of_the_picture_is_where_one_looks_and_the_rest_stays() {
         stand(&mut scene, Some(&first), &moved());
         let stage = built(&scene, &registry);
         let ray = stage.opening().camera_ray(DVec2::new(4.0, 3.0), [0.5; 2]).unwrap().ray;
-        let Look { from, to, .. } = moved();
+        let Look { from, to, .. } = moved().look;
         let off = (ray.d - (to - from).normalize()).length();
         assert!(off < 1e-14, "{camera}: {off}");
         let after = stage.scene.node(stage.scene.camera.unwrap());
@@ -100,11 +100,35 @@ fn the_middle_of_the_picture_is_where_one_looks_and_the_rest_stays() {
 }
 
 #[test]
+fn a_camera_whose_rays_are_parallel_shows_less_and_no_other_does() {
+    let registry = registry();
+    for camera in CAMERAS {
+        let camera = format!("camera {}", camera.replace("LOOK", LOOK));
+        let (mut scene, sources) = read(&camera, &registry);
+        let first = built(&scene, &registry);
+        let wished = Wished { zoom: 0.75, ..moved() };
+        let before = told(&first, (&registry, &sources), None).unwrap();
+        stand(&mut scene, Some(&first), &wished);
+        let after = told(&built(&scene, &registry), (&registry, &sources), Some(wished)).unwrap();
+        let is_parallel = camera.contains("orthographic");
+        assert_eq!(
+            [before.zoom, after.zoom],
+            [1.0, 0.75].map(|x| is_parallel.then_some(x)),
+            "{camera}"
+        );
+        // The height of a pixel, where rays begin.
+        let [a, b] = [&before, &after].map(|camera| camera.spread[0]);
+        assert!((b - 0.75 * a).abs() <= 1e-6 * a, "{camera}: {a}, {b}");
+        assert!(!is_parallel || after.text.contains("height = 4."), "{}", after.text);
+    }
+}
+
+#[test]
 fn it_is_turned_first_about_what_the_middle_shows() {
     let registry = registry();
     let camera = format!("camera perspective {{ look = {LOOK}, fov = 40 deg }}");
     let (scene, sources) = read(&camera.replace("1,", "0.001,"), &registry);
-    let found = told(&built(&scene, &registry), (&registry, &sources), false).unwrap();
+    let found = told(&built(&scene, &registry), (&registry, &sources), None).unwrap();
     // The sphere's near side, 4 m away. The middle pixel of an even picture is half a pixel off both
     // ways, 0.34 m there, where the sphere lies 0.06 m further back.
     assert!((found.to[2] - 1.0).abs() < 0.07 && !found.moved, "{found:?}");
@@ -135,8 +159,8 @@ fn a_camera_that_an_asset_brings_is_stood_elsewhere_too() {
         let first = built(&scene);
         stand(&mut scene, Some(&first), &moved());
         let stage = built(&scene);
-        let found = told(&stage, (&registry, &read.sources), true).unwrap();
-        let Look { from, to, .. } = moved();
+        let found = told(&stage, (&registry, &read.sources), Some(moved())).unwrap();
+        let Look { from, to, .. } = moved().look;
         let ray = |stage: &Stage| stage.opening().camera_ray(DVec2::new(4.0, 3.0), [0.5; 2]);
         let middle = ray(&stage).unwrap().ray;
         // As above, and what the frame three times as large rounds.
@@ -152,7 +176,13 @@ fn a_camera_that_an_asset_brings_is_stood_elsewhere_too() {
 #[test]
 fn what_is_no_view_is_refused_and_a_view_is_rounded_to_what_is_seen() {
     let [x, y, o] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]];
-    let of = |from, to, up| view(&View { from, to, up });
+    let of = |from, to, up| view(&View { from, to, up, zoom: None }).map(|wished| wished.look);
+    for (zoom, is_view) in
+        [(0.5, true), (1e9, true), (0.0, false), (-1.0, false), (f64::NAN, false)]
+    {
+        let view = view(&View { from: o, to: x, up: y, zoom: Some(zoom) });
+        assert_eq!(view.map(|wished| wished.zoom == zoom), is_view.then_some(true), "{zoom}");
+    }
     assert_eq!(of(o, o, y), None);
     assert_eq!(of(o, y, y), None);
     assert_eq!(of(o, x, o), None);

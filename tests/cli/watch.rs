@@ -62,7 +62,12 @@ fn comments_and_mistakes_leave_a_render_in_hand_alone() {
     let done = watching.end();
     assert_eq!(done.code, 0, "{done:?}");
     assert!(done.err.contains("E0402"), "{done:?}");
-    assert_eq!(done.out.lines().count(), 1, "one picture, told once: {done:?}");
+    let told = done.out.lines().map(|line| serde_json::from_str(line).unwrap());
+    let told: Vec<serde_json::Value> = told.collect();
+    let of = |name: &str| told.iter().filter(|it| !it[name].is_null()).count();
+    assert_eq!(of("exr"), 1, "one picture, told once: {done:?}");
+    // And that a mistake is gone: of half a save none is told.
+    assert_eq!((told.len(), of("edit")), (2, 2), "{done:?}");
 }
 
 #[test]

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use luxel_core::accel::Watch;
 use luxel_core::render::Control;
 use luxel_core::stage::Anew;
+use serde_json::json;
 
 use super::Args;
 use super::audience::Audience;
@@ -204,6 +205,9 @@ impl Watching<'_, '_> {
             if std::mem::take(&mut self.has_told) {
                 let edit = Edit::new(vec![], Anew::default(), begun.elapsed().as_secs_f64());
                 self.tell(&format!("as before · {}", edit.words()), report::note);
+                if self.args.json {
+                    report::out(&format!("{}\n", json!({ "edit": edit.json() })))?;
+                }
             }
             return Ok(Next::Wait);
         }

@@ -215,10 +215,12 @@ fn unit_of(
 }
 
 fn bare(param: &Param) -> Misfit {
-    let units: Vec<&str> = param.unit.split('|').flat_map(likely_units).collect();
-    let written = match param.unit {
-        "rad" => "deg or rad".to_owned(),
-        unit => unit.replace('|', " or "),
+    let units: Vec<&str> =
+        param.unit.split('|').flat_map(|unit| likely_units(param.role, unit)).collect();
+    let written = match (param.role, param.unit) {
+        (Role::Waves, _) => units[0].to_owned(),
+        (_, "rad") => "deg or rad".to_owned(),
+        (_, unit) => unit.replace('|', " or "),
     };
     let message = format!("`{}` wants a unit, as in {written}", param.name);
     let help = bare_help(dimensions(param).next().unwrap_or_default());
@@ -238,12 +240,13 @@ pub fn bare_help(wanted: Dimension) -> String {
 }
 
 /// The units that people use for the dimension of a schema's unit.
-fn likely_units(unit: &'static str) -> Vec<&'static str> {
-    match unit {
-        "m" => vec!["m", "cm", "mm"],
-        "rad" | "deg" => vec!["deg", "rad"],
-        unit if unit.starts_with("1/") => vec![],
-        unit => vec![unit],
+fn likely_units(role: Role, unit: &'static str) -> Vec<&'static str> {
+    match (role, unit) {
+        (Role::Waves, _) => vec!["nm", "um"],
+        (_, "m") => vec!["m", "cm", "mm"],
+        (_, "rad" | "deg") => vec!["deg", "rad"],
+        (_, unit) if unit.starts_with("1/") => vec![],
+        (_, unit) => vec![unit],
     }
 }
 

@@ -38,6 +38,10 @@ fn a_length_wants_its_unit_and_its_range() {
     let bare = Given::Number(5.0, Dimension::NONE);
     let misfit = conform(&LENGTH, bare.clone(), &|_| None).unwrap_err();
     assert_eq!((misfit.code, misfit.units), ("E0201", vec!["m", "cm", "mm"]));
+    let waves = Param { role: Role::Waves, ..LENGTH };
+    let misfit = conform(&waves, bare.clone(), &|_| None).unwrap_err();
+    assert_eq!(misfit.units, ["nm", "um"]);
+    assert!(misfit.message.ends_with("wants a unit, as in nm"), "{}", misfit.message);
     let mm = |d: Dimension| (d == Dimension::LENGTH).then_some(1e-3);
     assert_eq!(conform(&LENGTH, bare, &mm), Ok(Value::Number(5.0 * 1e-3, Dimension::LENGTH)));
 }

@@ -58,6 +58,26 @@ fn a_furnace_that_is_cut_off_is_told_as_biased_by_exactly_that_and_the_whole_one
 }
 
 #[test]
+fn every_setting_is_swept_and_only_one_that_leaves_light_out_is_biased() {
+    let sweep = "integrator,precision,color,filter,rr,sampler,spp=16,64";
+    let (_, done) = study(FURNACE, &["--sweep", sweep, "--truth", "2", "--target", "2%", "--json"]);
+    let found = json(&done);
+    let all = found["configurations"].as_array().unwrap();
+    let names: Vec<&str> = all.iter().map(|it| it["name"].as_str().unwrap()).collect();
+    let expected = "as it is,integrator=direct,precision=fast,precision=exact,color=spectral,\
+                    filter=box,filter=gaussian,rr=8,rr=32,sampler=sobol";
+    assert_eq!(names.join(","), expected);
+    for configuration in all {
+        let (name, last) = (&configuration["name"], &configuration["points"][1]);
+        // Direct light leaves out what was scattered twice: 1.5 of 2. Four standard errors.
+        let bias: f64 = if name == "integrator=direct" { 0.25 } else { 0.0 };
+        let [value, error] = number(&last["bias_squared"]);
+        assert!((value - bias * bias).abs() <= 4.0 * error + 1e-9, "{configuration:#}");
+        assert_eq!(last["is_biased"].as_bool(), Some(bias > 0.0), "{name}");
+    }
+}
+
+#[test]
 fn what_is_recommended_is_verified_and_can_be_pasted() {
     let (folder, done) = study(
         SCENE,

@@ -19,7 +19,7 @@ use crate::syntax::{self, Expr, ExprNode, Name, ParamDef, StmtNode, Tree};
 use crate::{ParamInfo, ParamLimits, ParamValue};
 
 /// Steps that a `set` counts, which builds an object anew.
-const SET: u64 = 40;
+const SET: u64 = 60;
 
 impl Evaluator<'_> {
     /// The value of a declared parameter: from outside, or its default.

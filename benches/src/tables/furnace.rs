@@ -128,7 +128,9 @@ fn peer(python: &Path, spp: u32) -> Result<Value, String> {
     serde_json::from_slice(&read(&json)?).map_err(|error| error.to_string())
 }
 
-/// How far a mean is off.
+/// How far a mean is off, in hundredths of a per cent.
 fn off(mean: f64) -> String {
-    minus(&format!("{:+.2} %", (mean / TRUTH - 1.0) * 100.0))
+    let parts = ((mean / TRUTH - 1.0) * 1e4).round();
+    // Nothing has no sign.
+    minus(&format!("{:+.2} %", parts / 100.0 + 0.0))
 }

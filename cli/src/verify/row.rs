@@ -86,10 +86,15 @@ impl Row {
         if bad == 0 { self } else { Self { verdict: Verdict::NotFinite, ..self } }
     }
 
-    /// How many standard errors it is off beyond its tolerance, if it has any and is beyond it.
+    /// How many standard errors it is off; where more than noise may be, only what is beyond its tolerance,
+    /// and nothing where the tolerance alone lets it pass.
     fn z(&self) -> Option<f64> {
         let Measured { value, error } = self.measured;
         let off = value - self.expected;
+        let z = off / error;
+        if z.abs() <= SIGMAS {
+            return Some(z);
+        }
         let beyond = off.abs() - self.tolerance;
         (error > 0.0 && beyond > 0.0).then(|| (beyond / error).copysign(off))
     }
@@ -199,14 +204,14 @@ mod tests {
         let told = "\
 | truth | case | expected | measured | SE | z | verdict |
 |---|---|---|---|---|---|---|
-| a | b | 1.0000000 | 1.0100000 | 3.0e-3 | +3.0 | ok |
+| a | b | 1.0000000 | 1.0100000 | 3.0e-3 | +3.3 | ok |
 | a | b | 1.0000000 | 1.0005000 | 1.0e-6 | – | ok |
 | c |  | 1.000000e-9 | 1.000000e-9 | 0.0e0 | – | ok |
 ";
         assert_eq!(document(&rows), told);
         let told = "\
 truth  case  expected     measured     SE      z     verdict
-a      b     1.0000000    1.0100000    3.0e-3  +3.0  ok
+a      b     1.0000000    1.0100000    3.0e-3  +3.3  ok
 a      b     1.0000000    1.0005000    1.0e-6  –     ok
 c            1.000000e-9  1.000000e-9  0.0e0   –     ok
 ";

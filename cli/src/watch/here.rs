@@ -202,13 +202,7 @@ impl Watching<'_, '_> {
             let Subject { warnings, read, .. } = &*subject;
             let told = [(&text.diagnostics, &text.sources), (warnings, &read.sources)];
             self.audience.page().inspect(|page| page.problems(&told));
-            if std::mem::take(&mut self.has_told) {
-                let edit = Edit::new(vec![], Anew::default(), begun.elapsed().as_secs_f64());
-                self.tell(&format!("as before · {}", edit.words()), report::note);
-                if self.args.json {
-                    report::out(&format!("{}\n", json!({ "edit": edit.json() })))?;
-                }
-            }
+            self.taken_back(begun)?;
             return Ok(Next::Wait);
         }
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
@@ -247,6 +241,19 @@ impl Watching<'_, '_> {
             self.turn_to(Subject { scene, stage, read, files: watched, texts, warnings }, edit);
         }
         Ok(Next::Wait)
+    }
+
+    /// The scene is as before: a mistake that was told since is gone, which is told too.
+    fn taken_back(&mut self, begun: Instant) -> Result<(), Failure> {
+        if !std::mem::take(&mut self.has_told) {
+            return Ok(());
+        }
+        let edit = Edit::new(vec![], Anew::default(), begun.elapsed().as_secs_f64());
+        self.tell(&format!("as before · {}", edit.words()), report::note);
+        if !self.args.json {
+            return Ok(());
+        }
+        report::out(&format!("{}\n", json!({ "edit": edit.json() })))
     }
 
     /// Says what a save came to, to people.

@@ -188,7 +188,7 @@ mod tests {
         let file = scene("param a: float = 1", "(0, 0, 5)");
         assert_eq!(now(&file), DVec3::Z * 5.0);
         let look = Look { from: DVec3::X, to: DVec3::ZERO, up: DVec3::Y };
-        wishes.change(|wish| wish.view = Some(camera::Wished { look, zoom: 1.0 }));
+        wishes.change(|wish| wish.view = Some(camera::Wished { look, zoom: None }));
         assert_eq!(now(&file), DVec3::X);
         assert_eq!(now(&file.replace("= 1", "= 2")), DVec3::X);
         assert_eq!(now(&scene("param a: float = 2", "(0, 0, 6)")), DVec3::Z * 6.0);

@@ -142,7 +142,7 @@ mod tests {
     fn the_camera_stays_where_it_is_wished_until_the_files_is_another() {
         let (wishes, _wakes) = wishes();
         let look = Look { from: DVec3::ZERO, to: DVec3::X, up: DVec3::Y };
-        let look = Wished { look, zoom: 1.0 };
+        let look = Wished { look, zoom: None };
         let written = |hash: u8| (Some([hash; 32]), Pose::IDENTITY);
         assert_eq!(wishes.view(written(1)), None);
         wishes.change(|wish| wish.view = Some(look));

@@ -25,8 +25,8 @@ const RIGID: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wished {
     pub(super) look: Look,
-    /// How many times as much is to be seen as the file says, where rays are parallel.
-    pub(super) zoom: f64,
+    /// How many times as much is to be seen as the file says, where rays are parallel, if not as much.
+    pub(super) zoom: Option<f64>,
 }
 
 /// How many times as much or as little may be asked for.
@@ -36,8 +36,8 @@ const HEIGHT: &str = "height";
 
 /// Where a page wants the camera, rounded to what is seen; none that is no view.
 pub(super) fn view(wished: &View) -> Option<Wished> {
-    let zoom = wished.zoom.unwrap_or(1.0);
-    let is_sound = (MOST_ZOOM.recip()..=MOST_ZOOM).contains(&zoom);
+    let zoom = wished.zoom.filter(|zoom| zoom.total_cmp(&1.0).is_ne());
+    let is_sound = zoom.is_none_or(|zoom| (MOST_ZOOM.recip()..=MOST_ZOOM).contains(&zoom));
     look(wished).filter(|_| is_sound).map(|look| Wished { look, zoom })
 }
 
@@ -80,10 +80,8 @@ pub(super) fn stand(scene: &mut Scene, before: Option<&Stage>, view: &Wished) {
     let Some((look, pose)) = placed(&view.look, &pose, before) else { return };
     let Some(own) = look_of(&mut node) else { return };
     own.value = Value::Look(look);
-    if view.zoom != 1.0
-        && let Some(Value::Number(height, _)) = height_of(&mut node)
-    {
-        *height = significant(*height * view.zoom);
+    if let (Some(zoom), Some(Value::Number(height, _))) = (view.zoom, height_of(&mut node)) {
+        *height = significant(*height * zoom);
     }
     if scene.camera.is_none() {
         // It is written nowhere.
@@ -164,7 +162,7 @@ pub(super) fn told(
         to: to.to_array(),
         up: vector(local.up).normalize().to_array(),
         spread,
-        zoom: zooms.then(|| wished.map_or(1.0, |wished| wished.zoom)),
+        zoom: zooms.then(|| wished.and_then(|wished| wished.zoom).unwrap_or(1.0)),
         moved,
         text: text::block((&node, &pose), &look, registry, sources),
     };

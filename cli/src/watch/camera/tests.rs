@@ -106,7 +106,7 @@ fn a_camera_whose_rays_are_parallel_shows_less_and_no_other_does() {
         let camera = format!("camera {}", camera.replace("LOOK", LOOK));
         let (mut scene, sources) = read(&camera, &registry);
         let first = built(&scene, &registry);
-        let wished = Wished { zoom: 0.75, ..moved() };
+        let wished = Wished { zoom: Some(0.75), ..moved() };
         let before = told(&first, (&registry, &sources), None).unwrap();
         stand(&mut scene, Some(&first), &wished);
         let after = told(&built(&scene, &registry), (&registry, &sources), Some(wished)).unwrap();
@@ -121,6 +121,12 @@ fn a_camera_whose_rays_are_parallel_shows_less_and_no_other_does() {
         assert!((b - 0.75 * a).abs() <= 1e-6 * a, "{camera}: {a}, {b}");
         assert!(!is_parallel || after.text.contains("height = 4."), "{}", after.text);
     }
+}
+
+#[test]
+fn to_see_as_much_is_to_leave_the_height_as_it_is() {
+    let wished = View { from: [1.0; 3], to: [0.0; 3], up: [0.0, 1.0, 0.0], zoom: Some(1.0) };
+    assert_eq!(view(&wished), view(&View { zoom: None, ..wished }));
 }
 
 #[test]
@@ -181,7 +187,7 @@ fn what_is_no_view_is_refused_and_a_view_is_rounded_to_what_is_seen() {
         [(0.5, true), (1e9, true), (0.0, false), (-1.0, false), (f64::NAN, false)]
     {
         let view = view(&View { from: o, to: x, up: y, zoom: Some(zoom) });
-        assert_eq!(view.map(|wished| wished.zoom == zoom), is_view.then_some(true), "{zoom}");
+        assert_eq!(view.and_then(|wished| wished.zoom), is_view.then_some(zoom), "{zoom}");
     }
     assert_eq!(of(o, o, y), None);
     assert_eq!(of(o, y, y), None);

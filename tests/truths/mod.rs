@@ -54,7 +54,9 @@ fn truths_hold_and_every_one_is_published_and_no_other() {
     assert_eq!(published(&document), held(&done), "luxel verify --write {PUBLISHED}");
     let rows = rows(&done);
     assert!(rows.len() > 200, "only {} truths were tried", rows.len());
-    let told = text(&root().join("README.md")).matches(&rows.len().to_string()).count();
+    let told = text(&root().join("README.md"))
+        .matches(&format!("{} closed-form truths", rows.len()))
+        .count();
     assert_eq!(told, 2, "README.md tells how many truths there are, twice: {}", rows.len());
     // What is written is what was measured, and the rest of the document stays.
     let written = String::from_utf8(folder.read("a.md")).unwrap();

@@ -29,9 +29,10 @@ use crate::report::{self, Form, Stream};
 /// Without a scene, tests every closed-form truth that the program carries: pictures, and functions of
 /// light and colour. Of a scene, renders it as its own sampler says, and holds each `expect` against
 /// the picture. A value passes within four standard errors and its tolerance, unless the standard
-/// errors are so large that it could hardly have failed (NOISY). z is how many standard errors it is off,
-/// where it is not the tolerance alone that lets it pass. Exit code 0 if everything holds, 1 if something does not or no scene expects anything. Ctrl-C ends
-/// early with what was tested and exit code 3.
+/// errors are so large that it could hardly have failed (NOISY). z is how many standard errors it is off;
+/// beyond four, only by how many beyond the tolerance, and nothing where that lets it pass. Exit code 0
+/// if everything holds, 1 if something does not or no scene expects anything. Ctrl-C ends early with
+/// what was tested and exit code 3.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:

@@ -199,13 +199,18 @@ mod tests {
 
     #[test]
     fn tables_show_every_figure() {
-        let rows =
-            [row(1.01, 0.003), row(1.0005, 1e-6), Row::exact("c", "", (1e-9, 1e-9), (1e-3, 0.0))];
+        let rows = [
+            row(1.01, 0.003),
+            row(1.0005, 1e-6),
+            row(1.003, 4e-4),
+            Row::exact("c", "", (1e-9, 1e-9), (1e-3, 0.0)),
+        ];
         let told = "\
 | truth | case | expected | measured | SE | z | verdict |
 |---|---|---|---|---|---|---|
 | a | b | 1.0000000 | 1.0100000 | 3.0e-3 | +3.3 | ok |
 | a | b | 1.0000000 | 1.0005000 | 1.0e-6 | – | ok |
+| a | b | 1.0000000 | 1.0030000 | 4.0e-4 | +5.0 | WRONG |
 | c |  | 1.000000e-9 | 1.000000e-9 | 0.0e0 | – | ok |
 ";
         assert_eq!(document(&rows), told);
@@ -213,6 +218,7 @@ mod tests {
 truth  case  expected     measured     SE      z     verdict
 a      b     1.0000000    1.0100000    3.0e-3  +3.3  ok
 a      b     1.0000000    1.0005000    1.0e-6  –     ok
+a      b     1.0000000    1.0030000    4.0e-4  +5.0  WRONG
 c            1.000000e-9  1.000000e-9  0.0e0   –     ok
 ";
         assert_eq!(columns(&rows), told);

@@ -28,8 +28,12 @@ pub(super) struct Turn {
 }
 
 /// Longer than this no pass should take: between two the picture is seen. One that does is done in
-/// slices, each some of the tiles: between two the picture is kept.
+/// slices, each some of the tiles: between two the picture is kept. Slices are longer where tiles are
+/// slow: at the end of one, all threads wait for the last tile.
 pub(super) const SLOW: Duration = Duration::from_secs(4);
+
+/// The wait for the last tile of a slice is to be less than one part in so many.
+const WAIT: u32 = 20;
 
 /// When no further tile is begun in a slice.
 #[derive(Clone, Copy)]
@@ -51,7 +55,7 @@ impl Late {
 pub(super) fn slices(
     film: &mut Film,
     turn: Turn,
-    slow: Duration,
+    mut slow: Duration,
     look: &mut Look<'_>,
     measure: &mut dyn FnMut(&mut Film, &[u32], Late) -> bool,
 ) -> bool {
@@ -60,7 +64,8 @@ pub(super) fn slices(
         let undone = film.tiles().iter().zip(&ends).position(|(tile, end)| tile.next < *end);
         let first = undone.unwrap_or(0);
         // Of coarser steps tiles do not know whether they had them.
-        let at = Instant::now().checked_add(slow).filter(|_| turn.lattice.step() == 1);
+        let start = Instant::now();
+        let at = start.checked_add(slow).filter(|_| turn.lattice.step() == 1);
         if !measure(film, &ends, Late { at, first }) {
             return false;
         }
@@ -69,6 +74,9 @@ pub(super) fn slices(
         look(film, Reached { is_whole, ..turn.reached });
         if is_whole {
             return true;
+        }
+        if start.elapsed() > slow + slow / WAIT {
+            slow = slow.saturating_mul(2);
         }
     }
 }

@@ -38,7 +38,8 @@ pub(super) fn render(
     let most = Wants(owner.wants().0 & (FROM_CAMERA.0 | Wants::SIGHT.0));
     let (window, output) = (film.window, owner.output());
     let (done, sum) = (film.most_samples(), vec![DVec3::ZERO; window.area()]);
-    let pass = Pass { done, calls: 0, broken: false, is_good: false, sum };
+    let is_good = plan.is_met(film, done);
+    let pass = Pass { done, calls: 0, broken: false, is_good, sum };
     owner.render(&PictureHost {
         stage,
         seed,

@@ -3,6 +3,6 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What each name stands for. Hashed with a key of its own, so that nobody can choose names that collide,
-/// and several times as fast as the standard library does.
+/// What each name stands for. Hashed with a key of its own, so that names that
+/// collide cannot be written beforehand, and several times as fast as the standard library does.
 pub(super) type ByName<T> = HashMap<Arc<str>, T, foldhash::fast::RandomState>;

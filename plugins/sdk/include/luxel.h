@@ -718,8 +718,9 @@ typedef struct {
     luxel_status (*is_picture)(const void *at, uint32_t *out);
     /* Makes the picture; says 0. Nothing where it does not own it; may be null then. */
     luxel_status (*render)(const void *at, const luxel_picture_job_ref *job, uint32_t *out);
-    /* Whether it owns the picture and no pass of it depends on what earlier ones found or counted, so
-       that the host may leave out those that a picture has: 1 or 0. May be null: it does. */
+    /* 1 if it owns the picture and no pass of it depends on what earlier ones found or counted, nor on
+       how many there are to be, so that the host may leave out those that a picture has; else 0. May
+       be null: 0. */
     luxel_status (*has_independent_passes)(const void *at, uint32_t *out);
 } luxel_integrator_table;
 

@@ -9,6 +9,8 @@ const TURN = 0.007;
 const POLE = 0.01;
 // What comes back so long after the last move is older than what is in the hand.
 const OWN = 600;
+// The program takes no more and no less.
+const MOST_ZOOM = 1e9;
 
 const add = (a, b, k = 1) => a.map((x, i) => x + k * b[i]);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -40,7 +42,7 @@ export function panned(view, dx, dy, metres) {
 // A camera whose rays are parallel comes no closer: it shows less.
 export function dollied(view, factor) {
   const { from, to, zoom } = view;
-  if (zoom) return { ...view, zoom: zoom * factor };
+  if (zoom) return { ...view, zoom: Math.min(Math.max(zoom * factor, 1 / MOST_ZOOM), MOST_ZOOM) };
   return { ...view, from: add(to, add(from, to, -1), factor) };
 }
 

@@ -80,7 +80,7 @@ pub(super) fn stand(scene: &mut Scene, before: Option<&Stage>, view: &Wished) {
     let Some((look, pose)) = placed(&view.look, &pose, before) else { return };
     let Some(own) = look_of(&mut node) else { return };
     own.value = Value::Look(look);
-    if let (Some(zoom), Some(Value::Number(height, _))) = (view.zoom, height_of(&mut node)) {
+    if let (Some(zoom), Some(height)) = (view.zoom, height_of(&mut node)) {
         *height = significant(*height * zoom);
     }
     if scene.camera.is_none() {
@@ -102,9 +102,17 @@ fn look_of(node: &mut Node) -> Option<&mut Argument> {
     node.params.iter_mut().find(|argument| matches!(argument.value, Value::Look(_)))
 }
 
-fn height_of(node: &mut Node) -> Option<&mut Value> {
-    let mut params = node.params.iter_mut();
-    params.find(|argument| argument.name == HEIGHT).map(|argument| &mut argument.value)
+/// How much a camera sees, where its file says so.
+fn height_of(node: &mut Node) -> Option<&mut f64> {
+    let whole = node.span;
+    let argument = node.params.iter_mut().find(|argument| argument.name == HEIGHT)?;
+    // What an asset brings is written nowhere: its parameters stand where the whole does. It comes from
+    // the stage before, which has the last wish already.
+    let is_written = argument.span != whole && !whole.range().is_empty();
+    match &mut argument.value {
+        Value::Number(height, _) if is_written => Some(height),
+        _ => None,
+    }
 }
 
 /// A number in seven digits.
@@ -155,8 +163,7 @@ pub(super) fn told(
     // As it would be written, whether or not it was moved.
     let (look, pose) = placed(&world, &pose, Some(stage))?;
     let spread = spread(stage);
-    let has_height = matches!(height_of(&mut node), Some(Value::Number(..)));
-    let zooms = spread[0] > 0.0 && spread[1] == 0.0 && has_height;
+    let zooms = spread[0] > 0.0 && spread[1] == 0.0 && height_of(&mut node).is_some();
     let camera = Camera {
         from: from.to_array(),
         to: to.to_array(),

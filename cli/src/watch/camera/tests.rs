@@ -180,6 +180,34 @@ fn a_camera_that_an_asset_brings_is_stood_elsewhere_too() {
 }
 
 #[test]
+fn a_camera_with_parallel_rays_that_an_asset_brings_shows_as_much_as_it_says() {
+    let registry = registry();
+    let parallel = r#"{ "type": "orthographic",
+        "orthographic": { "xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 9 } }"#;
+    let perspective = r#"{ "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1 } }"#;
+    let text =
+        format!("scene 1\nlet a = asset gltf {{ file = \"a.gltf\", unit = 1 m }}\nplace a\n{REST}");
+    let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+    let files = files.with("a.gltf", ASSET.replace(perspective, parallel).as_bytes());
+    let settings = luxel_lang::Settings::default();
+    let read = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
+    let scene = read.scene.unwrap_or_else(|| panic!("{:?}", read.diagnostics));
+    let built = |scene: &Scene| stage::build(scene, &registry, &files, None).unwrap().stage;
+    let wished = Wished { zoom: Some(0.5), ..moved() };
+    let mut stage = built(&scene);
+    let before = spread(&stage);
+    assert!(before[0] > 0.0 && before[1] == 0.0, "{before:?}");
+    for _ in 0..3 {
+        let mut again = scene.clone();
+        stand(&mut again, Some(&stage), &wished);
+        stage = built(&again);
+        let found = told(&stage, (&registry, &read.sources), Some(wished)).unwrap();
+        assert_eq!(found.zoom, None);
+        assert!((found.spread[0] - before[0]).abs() < 1e-12, "{:?}", found.spread);
+    }
+}
+
+#[test]
 fn what_is_no_view_is_refused_and_a_view_is_rounded_to_what_is_seen() {
     let [x, y, o] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]];
     let of = |from, to, up| view(&View { from, to, up, zoom: None }).map(|wished| wished.look);

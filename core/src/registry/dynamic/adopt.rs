@@ -67,7 +67,10 @@ pub(super) unsafe fn adopt(kind: Kind, raw: *const u8) -> Result<*const u8, Stri
         Kind::Filter => table!(FilterTable),
         Kind::Integrator => table!(
             IntegratorTable,
-            Some((IntegratorTable::of::<Without>(), &["is_picture", "render"]))
+            Some((
+                IntegratorTable::of::<Without>(),
+                &["is_picture", "render", "has_independent_passes"]
+            ))
         ),
         Kind::Importer => table!(ImporterTable),
         Kind::Film => Err("the film belongs to the host".to_owned()),
@@ -199,23 +202,30 @@ impl Shape for Without {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_medium_that_leaves_its_glow_out_is_dark() {
-        let own = MediumTable::of::<Without>();
-        let older = size_of_val(own) - size_of::<*const u8>();
-        let mut words = vec![without_provenance::<u8>(older)];
+    /// What becomes of a table that ends so many functions early.
+    fn older<T>(kind: Kind, own: &T, missing: usize) -> Result<*const u8, String> {
+        const WORD: usize = size_of::<*const u8>();
+        let n = size_of::<T>() / WORD - missing;
         let from = std::ptr::from_ref(own).cast::<*const u8>();
-        // SAFETY: the table has more words than its last one.
-        words.extend(
-            (1..older / size_of::<*const u8>()).map(|i| unsafe { from.wrapping_add(i).read() }),
-        );
+        let mut words = vec![without_provenance::<u8>(n * WORD)];
+        // SAFETY: the table has as many words and more.
+        words.extend((1..n).map(|i| unsafe { from.wrapping_add(i).read() }));
         // SAFETY: as long as it says.
-        let taken = unsafe { adopt(Kind::Medium, words.as_ptr().cast()) };
-        assert!(taken.is_ok(), "{taken:?}");
-        words.pop();
-        words[0] = without_provenance(older - size_of::<*const u8>());
-        // SAFETY: as long as it says.
-        let refused = unsafe { adopt(Kind::Medium, words.as_ptr().cast()) };
-        assert!(refused.is_err_and(|told| told.contains("lacks `phase`")));
+        unsafe { adopt(kind, words.as_ptr().cast()) }
+    }
+
+    #[test]
+    fn tables_of_before_a_function_was_thought_of_are_taken() {
+        let lacks = |taken: Result<*const u8, String>, name: &str| {
+            taken.is_err_and(|told| told.ends_with(&format!("lacks `{name}`")))
+        };
+        let medium = MediumTable::of::<Without>();
+        assert!(older(Kind::Medium, medium, 1).is_ok());
+        assert!(lacks(older(Kind::Medium, medium, 2), "phase"));
+        let integrator = IntegratorTable::of::<Without>();
+        for missing in [1, 2, 3] {
+            assert!(older(Kind::Integrator, integrator, missing).is_ok(), "{missing}");
+        }
+        assert!(lacks(older(Kind::Integrator, integrator, 4), "arrive_n"));
     }
 }

@@ -29,8 +29,9 @@ pub trait PictureIntegrator: Send + Sync {
         Output::Value
     }
 
-    /// Whether a pass depends on nothing that earlier ones found or counted. Then a picture that was
-    /// left unfinished can be gone on with: the host counts the passes that it has.
+    /// Whether a pass depends on nothing that earlier ones found or counted, nor on how many there are to
+    /// be. Then a picture that was left unfinished can be gone on with, for more samples too: the host
+    /// counts the passes that it has.
     fn has_independent_passes(&self) -> bool {
         false
     }

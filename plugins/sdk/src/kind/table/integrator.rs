@@ -157,8 +157,9 @@ table! {
             integrator.as_picture()?.render(job);
             Some(0)
         }
-        /// Whether it owns the picture and no pass of it depends on what earlier ones found or counted, so
-        /// that the host may leave out those that a picture has: 1 or 0. May be null: it does.
+        /// 1 if it owns the picture and no pass of it depends on what earlier ones found or counted, nor on
+        /// how many there are to be, so that the host may leave out those that a picture has; else 0. May
+        /// be null: 0.
         fn has_independent_passes(integrator) -> u32 {
             let owner = integrator.as_picture();
             Some(u32::from(owner.is_some_and(PictureIntegrator::has_independent_passes)))

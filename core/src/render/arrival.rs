@@ -84,7 +84,7 @@ impl Shader<'_, '_> {
     pub(super) fn surface(self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
         let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
         let surface = self.stage.surface(ray, hit);
-        self.meets((ray, hit, steps), &surface, &numbers, at);
+        self.meets::<false>((ray, hit, steps), &surface, &numbers, at);
     }
 
     /// The ray met a surface beyond which it would be in something else.
@@ -96,11 +96,12 @@ impl Shader<'_, '_> {
     ) {
         self.path.beyond = crossing.beyond;
         let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
-        self.meets((ray, hit, steps), &crossing.surface, &numbers, at);
+        self.meets::<true>((ray, hit, steps), &crossing.surface, &numbers, at);
     }
 
+    /// Shades a surface; compiled once for scenes whose shapes may be nested, once without that.
     #[inline(always)]
-    fn meets(
+    fn meets<const NESTED: bool>(
         mut self,
         (ray, hit, steps): (&Ray, &SceneHit, u32),
         surface: &Surface,
@@ -139,7 +140,7 @@ impl Shader<'_, '_> {
         self.path.on = Some(Standing { leaving, p: surface.p, ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
-            self.scatter(at, surface, hit, numbers);
+            self.scatter::<NESTED>(at, surface, hit, numbers);
         } else {
             at.sight.given = false;
         }
@@ -147,13 +148,19 @@ impl Shader<'_, '_> {
 
     /// The light sample and the scattering sample at a surface.
     #[inline(always)]
-    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, hit: &SceneHit, numbers: &Numbers) {
+    fn scatter<const NESTED: bool>(
+        &mut self,
+        at: &mut Arrival,
+        surface: &Surface,
+        hit: &SceneHit,
+        numbers: &Numbers,
+    ) {
         if self.wants.0 & SHADED.0 == 0 {
             return;
         }
         let takes_colors = self.stage.materials[at.material as usize].takes_colors();
-        if takes_colors || self.stage.features.nested() {
-            self.scatter_apart(at, surface, hit, numbers);
+        if takes_colors || (NESTED && self.stage.features.nested()) {
+            self.scatter_apart::<NESTED>(at, surface, hit, numbers);
         } else {
             self.scatter_with(at, surface, numbers, (None, None));
         }
@@ -162,7 +169,7 @@ impl Shader<'_, '_> {
     /// The same where the material asks for more than its place. Apart: what is found in between
     /// would cost every other surface its registers.
     #[inline(never)]
-    fn scatter_apart(
+    fn scatter_apart<const NESTED: bool>(
         &mut self,
         at: &mut Arrival,
         surface: &Surface,
@@ -171,7 +178,7 @@ impl Shader<'_, '_> {
     ) {
         let color = self.stage.color(hit);
         let site = Site { p: at.p, uv: at.uv, palette: &self.path.palette, color };
-        let around = self.stage.features.nested().then(|| {
+        let around = (NESTED && self.stage.features.nested()).then(|| {
             let sides = (&self.path.media, &self.path.beyond);
             self.stage.index_around(sides, hit.placement, &site, self.scratch)
         });

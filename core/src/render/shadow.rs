@@ -19,9 +19,6 @@ pub(super) fn passes(
     samples: &mut Samples<'_>,
     scratch: &mut Scratch,
 ) -> Spectrum {
-    if !stage.features.media() && !stage.features.is_open() {
-        return Spectrum::ONE;
-    }
     let mut media = path.media_along(ray);
     let mut from = path.leaving();
     let mut left = Spectrum::ONE;

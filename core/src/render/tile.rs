@@ -47,6 +47,8 @@ pub(super) struct Worker<'s> {
     next: Requests,
     hits: Vec<(Option<SceneHit>, u32)>,
     shadowed: Vec<bool>,
+    /// Whether rays meet more on their way than surfaces that end them: media, open or nested ones.
+    goes_through: bool,
     /// Whether rays take turns, and room for those that do.
     in_turns: bool,
     rooms: Rooms,
@@ -91,6 +93,7 @@ impl<'s> Worker<'s> {
             next: Requests::default(),
             hits: vec![],
             shadowed: vec![],
+            goes_through: stage.features.media() || stage.features.is_open(),
             in_turns: stage.is_for_turns(),
             rooms: Rooms::default(),
             arrived: vec![],
@@ -166,7 +169,9 @@ impl<'s> Worker<'s> {
         done
     }
 
-    /// Rounds until every job is done; false when cancelled.
+    /// Rounds until every job is done; false when cancelled. One thing at a time for all paths:
+    /// neighbours in time do not wait for each other. What a round does is compiled twice: where no line
+    /// of the scene requires media, open surfaces or nested shapes, nothing in it asks for them.
     pub(super) fn run(&mut self, jobs: &Jobs<'_>, stop: Stop<'_>) -> bool {
         let mut started = 0;
         self.free.clear();
@@ -182,7 +187,14 @@ impl<'s> Worker<'s> {
             }
             std::mem::swap(&mut self.now, &mut self.next);
             self.next.clear();
-            self.processor.run(Shadows(self));
+            if self.goes_through {
+                self.processor.run(Shadows::<true>(self));
+                self.processor.run(Fly(self));
+            } else {
+                self.processor.run(Shadows::<false>(self));
+                self.processor.run(Trace(self));
+                self.processor.run(Shade(self));
+            }
             self.arrivals();
             self.retire();
         }
@@ -232,14 +244,14 @@ impl<'s> Worker<'s> {
 
     /// Light that depended on shadow rays, in asking order.
     #[inline(always)]
-    fn shadows(&mut self, processor: Processor) {
+    fn shadows<const THROUGH: bool>(&mut self, processor: Processor) {
         self.shadowed.clear();
         self.shadowed.resize(self.now.shadows.len(), false);
         let (paths, shadowed) = (&self.paths, &mut self.shadowed);
         let of = |lane: u32| (paths[lane as usize].leaving(), paths[lane as usize].time);
         let rays = self.now.shadows.iter().map(|asked| (&asked.ray, of(asked.lane)));
         let rays = rays.map(|(ray, (from, time))| (ray, from, time));
-        if self.stage.features.nested() {
+        if THROUGH && self.stage.features.nested() {
             // What stops a ray depends on what it is in: `shadow::passes` sees.
         } else if self.in_turns {
             let tell = |i: usize, is_hit| shadowed[i] = is_hit;
@@ -255,33 +267,29 @@ impl<'s> Worker<'s> {
             }
             let lane = &mut self.lanes[request.lane as usize];
             let path = &self.paths[request.lane as usize];
-            let mut samples = Samples::new(self.sampler, lane.numbers);
-            let scratch = &mut self.scratch;
-            let stage = self.stage.at(path.time);
-            let left = shadow::passes(processor, stage, &request.ray, path, &mut samples, scratch);
-            lane.numbers = samples.at();
+            let mut l = request.l;
+            if THROUGH {
+                let mut samples = Samples::new(self.sampler, lane.numbers);
+                let scratch = &mut self.scratch;
+                let stage = self.stage.at(path.time);
+                l *= shadow::passes(processor, stage, &request.ray, path, &mut samples, scratch);
+                lane.numbers = samples.at();
+            }
             if request.pixel == Shadow::OWN {
-                lane.l += request.l * left;
+                lane.l += l;
                 if self.record.has_groups() {
-                    self.record.found(self.stage, (request.lane, path), request.l * left);
+                    self.record.found(self.stage, (request.lane, path), l);
                 }
                 continue;
             }
-            let rgb = self.to_rgb.sample(request.l * left, &path.palette.wavelengths);
+            let rgb = self.to_rgb.sample(l, &path.palette.wavelengths);
             self.splats.push(Splat { pixel: request.pixel, rgb });
         }
     }
 
-    /// Traces the paths that go on, shades where they arrive, and asks what now. One thing at a time
-    /// for all: neighbours in time do not wait for each other.
+    /// Asks what now, where the paths of this round have arrived.
     fn arrivals(&mut self) {
         let stage = self.stage;
-        if stage.features.media() || stage.features.is_open() {
-            self.processor.run(Fly(self));
-        } else {
-            self.processor.run(Trace(self));
-            self.processor.run(Shade(self));
-        }
         if self.record.is_on() {
             self.record();
         }
@@ -384,14 +392,14 @@ impl<'s> Worker<'s> {
     }
 }
 
-struct Shadows<'a, 's>(&'a mut Worker<'s>);
+struct Shadows<'a, 's, const THROUGH: bool>(&'a mut Worker<'s>);
 struct Trace<'a, 's>(&'a mut Worker<'s>);
 struct Shade<'a, 's>(&'a mut Worker<'s>);
 
-impl Work for Shadows<'_, '_> {
+impl<const THROUGH: bool> Work for Shadows<'_, '_, THROUGH> {
     #[inline(always)]
     fn run(self, processor: Processor) {
-        self.0.shadows(processor);
+        self.0.shadows::<THROUGH>(processor);
     }
 }
 

@@ -12,7 +12,7 @@ use luxel_lang::ParamInfo;
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure, blaming};
-use crate::files::{DiskFiles, Known};
+use crate::files::{Asked, DiskFiles, Known};
 use crate::interrupt::CANCELLED;
 use crate::isolate::{Beat, Phase};
 use crate::libraries::{Plugins, Session, Surroundings};
@@ -67,10 +67,12 @@ pub(crate) fn look_at_libraries(args: &PluginArgs) -> Result<Plugins, Failure> {
 pub(crate) struct Course {
     /// Tells another process.
     pub(crate) beat: Beat,
-    /// Ends the building of trees.
+    /// Ends reading and the building of trees.
     pub(crate) watch: Arc<Watch>,
     /// Files that need not be read to know what is in them.
     pub(crate) known: Known,
+    /// The files that are asked for.
+    pub(crate) asked: Asked,
     /// Whether a line tells of it on a terminal.
     pub(crate) line: bool,
 }
@@ -106,22 +108,23 @@ pub(crate) struct Text {
 /// Reads a scene, whose picture is to have `size` if one is given.
 ///
 /// # Errors
-/// A panic below, as our fault; a feature both required and dropped. The author's mistakes are among
-/// what was found.
+/// A panic below, as our fault; a feature both required and dropped; that the course's watch was
+/// cancelled. The author's mistakes are among what was found.
 pub(crate) fn read(
     path: &Path,
     args: &LoadArgs,
     size: Option<UVec2>,
     plugins: &Plugins,
-    Course { beat, known, .. }: &Course,
+    Course { beat, known, asked, watch, .. }: &Course,
 ) -> Result<Text, Failure> {
     let mut text = blaming(&path.display().to_string(), || {
-        let files = DiskFiles::new(path, &args.allow_path).knowing(known);
+        let files = DiskFiles::new(path, &args.allow_path).knowing(known).telling(asked);
         beat.reading(files.shared());
         beat.phase(Phase::Loading);
         let settings = luxel_lang::Settings {
             set: args.set.clone(),
             unloaded: plugins.unloaded(),
+            stop: Some(watch.flag()),
             ..Default::default()
         };
         let mut read = luxel_lang::load(path, &files, &plugins.registry, &settings);
@@ -138,6 +141,7 @@ pub(crate) fn read(
         let luxel_lang::Loaded { diagnostics, sources, params, .. } = read;
         Text { scene, diagnostics, sources, files, params }
     })?;
+    go_on(watch)?;
     text.scene.as_mut().map_or(Ok(()), |scene| args.change_features(scene))?;
     Ok(text)
 }
@@ -179,8 +183,10 @@ pub(crate) fn build(
         let stage = stage.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
         Loaded { scene, stage, diagnostics, sources, files, anew }
     })?;
-    if watch.is_cancelled() {
-        return Err(Failure::new(Exit::Incomplete, CANCELLED));
-    }
+    go_on(watch)?;
     Ok(loaded)
+}
+
+fn go_on(watch: &Watch) -> Result<(), Failure> {
+    if watch.is_cancelled() { Err(Failure::new(Exit::Incomplete, CANCELLED)) } else { Ok(()) }
 }

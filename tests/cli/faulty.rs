@@ -11,6 +11,7 @@ use super::program::{Folder, SCENE};
 const SOURCE: &str = r#"#include "luxel.h"
 #include <stdatomic.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 typedef struct { luxel_spectrum reflectance; } faulty;
 static atomic_int asked;
@@ -77,6 +78,9 @@ pub(crate) const NEVER_END: &str = "while (never) {}";
 
 /// And what it does when an object is made.
 pub(crate) const LEAK: &str = "kept = malloc(24)";
+/// Writes `begun` and looks at nothing but whether there is `go`.
+pub(crate) const WAIT: &str = "fclose(fopen(\"begun\", \"w\"));
+    for (FILE *go = 0; !(go = fopen(\"go\", \"r\"));) {}";
 
 /// The same ball, of what the library offers.
 pub(crate) fn scene() -> String {

@@ -68,6 +68,21 @@ fn a_watch_tells_a_failed_plugin_and_the_next_save_makes_it_anew() {
 }
 
 #[test]
+fn what_does_not_look_whether_it_is_wanted_is_left_for_the_next_save() {
+    let folder = Folder::new("left").with("a.scene", &faulty::scene());
+    faulty::build_with(&folder, faulty::NOTHING, faulty::WAIT, "");
+    let mut watching = watch(&folder, &[]);
+    until("an object that takes its time", || folder.names().contains(&"begun".to_owned()));
+    folder.write("a.scene", SCENE);
+    until("the picture of another scene", || !folder.read("a.exr").is_empty());
+    assert!(!folder.names().contains(&"go".to_owned()), "the object has ended first");
+    folder.write("go", "");
+    watching.interrupt();
+    let done = watching.end();
+    assert!(done.code == 0 && !done.err.contains("error"), "{done:?}");
+}
+
+#[test]
 fn the_same_bytes_come_from_a_process_apart() {
     let folder = Folder::new("apart").with("a.scene", SCENE);
     for (name, more) in [("here", None), ("apart", Some("--isolate"))] {

@@ -57,6 +57,12 @@ impl DiskFiles {
         Self { known: known.clone(), ..self }
     }
 
+    /// The same, which puts the paths that are asked for here, and takes out what is there.
+    pub(crate) fn telling(self, asked: &Asked) -> Self {
+        lock(asked).clear();
+        Self { asked: asked.clone(), ..self }
+    }
+
     /// The paths that are asked for, now and later.
     pub(crate) fn shared(&self) -> &Asked {
         &self.asked

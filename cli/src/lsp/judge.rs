@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -111,7 +110,6 @@ struct Desk {
 struct State {
     job: Option<Job>,
     /// Ends what is being evaluated.
-    stop: Arc<AtomicBool>,
     watch: Arc<Watch>,
 }
 
@@ -130,10 +128,10 @@ impl Judge {
         // Without it, what is written and named is told all the same.
         let _ = thread.spawn(move || {
             loop {
-                let (job, stop, watch) = next(&own);
-                let one = |root| judged(root, &job, &plugins, &allow, (&stop, &watch));
+                let (job, watch) = next(&own);
+                let one = |root| judged(root, &job, &plugins, &allow, &watch);
                 let roots = job.roots.iter().map(one).collect();
-                if !stop.load(Ordering::Relaxed) {
+                if !watch.is_cancelled() {
                     queue.put(Event::Judged(Verdict { serial: job.serial, roots }));
                 }
             }
@@ -144,7 +142,6 @@ impl Judge {
     /// Gives up what waits and what is being evaluated for a newer job.
     pub(super) fn put(&self, job: Job) {
         let mut state = self.0.lock();
-        state.stop.store(true, Ordering::Relaxed);
         state.watch.cancel();
         state.job = Some(job);
         self.0.changed.notify_one();
@@ -152,7 +149,7 @@ impl Judge {
 }
 
 /// Waits for a job, and until it has not changed for a while.
-fn next(desk: &Desk) -> (Job, Arc<AtomicBool>, Arc<Watch>) {
+fn next(desk: &Desk) -> (Job, Arc<Watch>) {
     let mut state = desk.lock();
     loop {
         let Some(serial) = state.job.as_ref().map(|job| job.serial) else {
@@ -162,9 +159,8 @@ fn next(desk: &Desk) -> (Job, Arc<AtomicBool>, Arc<Watch>) {
         let waited = desk.changed.wait_timeout(state, PAUSE);
         state = waited.unwrap_or_else(PoisonError::into_inner).0;
         if let Some(job) = state.job.take_if(|job| job.serial == serial) {
-            state.stop = Arc::default();
             state.watch = Arc::default();
-            return (job, state.stop.clone(), state.watch.clone());
+            return (job, state.watch.clone());
         }
     }
 }
@@ -174,14 +170,14 @@ fn judged(
     job: &Job,
     plugins: &Plugins,
     allow: &[PathBuf],
-    (stop, watch): (&Arc<AtomicBool>, &Watch),
+    watch: &Watch,
 ) -> Judged {
     let run = || {
         let files = Overlay::new(root, allow, &job.texts);
         let settings = luxel_lang::Settings {
             unloaded: plugins.unloaded(),
             noting: true,
-            stop: Some(stop.clone()),
+            stop: Some(watch.flag()),
             ..Default::default()
         };
         let loaded = luxel_lang::load(root, &files, &plugins.registry, &settings);

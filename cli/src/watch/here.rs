@@ -12,6 +12,7 @@ use luxel_core::stage::Anew;
 use serde_json::json;
 
 use super::Args;
+use super::attempt::{Attempts, Ended};
 use super::audience::Audience;
 use super::changes::{Changes, Noticed, Wake};
 use super::edit::{self, Edit};
@@ -22,7 +23,7 @@ use super::shown::{Shown, Subject};
 use super::wishes::Wishes;
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
-use crate::files::{Asked, look};
+use crate::files::{Asked, Watched, look};
 use crate::interrupt::Guard;
 use crate::isolate::Beat;
 use crate::libraries::{Plugins, Session, Surroundings};
@@ -31,6 +32,9 @@ use crate::report::{self, Stream};
 
 /// Between two looks at whether a scene is ready.
 const TICK: Duration = Duration::from_millis(1);
+
+/// So long nothing is looked for while a scene is read: most are read by then.
+const SHORT: Duration = Duration::from_millis(5);
 
 /// So long nothing is saved when a scene is called stable.
 const STILL: Duration = Duration::from_millis(120);
@@ -79,8 +83,10 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
             scope,
             guard: &guard,
             audience: &audience,
+            attempts: Attempts::new(scope),
             in_hand,
-            plugins,
+            libraries: plugins.watched.clone(),
+            plugins: Arc::new(plugins),
             changes,
             asked: Asked::default(),
             shown: None,
@@ -103,20 +109,28 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
     })
 }
 
+/// What to do after something else was noticed.
+fn after(noticed: Noticed) -> Next {
+    if noticed == Noticed::Stop { Next::End } else { Next::Read }
+}
+
 struct Watching<'scope, 'env> {
     args: &'env Args,
     scope: &'scope Scope<'scope, 'env>,
     guard: &'env Guard,
     audience: &'env Audience,
+    attempts: Attempts<'scope, 'env>,
     in_hand: InHand,
-    plugins: Plugins,
+    plugins: Arc<Plugins>,
+    /// What decides which libraries are opened, as it was last looked at.
+    libraries: Watched,
     changes: Changes,
     /// What the last load has asked for so far.
     asked: Asked,
     /// The last good scene.
     shown: Option<Shown<'scope>>,
-    /// Whether a save ends the making ready of a scene. Not twice in a row: however fast saves come,
-    /// pictures follow.
+    /// Whether a save ends the reading or the making ready of a scene. Not twice in a row: however fast
+    /// saves come, pictures follow.
     impatient: bool,
     /// Whether the last load gave a scene.
     is_good: bool,
@@ -125,7 +139,7 @@ struct Watching<'scope, 'env> {
     press: Press<'scope, 'env>,
 }
 
-impl Watching<'_, '_> {
+impl<'scope> Watching<'scope, '_> {
     /// Reads and renders at every save, until the end is asked for.
     ///
     /// # Errors
@@ -172,7 +186,7 @@ impl Watching<'_, '_> {
             Err(failure) if failure.exit == Exit::Ours => {
                 self.audience.failed(&failure);
                 self.has_told = true;
-                let libraries = self.plugins.watched.keys().map(PathBuf::as_path);
+                let libraries = self.libraries.keys().map(PathBuf::as_path);
                 let told = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
                 let also = libraries.chain([self.args.file.as_path()]);
                 self.changes.expect_more_than(told, also);
@@ -189,13 +203,15 @@ impl Watching<'_, '_> {
         let (line, known) = (!self.args.quiet, self.changes.known().clone());
         let course = load::Course { known, line, ..load::Course::default() };
         self.is_good = false;
-        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
-        let text = reading::read(self.args, &self.plugins, self.audience.page(), before, &course)?;
-        self.asked = text.files.shared().clone();
+        self.asked = course.asked.clone();
+        let text = match self.read(&course)? {
+            Ended::Done(text) => text,
+            Ended::Left(noticed) => return Ok(after(noticed)),
+        };
         if let Some(Shown { subject, .. }) = &mut self.shown
             && subject.is_of(&text, self.changes.known())
         {
-            self.is_good = true;
+            (self.is_good, self.impatient) = (true, true);
             subject.read_again(&text);
             self.changes.expect(subject.files.clone());
             report::diagnostics(&text.diagnostics, &text.sources, form, Stream::Error)?;
@@ -206,14 +222,13 @@ impl Watching<'_, '_> {
             return Ok(Next::Wait);
         }
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
-        let (loaded, noticed) = self.build(text, &course);
-        let loaded = match noticed {
-            Noticed::Save => return Ok(Next::Read),
-            Noticed::Stop => return Ok(Next::End),
-            Noticed::Nothing => loaded?,
+        let loaded = match self.build(text, &course)? {
+            Ended::Done(loaded) => loaded,
+            Ended::Left(noticed) => return Ok(after(noticed)),
         };
+        self.impatient = true;
         let mut watched = loaded.files.asked();
-        watched.extend(self.plugins.watched.clone());
+        watched.extend(self.libraries.clone());
         self.changes.expect(watched.clone());
         // Half a save looks like a mistake: the wait tells at once of the other half.
         if loaded.stage.is_some() || !self.changes.more_to_come() {
@@ -263,34 +278,72 @@ impl Watching<'_, '_> {
         }
     }
 
-    /// Makes a scene ready, unless a save comes between.
-    fn build(&mut self, text: Text, course: &load::Course) -> (Result<Loaded, Failure>, Noticed) {
+    /// Does a part of making a scene ready, unless `look` notices something.
+    fn attempt<T: Send + 'scope>(
+        &mut self,
+        work: impl FnOnce() -> Result<T, Failure> + Send + 'scope,
+        course: &load::Course,
+        look: &mut dyn FnMut(&mut Changes) -> Noticed,
+    ) -> Result<Ended<T>, Failure> {
         self.in_hand.get().1 = course.watch.clone();
-        let mut now = text.files.asked();
-        now.extend(self.plugins.watched.clone());
-        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
-        let (file, plugins, changes) = (&self.args.file, &self.plugins, &mut self.changes);
-        let patient = !self.impatient;
-        changes.expect(now);
-        let (built, noticed) = std::thread::scope(|scope| {
-            let building = scope.spawn(|| load::build(file, text, plugins, before, course));
-            let mut noticed = Noticed::Nothing;
-            while !building.is_finished() && noticed == Noticed::Nothing {
-                noticed = match changes.within(TICK) {
-                    Noticed::Save if patient => break,
-                    noticed => noticed,
-                };
+        let (changes, impatient, mut has_saved) = (&mut self.changes, self.impatient, false);
+        let look = || {
+            if has_saved {
+                std::thread::sleep(TICK);
+                return Noticed::Nothing;
             }
-            if noticed != Noticed::Nothing {
-                course.watch.cancel();
-            }
-            (building.join(), noticed)
-        });
-        self.impatient = noticed == Noticed::Nothing;
-        let lost = |_| Failure::new(Exit::Ours, "the scene could not be made ready");
-        (built.unwrap_or_else(|payload| Err(lost(payload))), noticed)
+            let noticed = look(changes);
+            has_saved = noticed == Noticed::Save && !impatient;
+            if has_saved { Noticed::Nothing } else { noticed }
+        };
+        let ended = self.attempts.run(work, look, || course.watch.cancel());
+        self.impatient &= !matches!(ended, Ok(Ended::Left(_)));
+        ended
     }
 
+    /// Reads the scene, unless a save comes between.
+    fn read(&mut self, course: &load::Course) -> Result<Ended<Text>, Failure> {
+        let (args, page, plugins) = (self.args, self.audience.page(), self.plugins.clone());
+        let own = course.clone();
+        let (mut expected, begun) = (Watched::new(), Instant::now());
+        let ended = self.attempt(
+            move || reading::read(args, &plugins, page, &own),
+            course,
+            &mut |changes| {
+                if begun.elapsed() < SHORT {
+                    std::thread::sleep(SHORT / 25);
+                    return Noticed::Nothing;
+                }
+                let now = course.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                if now != expected {
+                    changes.expect_more_than(now.clone(), []);
+                    expected = now;
+                }
+                if expected.is_empty() { Noticed::Nothing } else { changes.within(TICK) }
+            },
+        )?;
+        let before = self.shown.as_ref().map(|shown| &*shown.subject.stage);
+        Ok(match ended {
+            Ended::Left(noticed) => Ended::Left(noticed),
+            Ended::Done(wished) => {
+                Ended::Done(reading::settle(wished, args, page, before, &course.known))
+            }
+        })
+    }
+
+    /// Makes a scene ready, unless a save comes between.
+    fn build(&mut self, text: Text, course: &load::Course) -> Result<Ended<Loaded>, Failure> {
+        let mut now = text.files.asked();
+        now.extend(self.libraries.clone());
+        self.changes.expect(now);
+        let before = self.shown.as_ref().map(|shown| shown.subject.stage.clone());
+        let (file, plugins, own) = (&self.args.file, self.plugins.clone(), course.clone());
+        self.attempt(
+            move || load::build(file, text, &plugins, before.as_deref(), &own),
+            course,
+            &mut |changes| changes.within(TICK),
+        )
+    }
     /// Goes on with the picture before if only how it is shown has changed, else begins one.
     fn turn_to(&mut self, subject: Subject, edit: Edit) {
         let Some(shown) = &mut self.shown else { return self.show(subject, edit) };
@@ -361,19 +414,20 @@ impl Watching<'_, '_> {
         (args, surroundings): (&PluginArgs, &Surroundings),
     ) -> Result<(), Failure> {
         let known = self.changes.known();
-        if self.plugins.watched.iter().all(|(path, seen)| known.look(path) == *seen) {
+        if self.libraries.iter().all(|(path, seen)| known.look(path) == *seen) {
             return Ok(());
         }
         match session.refresh(args, surroundings) {
             Ok(renewed) => {
-                self.plugins = renewed;
+                self.libraries.clone_from(&renewed.watched);
+                self.plugins = Arc::new(renewed);
                 self.plugins.notes.tell(self.args.form(), Stream::Error)
             }
             // A lock or configuration that cannot be understood leaves everything as it was.
             Err(failure) => {
                 self.audience.failed(&failure);
                 let seen = |path: &PathBuf| (path.clone(), look(path));
-                self.plugins.watched = self.plugins.watched.keys().map(seen).collect();
+                self.libraries = self.libraries.keys().map(seen).collect();
                 Ok(())
             }
         }

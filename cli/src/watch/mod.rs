@@ -2,6 +2,7 @@
 
 mod after;
 mod apart;
+mod attempt;
 mod audience;
 mod camera;
 mod changes;

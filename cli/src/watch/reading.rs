@@ -16,8 +16,16 @@ use crate::files::Known;
 use crate::libraries::Plugins;
 use crate::load::{self, Course, Text};
 
-/// Reads the scene, with what the page has set and the camera where it wants it; `before` is the
-/// last that was shown.
+/// What was read, with what the page had set by then.
+pub(super) struct Wished {
+    text: Text,
+    set: Vec<(String, String)>,
+    /// What the page had set and the scene does not declare.
+    gone: Vec<String>,
+}
+
+/// Reads the scene with what the page has set over what the command line sets. Nobody comes to know of
+/// it before `settle`.
 ///
 /// # Errors
 /// As `load::read`.
@@ -25,42 +33,53 @@ pub(super) fn read(
     args: &Args,
     plugins: &Plugins,
     page: Option<&Page>,
-    before: Option<&Stage>,
     course: &Course,
-) -> Result<Text, Failure> {
+) -> Result<Wished, Failure> {
     let read = |set: Vec<(String, String)>| {
         let settings = LoadArgs { set, ..args.load.clone() };
         load::read(&args.file, &settings, args.render.size, plugins, course)
     };
-    let Some(page) = page else { return read(args.load.set.clone()) };
-    let (mut text, set) = wished(&read, &args.load.set, page.wishes())?;
-    stand(&mut text, page.wishes(), before, &course.known);
-    if text.scene.is_some() || !text.params.is_empty() {
-        let line = params::line(&joined(&args.load.set, &set));
-        page.params(&params::offered(&text.params, &set), &line);
-    }
-    Ok(text)
+    wished(&read, &args.load.set, page.map(|page| page.wishes().take()).unwrap_or_default())
 }
 
-/// Reads with what the page has set over what the command line sets, and says what that was. What
-/// the scene does not declare any more is forgotten.
 fn wished(
     read: &dyn Fn(Vec<(String, String)>) -> Result<Text, Failure>,
     first: &[(String, String)],
-    wishes: &Wishes,
-) -> Result<(Text, Vec<(String, String)>), Failure> {
-    let Wish { mut set, .. } = wishes.take();
+    Wish { mut set, .. }: Wish,
+) -> Result<Wished, Failure> {
     let mut text = read(joined(first, &set))?;
     let gone = gone(&text.params, &set);
     if !gone.is_empty() {
         set.retain(|(name, _)| !gone.contains(name));
         text = read(joined(first, &set))?;
-        // What a mistake hides may come back.
-        if text.scene.is_some() {
-            wishes.forget(&gone);
-        }
     }
-    Ok((text, set))
+    Ok(Wished { text, set, gone })
+}
+
+/// Puts the camera where the page wants it, forgets what the scene does not declare any more, and tells
+/// the page what it may set; `before` is the last that was shown.
+pub(super) fn settle(
+    Wished { mut text, set, gone }: Wished,
+    args: &Args,
+    page: Option<&Page>,
+    before: Option<&Stage>,
+    known: &Known,
+) -> Text {
+    let Some(page) = page else { return text };
+    forget(page.wishes(), &text, &gone);
+    stand(&mut text, page.wishes(), before, known);
+    if text.scene.is_some() || !text.params.is_empty() {
+        let line = params::line(&joined(&args.load.set, &set));
+        page.params(&params::offered(&text.params, &set), &line);
+    }
+    text
+}
+
+/// What a mistake hides may come back.
+fn forget(wishes: &Wishes, text: &Text, gone: &[String]) {
+    if text.scene.is_some() && !gone.is_empty() {
+        wishes.forget(gone);
+    }
 }
 
 fn stand(text: &mut Text, wishes: &Wishes, before: Option<&Stage>, known: &Known) {
@@ -149,7 +168,9 @@ mod tests {
         let first = [pair("b", "2")];
         let now = |text: &str| {
             folder.write("a.scene", text.as_bytes());
-            wished(&|set| Ok(read(&path, set)), &first, &wishes).unwrap()
+            let read = wished(&|set| Ok(read(&path, set)), &first, wishes.take()).unwrap();
+            forget(&wishes, &read.text, &read.gone);
+            (read.text, read.set)
         };
         let both = scene("param a: float = 1\nparam b: float = 1 in 0..=9", "(0, 0, 5)");
         let (text, set) = now(&both);
@@ -162,7 +183,9 @@ mod tests {
         // `b` is set on the command line too, which is a mistake then; without that, none.
         let one = both.replace("param b", "param c");
         folder.write("a.scene", one.as_bytes());
-        let (text, set) = wished(&|set| Ok(read(&path, set)), &[], &wishes).unwrap();
+        let read = wished(&|set| Ok(read(&path, set)), &[], wishes.take()).unwrap();
+        forget(&wishes, &read.text, &read.gone);
+        let Wished { text, set, .. } = read;
         assert!(text.scene.is_some() && text.diagnostics.is_empty());
         assert_eq!((set, wishes.take().set), (vec![pair("a", "3")], vec![pair("a", "3")]));
     }

@@ -1,7 +1,7 @@
 //! How the building of trees is followed and stopped from another thread.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Primitives of one task of a pass over many, between two looks at the watch: far below a
 /// millisecond's work.
@@ -25,7 +25,7 @@ pub struct Standing {
 /// Trees are built one after another: the standing is that of the last one begun.
 #[derive(Debug, Default)]
 pub struct Watch {
-    cancelled: AtomicBool,
+    cancelled: Arc<AtomicBool>,
     standing: Mutex<Standing>,
     #[cfg(test)]
     pub(super) looks: Looks,
@@ -35,6 +35,11 @@ impl Watch {
     /// Asks for an end; there is no way back.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Set once an end is asked for: for whoever knows nothing of trees.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        self.cancelled.clone()
     }
 
     /// Whether an end was asked for.

@@ -1,0 +1,159 @@
+//! Work that is given up as soon as something else is wanted, whether it looks for that or not.
+
+use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
+use std::thread::{Scope, ScopedJoinHandle};
+use std::time::Duration;
+
+use super::changes::Noticed;
+use crate::exit::{Exit, Failure};
+
+/// So long work that was asked to end is waited for.
+const GRACE: Duration = Duration::from_millis(5);
+
+/// What came of an attempt.
+#[derive(Debug)]
+pub(super) enum Ended<T> {
+    /// The work is done.
+    Done(T),
+    /// It was not wanted any more.
+    Left(Noticed),
+}
+
+/// Work on threads of its own.
+pub(super) struct Attempts<'scope, 'env> {
+    scope: &'scope Scope<'scope, 'env>,
+    /// What did not end when it was asked to: a decoder, or a plugin, that does not look. One at most, so
+    /// that what nobody wants does not fill the machine.
+    left: Option<ScopedJoinHandle<'scope, ()>>,
+}
+
+impl<'scope, 'env> Attempts<'scope, 'env> {
+    pub(super) fn new(scope: &'scope Scope<'scope, 'env>) -> Self {
+        Self { scope, left: None }
+    }
+
+    /// Does some work for as long as `look`, which waits a moment, notices nothing; then `cancel` asks it
+    /// to end, and what it gives is of no interest.
+    ///
+    /// # Errors
+    /// Those of the work; one of ours if it ends in a panic.
+    pub(super) fn run<T: Send + 'scope>(
+        &mut self,
+        work: impl FnOnce() -> Result<T, Failure> + Send + 'scope,
+        mut look: impl FnMut() -> Noticed,
+        cancel: impl FnOnce(),
+    ) -> Result<Ended<T>, Failure> {
+        let lost = || Failure::new(Exit::Ours, "the scene could not be made ready");
+        let (give, take) = mpsc::channel();
+        let thread = self.scope.spawn(move || {
+            // Whoever has left does not take it.
+            let _ = give.send(work());
+        });
+        let noticed = loop {
+            match take.try_recv() {
+                Ok(done) => return done.map(Ended::Done),
+                Err(TryRecvError::Disconnected) => {
+                    // The panic has been told.
+                    let _ = thread.join();
+                    return Err(lost());
+                }
+                Err(TryRecvError::Empty) => {}
+            }
+            match look() {
+                Noticed::Nothing => {}
+                noticed => break noticed,
+            }
+        };
+        cancel();
+        if let Err(RecvTimeoutError::Timeout) = take.recv_timeout(GRACE)
+            && let Some(earlier) = self.left.replace(thread)
+        {
+            let _ = earlier.join();
+        }
+        Ok(Ended::Left(noticed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+    use std::thread::sleep;
+    use std::time::Instant;
+
+    use super::*;
+
+    const LONG: Duration = Duration::from_millis(400);
+
+    /// Notices a save at the first look.
+    fn save() -> Noticed {
+        Noticed::Save
+    }
+
+    #[test]
+    fn work_that_nothing_comes_between_is_done() {
+        std::thread::scope(|scope| {
+            let mut attempts = Attempts::new(scope);
+            let ended = attempts.run(
+                || {
+                    sleep(LONG / 40);
+                    Ok(7)
+                },
+                || {
+                    sleep(LONG / 400);
+                    Noticed::Nothing
+                },
+                || panic!("nobody asks it to end"),
+            );
+            assert!(matches!(ended, Ok(Ended::Done(7))), "{ended:?}");
+        });
+    }
+
+    #[test]
+    fn work_that_does_not_look_is_left_and_two_at_most_go_on() {
+        let (running, most) = (AtomicU32::new(0), AtomicU32::new(0));
+        let stubborn = || {
+            most.fetch_max(running.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+            sleep(LONG);
+            running.fetch_sub(1, Ordering::SeqCst);
+            Ok(())
+        };
+        std::thread::scope(|scope| {
+            let mut attempts = Attempts::new(scope);
+            let begun = Instant::now();
+            let ended = attempts.run(stubborn, save, || {});
+            assert!(matches!(ended, Ok(Ended::Left(Noticed::Save))), "{ended:?}");
+            // Far less than the work takes, far more than a busy machine makes of the grace.
+            assert!(begun.elapsed() < LONG / 2, "{:?}", begun.elapsed());
+            for _ in 0..3 {
+                let ended = attempts.run(stubborn, save, || {});
+                assert!(matches!(ended, Ok(Ended::Left(_))), "{ended:?}");
+            }
+        });
+        assert!(most.into_inner() <= 2);
+    }
+
+    #[test]
+    fn work_that_looks_ends_when_it_is_asked_to() {
+        let asked = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            let mut attempts = Attempts::new(scope);
+            let work = || {
+                while !asked.load(Ordering::SeqCst) {
+                    sleep(Duration::from_micros(100));
+                }
+                Ok(())
+            };
+            let ended = attempts.run(work, save, || asked.store(true, Ordering::SeqCst));
+            assert!(matches!(ended, Ok(Ended::Left(Noticed::Save))), "{ended:?}");
+            let ended = attempts.run(
+                || -> Result<(), Failure> { panic!("on purpose") },
+                || {
+                    sleep(LONG / 400);
+                    Noticed::Nothing
+                },
+                || {},
+            );
+            assert!(matches!(ended, Err(failure) if failure.exit == Exit::Ours));
+        });
+    }
+}

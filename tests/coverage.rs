@@ -111,7 +111,7 @@ fn rows_of(integrand: &Integrand, points: Points) -> Vec<Row> {
     let mut held = [0_u32; COUNTS.len()];
     let mut squares = [(0.0, 0.0); COUNTS.len()];
     for run in 0..RUNS {
-        let mut pixel = Pixel::default();
+        let mut pixel = Pixel::NONE;
         for sample in 0..COUNTS[COUNTS.len() - 1] {
             pixel.push(DVec3::splat((integrand.f)(&points.numbers(run, sample))));
             let Some(i) = COUNTS.iter().position(|n| *n == pixel.n) else { continue };

@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 use glam::{DVec3, UVec2};
 use luxel_core::files::MemoryFiles;
@@ -109,6 +110,30 @@ fn a_picture_that_is_superseded_shows_its_first_step_and_one_that_is_cancelled_n
     assert_eq!((n, all), (6 * 3, 41 * 23));
     control.cancel();
     assert_eq!(steps(&control), (vec![], 0, all));
+}
+
+#[test]
+fn a_picture_that_is_held_shows_its_first_step_and_goes_on_to_the_same_bits() {
+    // Wider than what is measured together of a coarse step.
+    let stage = stage(&SCENE.replace("(41, 23)", "(290, 9)"), &[], None);
+    let whole = picture(&stage, &Options::default());
+    let options = Options { coarse: true, ..Options::default() };
+    let control = Control::default();
+    control.hold(true);
+    let pause = || std::thread::sleep(Duration::from_millis(20));
+    std::thread::scope(|scope| {
+        let rendering = scope.spawn(|| render_seen(&stage, &options, &control, &mut |_, _| {}));
+        // Every eighth of 290 columns and 9 rows.
+        while control.samples_done() < 37 * 2 {
+            pause();
+        }
+        pause();
+        assert_eq!(control.samples_done(), 37 * 2);
+        control.hold(false);
+        let (film, outcome) = rendering.join().unwrap();
+        assert_eq!(outcome, Outcome::Complete);
+        assert_eq!(bits(&film), bits(&whole));
+    });
 }
 
 #[test]

@@ -382,7 +382,7 @@ fn a_pixel_keeps_its_mean_through_ten_million_samples() {
     // 1 and 3 by turns after a firefly of 1e9: the mean is 2 + (1e9 − 2)/n. Push k rounds by at most
     // 2⁻⁵³ of its mean, 2 + 1e9/k, of which k/n remains: in all 2⁻⁵³·(1e9 + n) = 1.12e-7.
     let n = 10_000_001;
-    let mut pixel = Pixel::default();
+    let mut pixel = Pixel::NONE;
     pixel.push(DVec3::splat(1e9));
     for i in 1..n {
         pixel.push(DVec3::splat(if i % 2 == 0 { 1.0 } else { 3.0 }));

@@ -96,7 +96,7 @@ impl Scale {
 
     /// Root mean square over a tile; nothing where none of its pixels is known.
     pub(crate) fn of_tile(&self, tile: &Tile) -> Option<f64> {
-        let known = tile.pixels.iter().filter_map(|pixel| self.error(pixel));
+        let known = tile.pixels().filter_map(|pixel| self.error(pixel));
         let (squares, n) = known.fold((0.0, 0.0), |(sum, n), error| (sum + error * error, n + 1.0));
         (n > 0.0).then(|| (squares / n).sqrt())
     }
@@ -112,7 +112,7 @@ mod tests {
     /// Two samples of each of 100 pixels: the mean of pixel i is 1, its standard error i / 100.
     fn film() -> Film {
         let mut film = Film::new(UVec2::splat(10), Rect::new(UVec2::ZERO, UVec2::splat(10)));
-        for (i, pixel) in (0_u8..).zip(&mut film.tiles_mut()[0].pixels) {
+        for (i, pixel) in (0_u8..).zip(film.tiles_mut()[0].pixels_mut()) {
             for sign in [-1.0, 1.0] {
                 pixel.push(DVec3::splat(1.0 + sign * f64::from(i) / 100.0));
             }
@@ -141,8 +141,8 @@ mod tests {
     #[test]
     fn dark_pixels_are_compared_with_a_tenth_of_the_picture() {
         let mut film = film();
-        let dark = &mut film.tiles_mut()[0].pixels[0];
-        *dark = Pixel::default();
+        let dark = film.tiles_mut()[0].pixel_mut(0);
+        *dark = Pixel::NONE;
         for x in [0.0, 0.02] {
             dark.push(DVec3::splat(x));
         }

@@ -8,6 +8,7 @@ mod layer;
 mod pixel;
 mod rect;
 mod save;
+mod tile;
 
 use glam::{DVec3, UVec2};
 
@@ -18,26 +19,7 @@ pub use layer::{Channel, Holds, Layer};
 pub use pixel::{Pixel, degrees_of_freedom, half_width_95};
 pub use rect::Rect;
 pub use save::Unreadable;
-
-/// The pixels of one tile.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Tile {
-    pub(crate) rect: Rect,
-    pub(crate) pixels: Vec<Pixel>,
-    /// Sums of what the layers hold, pixel by pixel.
-    pub(crate) layers: Vec<f64>,
-    /// Samples that each of its pixels has been given.
-    pub(crate) next: u32,
-    /// Samples that each is to have before it is asked again how many it needs.
-    pub(crate) aim: u32,
-}
-
-impl Tile {
-    /// Samples that are missing, of all its pixels.
-    pub(crate) fn missing(&self) -> u64 {
-        u64::from(self.aim.saturating_sub(self.next)) * self.pixels.len() as u64
-    }
-}
+pub(crate) use tile::{COARSEST, Tile};
 
 /// A picture in the making: pixels in tiles.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,9 +50,7 @@ impl Film {
         let (columns, rows) = (window.size.x.div_ceil(TILE), window.size.y.div_ceil(TILE));
         let tile = |i: u32| {
             let min = window.min + UVec2::new(i % columns, i / columns) * TILE;
-            let rect = Rect::new(min, UVec2::splat(TILE)).intersection(window);
-            let pixels = vec![Pixel::default(); rect.area()];
-            Tile { rect, pixels, layers: vec![0.0; rect.area() * n], next: 0, aim: 0 }
+            Tile::new(Rect::new(min, UVec2::splat(TILE)).intersection(window), n)
         };
         let tiles = (0..columns * rows).map(tile).collect();
         Self { size, window, holds, tiles, columns }
@@ -78,7 +58,7 @@ impl Film {
 
     /// Samples that have been given to pixels, those that were not finite among them.
     pub fn samples(&self) -> u64 {
-        self.tiles.iter().map(|tile| u64::from(tile.next) * tile.pixels.len() as u64).sum()
+        self.tiles.iter().map(|tile| u64::from(tile.next) * tile.area() as u64).sum()
     }
 
     /// Room that its pixels take.
@@ -117,7 +97,7 @@ impl Film {
         let from = at - self.window.min;
         let tile = &self.tiles[(from.y / TILE * self.columns + from.x / TILE) as usize];
         let inside = at - tile.rect.min;
-        &tile.pixels[(inside.y * tile.rect.size.x + inside.x) as usize]
+        tile.pixel((inside.y * tile.rect.size.x + inside.x) as usize)
     }
 
     /// What it holds beside colour: a channel with its value at each pixel, row by row.
@@ -130,7 +110,7 @@ impl Film {
             let inside = at - tile.rect.min;
             let pixel = (inside.y * tile.rect.size.x + inside.x) as usize;
             let sums = &tile.layers[pixel * n..][..n];
-            layer::resolve(channels[i].of, sums[i], (f64::from(tile.pixels[pixel].n), sums[0]))
+            layer::resolve(channels[i].of, sums[i], (f64::from(tile.pixel(pixel).n), sums[0]))
         };
         let one =
             |i: usize| (channels[i].clone(), self.window.points().map(|at| value(i, at)).collect());
@@ -144,7 +124,7 @@ impl Film {
 
     /// Samples that were not finite, and were left out.
     pub fn bad_samples(&self) -> u64 {
-        self.tiles.iter().flat_map(|tile| &tile.pixels).map(|pixel| u64::from(pixel.bad)).sum()
+        self.tiles.iter().flat_map(Tile::pixels).map(|pixel| u64::from(pixel.bad)).sum()
     }
 
     /// Mean over the pixels that have samples, and its standard error, per channel; zero if none has.
@@ -170,7 +150,7 @@ mod tests {
     fn pixels_without_samples_do_not_darken_the_mean() {
         let mut film = Film::new(UVec2::new(32, 16), Rect::new(UVec2::ZERO, UVec2::new(32, 16)));
         assert_eq!(film.mean().0, DVec3::ZERO);
-        film.tiles_mut()[0].pixels[3].push(DVec3::ONE);
+        film.tiles_mut()[0].pixel_mut(3).push(DVec3::ONE);
         assert_eq!(film.mean().0, DVec3::ONE);
     }
 
@@ -180,7 +160,7 @@ mod tests {
         let mut film = Film::new(UVec2::new(64, 64), window);
         for tile in film.tiles_mut() {
             for (i, at) in tile.rect.points().enumerate() {
-                tile.pixels[i].push(at.as_dvec2().extend(0.0));
+                tile.pixel_mut(i).push(at.as_dvec2().extend(0.0));
             }
         }
         assert_eq!(film.pixels().count(), 40 * 18);

@@ -18,7 +18,7 @@ const FIRST: u32 = 16;
 const BLOCKS: u32 = 8;
 
 /// The estimate of one pixel, per channel, in f64.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Samples that count.
     pub n: u32,
@@ -42,6 +42,19 @@ pub struct Pixel {
 }
 
 impl Pixel {
+    /// No sample.
+    pub const NONE: Self = Self {
+        n: 0,
+        bad: 0,
+        mean: DVec3::ZERO,
+        rest: Vec3::ZERO,
+        m2: DVec3::ZERO,
+        open: DVec3::ZERO,
+        block_mean: DVec3::ZERO,
+        block_m2: DVec3::ZERO,
+        before: Vec3::ZERO,
+    };
+
     /// Adds a sample; one that is not finite is counted and left out.
     pub fn push(&mut self, rgb: DVec3) {
         if !rgb.is_finite() {
@@ -200,7 +213,7 @@ mod tests {
     use super::*;
 
     fn of(samples: impl Iterator<Item = f64>) -> Pixel {
-        let mut pixel = Pixel::default();
+        let mut pixel = Pixel::NONE;
         samples.for_each(|x| pixel.push(DVec3::splat(x)));
         pixel
     }
@@ -286,7 +299,7 @@ mod tests {
     fn a_mean_of_many_samples_is_right_to_twelve_digits() {
         let n = count();
         // Multiples of 2⁻³² have an exact sum; most are small and a few large, as fireflies are.
-        let (mut pixel, mut sum) = (Pixel::default(), 0_u128);
+        let (mut pixel, mut sum) = (Pixel::NONE, 0_u128);
         for i in 0..n {
             let hash = luxel_sdk::sampling::hash_combine(3, i);
             let firefly = if hash.is_multiple_of(1000) { 1 << 20 } else { 1 };

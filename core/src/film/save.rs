@@ -37,7 +37,7 @@ impl Film {
         for tile in &self.tiles {
             to.write_all(&tile.next.to_le_bytes())?;
             to.write_all(&tile.aim.to_le_bytes())?;
-            for pixel in &tile.pixels {
+            for pixel in tile.pixels() {
                 to.write_all(&bytes(pixel))?;
             }
             for sum in &tile.layers {
@@ -75,9 +75,10 @@ impl Film {
         let mut film = Self::holding(size, window, holds);
         for tile in &mut film.tiles {
             (tile.next, tile.aim) = (from.u32()?, from.u32()?);
-            for pixel in &mut tile.pixels {
+            let most = tile.next;
+            for pixel in tile.pixels_mut() {
                 *pixel = from.pixel()?;
-                if pixel.n.checked_add(pixel.bad).is_none_or(|n| n > tile.next) {
+                if pixel.n.checked_add(pixel.bad).is_none_or(|n| n > most) {
                     return Err(Unreadable("a pixel has more samples than its tile"));
                 }
             }
@@ -169,7 +170,7 @@ mod tests {
             tile.aim = 100;
             tile.next = u32::from(i) * 7;
             for sample in 0..i * 7 {
-                tile.pixels[3].push(DVec3::new(0.1, 1e-30, 1e30) * f64::from(sample));
+                tile.pixel_mut(3).push(DVec3::new(0.1, 1e-30, 1e30) * f64::from(sample));
             }
         }
         film

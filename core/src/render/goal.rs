@@ -70,7 +70,7 @@ impl Plan {
             if aim.next > tile.next {
                 tile.aim = aim.next;
                 let after = u64::from(aim.last.saturating_sub(aim.next));
-                *beyond.get_or_insert(0) += after * tile.pixels.len() as u64;
+                *beyond.get_or_insert(0) += after * tile.area() as u64;
             }
         }
         beyond
@@ -176,7 +176,7 @@ mod tests {
         for (i, tile) in film.tiles_mut().iter_mut().enumerate() {
             let spread = if i == 4 { middle } else { spread };
             (tile.next, tile.aim) = (n, n);
-            for pixel in &mut tile.pixels {
+            for pixel in tile.pixels_mut() {
                 for sample in 0..n {
                     // Blocks of two and longer ones have no spread: the first 16 samples alone tell.
                     let sign = f64::from(sample.count_ones() % 2) * 2.0 - 1.0;
@@ -245,8 +245,8 @@ mod tests {
     #[test]
     fn tiles_of_which_nothing_is_known_end_nothing_and_are_not_asked_again() {
         let mut found = film(64, 0.0, 0.0);
-        for pixel in &mut found.tiles_mut()[4].pixels {
-            *pixel = crate::film::Pixel::default();
+        for pixel in found.tiles_mut()[4].pixels_mut() {
+            *pixel = crate::film::Pixel::NONE;
             pixel.push(DVec3::NAN);
         }
         assert_eq!(Plan::new(error(0.1), MOST).aim(&mut found), None);

@@ -1,9 +1,6 @@
 //! Which pixels a pass is for: the first samples may come in steps, a coarse picture before a fine one.
 
-use crate::film::Rect;
-
-/// Pixels from one of the coarsest picture to the next.
-pub(super) const COARSEST: u32 = 8;
+use crate::film::{COARSEST, Rect};
 
 /// Pixels of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

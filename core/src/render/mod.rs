@@ -17,7 +17,7 @@ mod watched;
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use luxel_sdk::kind::{PictureIntegrator, Wants};
@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 use self::goal::Plan;
 use self::passes::{SLOW, passes, slices};
-use crate::film::{Film, Holds, Rect};
+use crate::film::{COARSEST, Film, Holds, Rect};
 use crate::registry::dynamic::remote;
 use crate::stage::Stage;
 
@@ -79,6 +79,7 @@ impl Options {
 pub struct Control {
     cancelled: AtomicBool,
     superseded: AtomicBool,
+    held: AtomicBool,
     samples: AtomicU64,
 }
 
@@ -102,6 +103,16 @@ impl Control {
     /// Whether an end was asked for in this way.
     pub fn is_superseded(&self) -> bool {
         self.superseded.load(Ordering::Relaxed)
+    }
+
+    /// Has the render stand still, but not before there is something to see, or go on again: whoever holds
+    /// it has better use for the processors. Changes no bit.
+    pub fn hold(&self, held: bool) {
+        self.held.store(held, Ordering::Relaxed);
+    }
+
+    fn is_held(&self) -> bool {
+        self.held.load(Ordering::Relaxed) && !self.is_cancelled() && !self.is_superseded()
     }
 
     /// Samples that have been added to pixels so far.
@@ -249,13 +260,24 @@ pub fn render_on(
             slices(film, turn, SLOW, look, &mut |film, ends, late| {
                 // Until each pixel has a sample no time is over.
                 let end = end.filter(|_| film.tiles().iter().all(|tile| tile.next > 0));
-                let stop = Stop { first: turn.lattice.step() == lattice::COARSEST, end, ..stop };
-                let tiles = film.tiles_mut().par_iter_mut().zip(ends).enumerate();
-                tiles.for_each_init(worker, |worker, (i, (tile, end))| {
-                    if !late.is_over(i) {
-                        worker.pass(tile, tile.next..*end, turn.lattice, stop);
-                    }
-                });
+                let stop = Stop { first: turn.lattice.step() == COARSEST, end, ..stop };
+                let columns = film.columns();
+                let tiles = film.tiles_mut();
+                if turn.lattice.step() > 1 {
+                    // Of one tile there are too few pixels to keep a worker busy.
+                    let rows = tiles.par_chunks_mut(columns);
+                    let strips = rows.flat_map(|row| row.par_chunks_mut(STRIP));
+                    strips.for_each_init(worker, |worker, strip| {
+                        worker.pass(strip, 0..1, turn.lattice, stop);
+                    });
+                } else {
+                    let tiles = tiles.par_chunks_mut(1).zip(ends).enumerate();
+                    tiles.for_each_init(worker, |worker, (i, (tile, end))| {
+                        if !late.is_over(i) {
+                            worker.pass(tile, tile[0].next..*end, turn.lattice, stop);
+                        }
+                    });
+                }
                 !stop.is_asked()
             })
         });
@@ -278,6 +300,12 @@ fn give_way(courteous: bool) {
 
 #[cfg(not(target_os = "linux"))]
 fn give_way(_: bool) {}
+
+/// Between two looks of a thread that is held.
+const HELD: Duration = Duration::from_micros(200);
+
+/// Tiles side by side whose pixels of a coarse step are measured together.
+const STRIP: usize = 16;
 
 /// Steps of niceness.
 #[cfg(target_os = "linux")]
@@ -310,7 +338,11 @@ impl Stop<'_> {
         own
     }
 
+    /// Waits while the render is held; not before there is something to be seen.
     fn is_asked(self) -> bool {
+        while self.control.is_held() && !self.first {
+            std::thread::sleep(HELD);
+        }
         let superseded = self.control.is_superseded() && !self.first;
         self.control.is_cancelled() || superseded || self.is_late() || self.is_failure()
     }

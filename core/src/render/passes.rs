@@ -111,8 +111,7 @@ pub(super) fn passes(
 /// What a pass comes to.
 fn reached(film: &Film, (lattice, longest): (Lattice, u32), beyond: u64) -> Reached {
     let end = |tile: &Tile| next(tile, longest);
-    let left =
-        |tile: &Tile| u64::from(tile.aim.saturating_sub(end(tile))) * tile.pixels.len() as u64;
+    let left = |tile: &Tile| u64::from(tile.aim.saturating_sub(end(tile))) * tile.area() as u64;
     Reached {
         step: lattice.step(),
         samples: film.tiles().iter().map(end).max().unwrap_or(0),

@@ -232,7 +232,7 @@ impl PictureJob for PictureHost<'_> {
         (pass.done, pass.calls) = (pass.done + 1, 0);
         for tile in self.film.borrow_mut().tiles_mut() {
             tile.next = pass.done;
-            for (at, estimate) in tile.rect.points().zip(&mut tile.pixels) {
+            for (at, estimate) in tile.rect.points().zip(tile.pixels_mut()) {
                 let at = at - self.window.min;
                 estimate.push(pass.sum[at.y as usize * self.row() + at.x as usize]);
             }

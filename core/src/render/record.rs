@@ -160,23 +160,25 @@ impl Recorder {
         }
     }
 
-    /// Adds so many samples of each of some pixels to a tile; those whose light is not finite count
-    /// nowhere.
-    pub(super) fn add(&self, tile: &mut Tile, chosen: &[u32], results: &[DVec3]) {
-        let samples = results.len() / chosen.len().max(1);
-        let n = self.ofs.len();
-        let is_first = tile.next == 0;
-        for (i, pixel) in chosen.iter().enumerate() {
-            let sums = &mut tile.layers[*pixel as usize * n..][..n];
-            let is_finite = |sample: &usize| results[sample * chosen.len() + i].is_finite();
-            for sample in (0..samples).filter(is_finite) {
-                let values = &self.values[(sample * chosen.len() + i) * n..][..n];
-                for ((sum, value), of) in sums.iter_mut().zip(values).zip(&self.ofs) {
-                    match of {
-                        Of::First if is_first && sample == 0 => *sum = *value,
-                        Of::First => {}
-                        Of::All | Of::Met => *sum += *value,
-                    }
+    /// Adds the samples of a pixel to its tile, which knows it by `number`: it was the `i`th of so many
+    /// pixels. Samples whose light is not finite count nowhere.
+    pub(super) fn add(
+        &self,
+        tile: &mut Tile,
+        number: usize,
+        (i, n_pixels): (usize, usize),
+        results: &[DVec3],
+    ) {
+        let (n, is_first) = (self.ofs.len(), tile.next == 0);
+        let sums = &mut tile.layers[number * n..][..n];
+        let is_finite = |sample: &usize| results[sample * n_pixels + i].is_finite();
+        for sample in (0..results.len() / n_pixels).filter(is_finite) {
+            let values = &self.values[(sample * n_pixels + i) * n..][..n];
+            for ((sum, value), of) in sums.iter_mut().zip(values).zip(&self.ofs) {
+                match of {
+                    Of::First if is_first && sample == 0 => *sum = *value,
+                    Of::First => {}
+                    Of::All | Of::Met => *sum += *value,
                 }
             }
         }

@@ -22,7 +22,7 @@ use super::record::Recorder;
 use super::{Stop, shadow};
 use crate::accel::{Processor, Work};
 use crate::cast;
-use crate::film::{Holds, Rect, Tile};
+use crate::film::{COARSEST, Holds, Rect, TILE, Tile};
 use crate::object::Scratch;
 use crate::stage::{Moment, Rooms, SceneHit, Stage};
 
@@ -117,31 +117,39 @@ impl<'s> Worker<'s> {
         Self { record: Recorder::new(holds, LANES), ..self }
     }
 
-    /// Adds the samples of a range to the pixels of a tile that a lattice names. A pass that is
-    /// cancelled adds none.
+    /// Adds the samples of a range to the pixels that a lattice names, of tiles side by side. A pass that
+    /// is cancelled adds none.
     pub(super) fn pass(
         &mut self,
-        tile: &mut Tile,
+        tiles: &mut [Tile],
         range: Range<u32>,
         lattice: Lattice,
         stop: Stop<'_>,
     ) {
-        let (n, end) = (range.len(), range.end);
-        if n == 0 || !self.samples(tile.rect, range, lattice, stop) {
+        let (n, end, rect) = (range.len(), range.end, strip(tiles));
+        if n == 0 || !self.samples(rect, range, lattice, stop) {
             return;
+        }
+        if lattice.step() == COARSEST {
+            tiles.iter_mut().for_each(Tile::begin_coarsely);
         }
         let n_pixels = self.chosen.len();
         for (i, pixel) in self.chosen.iter().enumerate() {
-            let estimate = &mut tile.pixels[*pixel as usize];
+            let (x, y) = (pixel % rect.size.x, pixel / rect.size.x);
+            let tile = &mut tiles[(x / TILE) as usize];
+            let number = (y * tile.rect.size.x + x % TILE) as usize;
+            if self.record.is_on() {
+                self.record.add(tile, number, (i, n_pixels), &self.results);
+            }
+            let estimate = tile.pixel_mut(number);
             for sample in 0..n {
                 estimate.push(self.results[sample * n_pixels + i]);
             }
         }
-        if self.record.is_on() {
-            self.record.add(tile, &self.chosen, &self.results);
-        }
         if lattice.step() == 1 {
-            tile.next = end;
+            for tile in tiles {
+                tile.next = end;
+            }
         }
         stop.control.add((n_pixels * n) as u64);
     }
@@ -390,6 +398,12 @@ impl<'s> Worker<'s> {
         }
         self.free.push(cast::index(lane));
     }
+}
+
+/// The pixels of tiles side by side.
+fn strip(tiles: &[Tile]) -> Rect {
+    let (first, last) = (tiles[0].rect, tiles[tiles.len() - 1].rect);
+    Rect::new(first.min, last.min + last.size - first.min)
 }
 
 struct Shadows<'a, 's, const THROUGH: bool>(&'a mut Worker<'s>);

@@ -7,7 +7,8 @@ use std::thread::Scope;
 use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
-use luxel_core::render::Control;
+use luxel_core::film::Film;
+use luxel_core::render::{Control, Reached};
 use luxel_core::stage::Anew;
 use serde_json::json;
 
@@ -146,7 +147,10 @@ impl<'scope> Watching<'scope, '_> {
     /// If standard error cannot be written.
     fn rounds(&mut self, session: &mut Session, around: &Surroundings) -> Result<(), Failure> {
         loop {
-            let next = self.round()?;
+            let next = self.round();
+            // What is saved may leave the picture as it is.
+            self.hold(false);
+            let next = next?;
             self.audience.page().inspect(|page| page.has_read());
             let next = match next {
                 Next::Wait => self.wait(),
@@ -155,9 +159,15 @@ impl<'scope> Watching<'scope, '_> {
             if next == Next::End {
                 return Ok(());
             }
+            self.hold(true);
             self.audience.page().inspect(|page| page.reading());
             self.renew(session, (&self.args.plugins, around))?;
         }
+    }
+
+    /// Has the render in hand stand still while a save is looked at, or go on.
+    fn hold(&self, held: bool) {
+        self.shown.as_ref().inspect(|shown| shown.control.hold(held));
     }
 
     /// Waits for a save, or for the picture if that is the end.
@@ -362,12 +372,12 @@ impl<'scope> Watching<'scope, '_> {
     fn show(&mut self, subject: Subject, edit: Edit) {
         let options = self.args.render.options();
         let more = |it: &Shown<'_>| subject.goes_on_from(&it.subject, &options);
-        let first = self.shown.as_ref().filter(|it| more(it)).map(|it| it.sitting.clone());
-        if let Some(before) = self.shown.take() {
+        let goes_on = self.shown.as_ref().is_some_and(more);
+        let mut before = self.shown.take().map(|before| {
             before.control.supersede();
             before.sitting.pass();
-            before.ended();
-        }
+            before.ended()
+        });
         let control = Arc::new(Control::default());
         self.in_hand.get().0.clone_from(&control);
         let (args, guard, audience) = (self.args, self.guard, self.audience);
@@ -379,7 +389,12 @@ impl<'scope> Watching<'scope, '_> {
         let (sits, tray) = (sitting.clone(), self.press.tray().clone());
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
-            first.inspect(|before| sits.go_on_from(before));
+            before.as_ref().filter(|_| goes_on).inspect(|before| sits.go_on_from(before));
+            let mut look = |film: &Film, now: Reached| {
+                look(film, now);
+                // To give back the room of a picture takes as long as to make the first of another.
+                before = None;
+            };
             match sits.render(args, &course, &mut look) {
                 Ok(true) => tray.put(sits, guard.saving()),
                 Ok(false) => {}
@@ -396,9 +411,7 @@ impl<'scope> Watching<'scope, '_> {
     fn end(self) -> bool {
         let sitting = self.shown.map(|shown| {
             shown.control.cancel();
-            let sitting = shown.sitting.clone();
-            shown.ended();
-            sitting
+            shown.ended()
         });
         self.press.end();
         sitting.is_some_and(|sitting| sitting.is_written())

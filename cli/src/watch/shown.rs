@@ -88,9 +88,10 @@ impl Shown<'_> {
         self.thread.is_finished() && !self.sitting.is_in_press()
     }
 
-    /// Waits for the end of the render. What it had to say it has said; a panic was caught and told
-    /// inside.
-    pub(super) fn ended(self) {
+    /// Waits for the end of the render, and gives its picture. What it had to say it has said; a panic
+    /// was caught and told inside.
+    pub(super) fn ended(self) -> Arc<Sitting> {
         let _ = self.thread.join();
+        self.sitting
     }
 }

@@ -110,18 +110,29 @@ impl Shared {
             _ => {}
         }
         let mut matters = false;
-        for path in &event.paths {
+        for (i, path) in event.paths.iter().enumerate() {
             let name = name(path);
             let is_way = self.hops.ways.contains(&name);
             let files = self.hops.files.get(&name);
             // Elsewhere events name less, or in other letters.
             let known = cfg!(target_os = "linux") && !is_library_name(path);
             if is_way || files.is_some() || !known {
-                self.heard.note(event.kind, files, is_way);
+                self.heard.note(of_path(event.kind, i), files, is_way);
                 matters = true;
             }
         }
         matters
+    }
+}
+
+/// What has happened to the path of that number: of two names in one event the first has gone, and the
+/// second is there.
+fn of_path(kind: EventKind, i: usize) -> EventKind {
+    match kind {
+        EventKind::Modify(ModifyKind::Name(RenameMode::Both)) if i > 0 => {
+            EventKind::Modify(ModifyKind::Name(RenameMode::To))
+        }
+        kind => kind,
     }
 }
 
@@ -258,5 +269,30 @@ mod tests {
             assert!(created.after(&gone).may_go_on(file));
         }
         assert!(!named(RenameMode::To).may_go_on(file));
+    }
+
+    #[test]
+    fn what_takes_a_files_place_is_whole_however_often_that_is_told() {
+        let files = BTreeSet::from([PathBuf::from("a.scene")]);
+        let mut shared = Shared::default();
+        shared.hops.files = BTreeMap::from([("a.scene".into(), files)]);
+        // The system tells it as three events, between which somebody may look.
+        let mut heard = Heard::default();
+        for (mode, paths) in [
+            (RenameMode::From, &["new"][..]),
+            (RenameMode::To, &["a.scene"]),
+            (RenameMode::Both, &["new", "a.scene"]),
+        ] {
+            let mut event = Event::new(EventKind::Modify(ModifyKind::Name(mode)));
+            event.paths = paths.iter().map(PathBuf::from).collect();
+            shared.hear(Ok(event));
+            heard = std::mem::take(&mut shared.heard).after(&heard);
+        }
+        assert!(!heard.may_go_on(Path::new("a.scene")));
+        // And away again.
+        let mut event = Event::new(EventKind::Modify(ModifyKind::Name(RenameMode::Both)));
+        event.paths = ["a.scene", "old"].map(PathBuf::from).to_vec();
+        shared.hear(Ok(event));
+        assert!(shared.heard.after(&heard).may_go_on(Path::new("a.scene")));
     }
 }

@@ -69,7 +69,7 @@ fn check_found(stage: &Stage, corners: [DVec3; 4], from: DVec3, slack: f64) {
     for _ in 0..4000 {
         let u = [rng.f32(), rng.f32(), rng.f32()];
         scratch.reset();
-        let found = stage.sample_light(&arrival, &palette, u, &scratch);
+        let found = stage.sample_light::<true>(&arrival, &palette, u, &scratch);
         let found = found.unwrap_or_else(|| panic!("nothing from {from} by {u:?}"));
         let ray = Ray { t_max: f64::INFINITY, ..found.ray };
         whole.push(f64::from(found.pdf).recip());
@@ -137,7 +137,7 @@ fn from_its_plane_an_edge_or_a_corner_a_lamp_is_found_by_numbers_or_not_at_all()
             let from = Arrival { kind: ArrivalKind::Medium, p, ..Arrival::default() };
             for _ in 0..500 {
                 let u = [rng.f32(), rng.f32(), rng.f32()];
-                let Some(light) = stage.sample_light(&from, &palette, u, &scratch) else {
+                let Some(light) = stage.sample_light::<true>(&from, &palette, u, &scratch) else {
                     continue;
                 };
                 found += 1;

@@ -13,8 +13,9 @@ use crate::cast::narrow;
 use crate::object::{Scratch, Site};
 use crate::stage::{Crossing, FoundLight, Leaving, Moment, SceneHit, Seen, Skin, Stage};
 
-/// What is needed to shade: borrowed for one arrival.
-pub(super) struct Shader<'a, 's> {
+/// What is needed to shade: borrowed for one arrival. Compiled for scenes whose shapes may be nested and
+/// for others, for such with a choice among lights and for others.
+pub(super) struct Shader<'a, 's, const NESTED: bool, const CHOICE: bool> {
     pub(super) stage: Moment<'a>,
     pub(super) wants: Wants,
     pub(super) path: &'a mut Path,
@@ -24,7 +25,7 @@ pub(super) struct Shader<'a, 's> {
     pub(super) flight: Spectrum,
 }
 
-impl Shader<'_, '_> {
+impl<const NESTED: bool, const CHOICE: bool> Shader<'_, '_, NESTED, CHOICE> {
     /// The ray left the scene.
     pub(super) fn escaped(self, ray: &Ray, steps: u32, at: &mut Arrival) {
         begin(at, ArrivalKind::Escaped, ray, f64::INFINITY, steps);
@@ -50,9 +51,9 @@ impl Shader<'_, '_> {
         self.path.from = p;
         self.scratch.reset();
         let scratch: &Scratch = self.scratch;
-        let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
+        let numbers = Numbers::draw::<CHOICE>(&self.stage, self.wants, self.samples);
         if self.wants.has(Wants::DIRECT) {
-            let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
+            let found = self.sample_light(at, &numbers, scratch);
             self.path.light = found.map_or(0, |found| found.light);
             at.direct.set(found.map(|found| {
                 let eval = phase.eval(wo.as_vec3(), found.ray.d.as_vec3());
@@ -82,9 +83,9 @@ impl Shader<'_, '_> {
     /// The ray met a surface, and paths need not know what they are in.
     #[inline(always)]
     pub(super) fn surface(self, ray: &Ray, hit: &SceneHit, steps: u32, at: &mut Arrival) {
-        let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
+        let numbers = Numbers::draw::<CHOICE>(&self.stage, self.wants, self.samples);
         let surface = self.stage.surface(ray, hit);
-        self.meets::<false>((ray, hit, steps), &surface, &numbers, at);
+        self.meets((ray, hit, steps), &surface, &numbers, at);
     }
 
     /// The ray met a surface beyond which it would be in something else.
@@ -95,13 +96,12 @@ impl Shader<'_, '_> {
         at: &mut Arrival,
     ) {
         self.path.beyond = crossing.beyond;
-        let numbers = Numbers::draw(&self.stage, self.wants, self.samples);
-        self.meets::<true>((ray, hit, steps), &crossing.surface, &numbers, at);
+        let numbers = Numbers::draw::<CHOICE>(&self.stage, self.wants, self.samples);
+        self.meets((ray, hit, steps), &crossing.surface, &numbers, at);
     }
 
-    /// Shades a surface; compiled once for scenes whose shapes may be nested, once without that.
     #[inline(always)]
-    fn meets<const NESTED: bool>(
+    fn meets(
         mut self,
         (ray, hit, steps): (&Ray, &SceneHit, u32),
         surface: &Surface,
@@ -140,7 +140,7 @@ impl Shader<'_, '_> {
         self.path.on = Some(Standing { leaving, p: surface.p, ng: surface.ng, outside });
         if let Skin::Material(material) = placement.skin {
             at.material = material;
-            self.scatter::<NESTED>(at, surface, hit, numbers);
+            self.scatter(at, surface, hit, numbers);
         } else {
             at.sight.given = false;
         }
@@ -148,19 +148,13 @@ impl Shader<'_, '_> {
 
     /// The light sample and the scattering sample at a surface.
     #[inline(always)]
-    fn scatter<const NESTED: bool>(
-        &mut self,
-        at: &mut Arrival,
-        surface: &Surface,
-        hit: &SceneHit,
-        numbers: &Numbers,
-    ) {
+    fn scatter(&mut self, at: &mut Arrival, surface: &Surface, hit: &SceneHit, numbers: &Numbers) {
         if self.wants.0 & SHADED.0 == 0 {
             return;
         }
         let takes_colors = self.stage.materials[at.material as usize].takes_colors();
         if takes_colors || (NESTED && self.stage.features.nested()) {
-            self.scatter_apart::<NESTED>(at, surface, hit, numbers);
+            self.scatter_apart(at, surface, hit, numbers);
         } else {
             self.scatter_with(at, surface, numbers, (None, None));
         }
@@ -169,7 +163,7 @@ impl Shader<'_, '_> {
     /// The same where the material asks for more than its place. Apart: what is found in between
     /// would cost every other surface its registers.
     #[inline(never)]
-    fn scatter_apart<const NESTED: bool>(
+    fn scatter_apart(
         &mut self,
         at: &mut Arrival,
         surface: &Surface,
@@ -210,7 +204,7 @@ impl Shader<'_, '_> {
         };
         let local = Local::new(at.wo, at, surface, needs);
         if self.wants.has(Wants::DIRECT) && needs.has(Needs::LIGHT) {
-            let found = self.stage.sample_light(at, &self.path.palette, numbers.light, scratch);
+            let found = self.sample_light(at, numbers, scratch);
             self.path.light = found.map_or(0, |found| found.light);
             at.direct.set(self.lit(found, &local, material));
         }
@@ -233,6 +227,16 @@ impl Shader<'_, '_> {
             let sample = material.sample(local.wo, u);
             at.scatter.set(sample.and_then(|sample| self.scattered(&local, &sample)));
         }
+    }
+
+    #[inline(always)]
+    fn sample_light(
+        &self,
+        at: &Arrival,
+        numbers: &Numbers,
+        scratch: &Scratch,
+    ) -> Option<FoundLight> {
+        self.stage.sample_light::<CHOICE>(at, &self.path.palette, numbers.light, scratch)
     }
 
     /// What a light sends on along the path.
@@ -309,9 +313,10 @@ struct Numbers {
 
 impl Numbers {
     #[inline(always)]
-    fn draw(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
+    fn draw<const CHOICE: bool>(stage: &Stage, wants: Wants, samples: &mut Samples<'_>) -> Self {
+        let has_choice = CHOICE && stage.features.light_choice();
         if wants.has(Wants::DIRECT) && wants.has(Wants::SCATTER) {
-            let (choice, [[u, v], scatter]) = if stage.features.light_choice() {
+            let (choice, [[u, v], scatter]) = if has_choice {
                 samples.next_1d_and_2d_pair()
             } else {
                 (samples.next_1d_if(false), samples.next_2d_pair())
@@ -320,7 +325,7 @@ impl Numbers {
         }
         let mut numbers = Self { light: [0.0; 3], scatter: [0.0; 2] };
         if wants.has(Wants::DIRECT) {
-            let choice = samples.next_1d_if(stage.features.light_choice());
+            let choice = samples.next_1d_if(has_choice);
             let [u, v] = samples.next_2d();
             numbers.light = [choice, u, v];
         } else if wants.has(Wants::SCATTER) {

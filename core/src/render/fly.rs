@@ -10,6 +10,9 @@ use crate::accel::{Processor, Work};
 use crate::object::Site;
 use crate::stage::Leaving;
 
+/// Whatever a scene may require.
+type Whole<'a, 's> = Shader<'a, 's, true, true>;
+
 /// Traces and shades all paths of a round.
 pub(super) struct Fly<'a, 's>(pub(super) &'a mut Worker<'s>);
 
@@ -62,13 +65,13 @@ impl Worker<'_> {
                 flight *= free.weight;
                 if let Some(t) = free.t.get() {
                     path.media = media;
-                    let shader = Shader { stage, wants, path, samples, scratch, flight };
+                    let shader = Whole { stage, wants, path, samples, scratch, flight };
                     shader.medium((&ray, t, steps), &medium.phase(), arrival);
                     return glow;
                 }
             }
             path.media = media;
-            let shader = Shader { stage, wants, path, samples, scratch, flight };
+            let shader = Whole { stage, wants, path, samples, scratch, flight };
             let Some(hit) = hit else {
                 shader.escaped(&ray, steps, arrival);
                 return glow;

@@ -178,8 +178,9 @@ impl<'s> Worker<'s> {
     }
 
     /// Rounds until every job is done; false when cancelled. One thing at a time for all paths:
-    /// neighbours in time do not wait for each other. What a round does is compiled twice: where no line
-    /// of the scene requires media, open surfaces or nested shapes, nothing in it asks for them.
+    /// neighbours in time do not wait for each other. What a round does is compiled for what the scene
+    /// requires: where no line requires media, open surfaces or nested shapes, or a choice among lights,
+    /// nothing in it asks for them.
     pub(super) fn run(&mut self, jobs: &Jobs<'_>, stop: Stop<'_>) -> bool {
         let mut started = 0;
         self.free.clear();
@@ -201,7 +202,11 @@ impl<'s> Worker<'s> {
             } else {
                 self.processor.run(Shadows::<false>(self));
                 self.processor.run(Trace(self));
-                self.processor.run(Shade(self));
+                if self.stage.features.light_choice() {
+                    self.processor.run(Shade::<true>(self));
+                } else {
+                    self.processor.run(Shade::<false>(self));
+                }
             }
             self.arrivals();
             self.retire();
@@ -346,7 +351,7 @@ impl<'s> Worker<'s> {
 
     /// Shades every path of this round where `trace` found that it ends.
     #[inline(always)]
-    fn shade(&mut self) {
+    fn shade<const CHOICE: bool>(&mut self) {
         let wants = self.wants;
         for (Onward { ray, lane }, (hit, steps)) in self.now.rays.iter().zip(&self.hits) {
             let path = &mut self.paths[*lane as usize];
@@ -354,7 +359,8 @@ impl<'s> Worker<'s> {
             let Lane { at, numbers, .. } = &mut self.lanes[*lane as usize];
             let mut samples = Samples::new(self.sampler, *numbers);
             let (scratch, flight) = (&mut self.scratch, Spectrum::ONE);
-            let shader = Shader { stage, wants, path, samples: &mut samples, scratch, flight };
+            let shader: Shader<'_, '_, false, CHOICE> =
+                Shader { stage, wants, path, samples: &mut samples, scratch, flight };
             match hit {
                 Some(hit) => shader.surface(ray, hit, *steps, at),
                 None => shader.escaped(ray, *steps, at),
@@ -408,7 +414,7 @@ fn strip(tiles: &[Tile]) -> Rect {
 
 struct Shadows<'a, 's, const THROUGH: bool>(&'a mut Worker<'s>);
 struct Trace<'a, 's>(&'a mut Worker<'s>);
-struct Shade<'a, 's>(&'a mut Worker<'s>);
+struct Shade<'a, 's, const CHOICE: bool>(&'a mut Worker<'s>);
 
 impl<const THROUGH: bool> Work for Shadows<'_, '_, THROUGH> {
     #[inline(always)]
@@ -424,10 +430,10 @@ impl Work for Trace<'_, '_> {
     }
 }
 
-impl Work for Shade<'_, '_> {
+impl<const CHOICE: bool> Work for Shade<'_, '_, CHOICE> {
     #[inline(always)]
     fn run(self, _: Processor) {
-        self.0.shade();
+        self.0.shade::<CHOICE>();
     }
 }
 

@@ -132,11 +132,12 @@ impl Lights {
         self.choice.as_ref().map_or(0.0, |choice| choice.pmf(light as usize))
     }
 
-    /// A source and its chance; `None` if there is none. `u` uniform in [0, 1).
+    /// A source and its chance; `None` if there is none. `u` uniform in [0, 1). Compiled for scenes with a
+    /// choice among lights, and for others.
     #[inline(always)]
-    fn choose(&self, u: f32) -> Option<Chosen<'_>> {
+    fn choose<const CHOICE: bool>(&self, u: f32) -> Option<Chosen<'_>> {
         let choice = self.choice.as_ref()?;
-        let is_one = !Feature::LightChoice.is_compiled() || self.sources.len() == 1;
+        let is_one = !CHOICE || !Feature::LightChoice.is_compiled() || self.sources.len() == 1;
         if let (true, Some(source)) = (is_one, self.sources.first()) {
             return Some(Chosen { source, light: 0, chance: 1.0, u: f64::from(u) });
         }
@@ -189,20 +190,21 @@ fn emitted(light: &dyn Light, value: Spectrum, mode: ColorMode, palette: &Palett
 
 impl Moment<'_> {
     /// Chooses a light and light from it, as `from` sees it: its place, normals and `wo` count. `u`
-    /// uniform in [0, 1).
+    /// uniform in [0, 1). Without `CHOICE` there is one light at most, of one piece.
     #[inline(always)]
-    pub fn sample_light(
+    pub fn sample_light<const CHOICE: bool>(
         self,
         from: &Arrival,
         palette: &Palette,
         u: [f32; 3],
         scratch: &Scratch,
     ) -> Option<FoundLight> {
-        let chosen = self.lights.choose(u[0])?;
+        let chosen = self.lights.choose::<CHOICE>(u[0])?;
         let u = [u[1], u[2]];
         let found = match chosen.source {
             LightSource::Surface { object, placement, area, triangles, quad } => {
-                let triangles = triangles.as_ref().map(|facets| (facets, chosen.u));
+                let triangles = triangles.as_ref().filter(|_| CHOICE);
+                let triangles = triangles.map(|facets| (facets, chosen.u));
                 let (placement, area, quad) = (*placement, *area, quad.as_ref());
                 let light = SurfaceLight { object, placement, area, triangles, quad };
                 self.sample_surface(&light, from, palette, u, scratch)

@@ -119,17 +119,21 @@ fn a_picture_that_is_held_shows_its_first_step_and_goes_on_to_the_same_bits() {
     let whole = picture(&stage, &Options::default());
     let options = Options { coarse: true, ..Options::default() };
     let control = Control::default();
-    control.hold(true);
-    let pause = || std::thread::sleep(Duration::from_millis(20));
+    control.hold();
+    let pause = || std::thread::sleep(Duration::from_millis(10));
     std::thread::scope(|scope| {
         let rendering = scope.spawn(|| render_seen(&stage, &options, &control, &mut |_, _| {}));
         // Every eighth of 290 columns and 9 rows.
-        while control.samples_done() < 37 * 2 {
+        for _ in 0..1000 {
+            if control.samples_done() >= 37 * 2 {
+                break;
+            }
             pause();
+            control.hold();
         }
         pause();
         assert_eq!(control.samples_done(), 37 * 2);
-        control.hold(false);
+        control.release();
         let (film, outcome) = rendering.join().unwrap();
         assert_eq!(outcome, Outcome::Complete);
         assert_eq!(bits(&film), bits(&whole));

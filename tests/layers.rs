@@ -97,6 +97,19 @@ fn layers_change_no_bit_of_the_picture() {
 }
 
 #[test]
+fn layers_of_a_picture_that_begins_coarsely_are_the_same() {
+    // Two rows of tiles, wider than what is measured together of a coarse step.
+    let wide = SCENE.replace("(33, 33)", "(290, 19)");
+    assert_ne!(wide, SCENE, "the test's scene has another form");
+    let stage = stage(&wide, &[]);
+    let film = |coarse| {
+        let options = Options { coarse, spp: Some(3), ..Options::default() };
+        render(&stage, &options, &Control::default()).0
+    };
+    assert_eq!(film(true), film(false));
+}
+
+#[test]
 fn layers_are_gone_on_with_too() {
     let stage = stage(SCENE, &[]);
     let with = |spp| Options { spp: Some(spp), ..Options::default() };

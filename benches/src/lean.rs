@@ -1,20 +1,22 @@
 //! What the code of features costs scenes that need none of it: whole renders by this program and by those
-//! that were built without that code, in turns, first one then the other first.
+//! that were built without that code, in turns, first one then the other first. Where code lies in memory
+//! moves times by more than a feature does: each program is there many times, its code in another order.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::process::{Luxel, here, read, scratch};
-use crate::series::Series;
 
-/// Pairs of renders; the first is not counted.
-const PAIRS: usize = 17;
 const SIZE: u32 = 192;
 const SPP: u32 = 16;
 
 /// Scenes that need no medium, no open surface, no nested refraction, no motion, one light and no layer.
-const SCENES: [&str; 3] = ["cornell_rgb.scene", "glass_metal.scene", "cornell_spectral.scene"];
+const SCENES: [(&str, &str); 3] = [
+    ("cornell_rgb", "Cornell box, RGB"),
+    ("glass_metal", "glass and metal"),
+    ("cornell_spectral", "Cornell box, by wavelength"),
+];
 
 /// For counting: pixels along a side, and samples of two renders, whose difference is that of paths alone.
 const COUNTED: (u32, [u32; 2]) = (64, [1, 16]);
@@ -22,31 +24,48 @@ const COUNTED: (u32, [u32; 2]) = (64, [1, 16]);
 /// What a program says of a scene that it has no code for.
 const REFUSED: &str = "this program was built without";
 
-/// Prints for each program and scene the time of this program over that of the lean one; first over its
-/// own, to show the machine's noise.
+/// Orders of a program, at least: four pairs of it beside itself.
+const LEAST: usize = 8;
+
+/// The directory of the programs with all code.
+const WHOLE: &str = "none";
+
+/// One program in several orders of its code.
+struct Program {
+    name: String,
+    orders: Vec<Luxel>,
+}
+
+/// Prints for each program and scene the time of that with all code over its own, with the standard error
+/// of that over all orders; first of half of the same orders over the other half.
 ///
 /// # Errors
-/// A program failed; its words. No lean ones.
-pub(crate) fn run(luxel: &Luxel, lean: Option<&Path>) -> Result<(), String> {
+/// A program failed; its words. No such programs.
+pub(crate) fn run(directory: Option<&Path>) -> Result<(), String> {
     const WANTED: &str = "--lean DIRECTORY: of programs that were built without some code \
                           (docs/performance.md says how)";
-    let mut programs = lean.and_then(programs).filter(|found| !found.is_empty()).ok_or(WANTED)?;
-    programs.insert(0, ("with all of it".to_owned(), luxel.program.clone()));
+    let programs = directory.and_then(programs).ok_or(WANTED)?;
+    let whole = programs.iter().find(|program| program.name == WHOLE).ok_or(WANTED)?;
     println!(
-        "{SIZE} x {SIZE}, {SPP} spp, one thread, processor time of the whole process, median of {} ratios of \
-         interleaved pairs, with the middle half; instructions of a path, as callgrind counts them with AVX2",
-        PAIRS - 1
+        "{SIZE} x {SIZE}, {SPP} spp, one thread, processor time of the whole process: mean ratio of \
+         interleaved pairs, one for each of {} orders of the code, with its standard error; instructions of a \
+         path, as callgrind counts them with AVX2",
+        whole.orders.len()
     );
     println!(
-        "| built | scene | with the code / without | middle half | instructions | pictures |\n\
+        "| built | scene | with the code / without | ± | instructions | pictures |\n\
          |---|---|---|---|---|---|"
     );
-    for (built, program) in programs {
-        let other = Luxel { program };
-        for name in SCENES {
-            let scene = here().join("scenes").join(name);
-            match told(&scene, luxel, &other) {
-                Ok(told) => println!("| {built} | {name} | {told} |"),
+    // What was not changed, then all together, then one feature after the other.
+    let rank = |name: &str| [WHOLE, "lean"].iter().position(|it| *it == name).unwrap_or(2);
+    let mut sorted: Vec<_> = programs.iter().collect();
+    sorted.sort_by_key(|program| (rank(&program.name), &program.name));
+    for program in sorted {
+        let built = if program.name == WHOLE { "with all of it" } else { &program.name };
+        for (scene, title) in SCENES {
+            let scene = here().join("scenes").join(scene).with_extension("scene");
+            match told(&scene, whole, program) {
+                Ok(told) => println!("| {} | {title} | {told} |", built.replace('_', " ")),
                 Err(words) if words.contains(REFUSED) => {}
                 Err(words) => return Err(words),
             }
@@ -55,20 +74,29 @@ pub(crate) fn run(luxel: &Luxel, lean: Option<&Path>) -> Result<(), String> {
     Ok(())
 }
 
-/// What lies in a directory, each with its name.
-fn programs(directory: &Path) -> Option<Vec<(String, PathBuf)>> {
-    let named = |path: PathBuf| Some((path.file_stem()?.to_str()?.replace('_', " "), path));
-    let found = fs::read_dir(directory).ok()?;
-    let mut found: Vec<_> = found.filter_map(|entry| named(entry.ok()?.path())).collect();
-    found.sort();
-    Some(found)
+/// What lies in a directory, each in its own directory, one file for each order.
+fn programs(directory: &Path) -> Option<Vec<Program>> {
+    let inside = |path: &Path| -> Option<Vec<PathBuf>> {
+        let mut found: Vec<_> =
+            fs::read_dir(path).ok()?.map(|it| Some(it.ok()?.path())).collect::<Option<_>>()?;
+        found.sort();
+        Some(found)
+    };
+    let one = |path: PathBuf| {
+        let orders: Vec<_> = inside(&path)?.into_iter().map(|program| Luxel { program }).collect();
+        let name = path.file_name()?.to_str()?.to_owned();
+        (orders.len() >= LEAST).then_some(Program { name, orders })
+    };
+    Some(inside(directory)?.into_iter().filter_map(one).collect())
 }
 
-fn told(scene: &Path, with: &Luxel, without: &Luxel) -> Result<String, String> {
-    let (mut ratios, mut same) = (vec![], true);
-    for pair in 0..PAIRS {
+fn told(scene: &Path, with: &Program, without: &Program) -> Result<String, String> {
+    let (mut logs, mut same) = (vec![], true);
+    // A program beside itself: one half of its orders beside the other.
+    let others = if with.name == without.name { with.orders.len() / 2 } else { 0 };
+    for (i, (with, without)) in with.orders.iter().zip(&without.orders[others..]).enumerate() {
         let (own, other);
-        if pair % 2 == 0 {
+        if i % 2 == 0 {
             own = shot(with, scene)?;
             other = shot(without, scene)?;
         } else {
@@ -76,18 +104,24 @@ fn told(scene: &Path, with: &Luxel, without: &Luxel) -> Result<String, String> {
             own = shot(with, scene)?;
         }
         same &= own.1 == other.1;
-        if pair > 0 {
-            ratios.push(own.0 / other.0);
-        }
+        logs.push((own.0 / other.0).ln());
     }
-    let ratios = Series::from(ratios);
-    let [low, high] = [25, 75].map(|percent| ratios.percentile(percent));
+    let (mean, error) = mean_and_error(&logs);
     let word = if same { "the same" } else { "others" };
-    let counted = match [with, without].map(|luxel| instructions(luxel, scene)) {
+    let counted = match [with, without].map(|program| instructions(program.orders.first()?, scene))
+    {
         [Some(with), Some(without)] => format!("{:.3}", with / without),
         _ => "no valgrind".to_owned(),
     };
-    Ok(format!("{:.3} | {low:.3} to {high:.3} | {counted} | {word}", ratios.median()))
+    Ok(format!("{:.3} | {error:.3} | {counted} | {word}", mean.exp()))
+}
+
+/// With the standard error of the mean.
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (n - 1.0) / n).sqrt())
 }
 
 /// Instructions of a path, which depend neither on the machine's noise nor on where code lies in memory;

@@ -95,7 +95,7 @@ const BENCHES: [Bench; 23] = [
     of_program("reload", |plan| reload::run(&plan.luxel)),
     of_program("cornell", |plan| peer::cornell(&plan.luxel, plan.python.as_deref())),
     of_program("watch", |plan| watch::run(&plan.luxel, plan.python.as_deref())),
-    of_program("lean", |plan| lean::run(&plan.luxel, plan.lean.as_deref())),
+    of_program("lean", |plan| lean::run(plan.lean.as_deref())),
     of_program("tables", tables::run),
     of_program("soak", |plan| watch::soak(&plan.luxel)),
     of_program("tables-short", tables::short),

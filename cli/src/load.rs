@@ -156,15 +156,17 @@ pub(crate) fn build(
     text: Text,
     plugins: &Plugins,
     before: Option<&Stage>,
-    Course { beat, watch, line, .. }: &Course,
+    Course { beat, watch, line: shown, .. }: &Course,
 ) -> Result<Loaded, Failure> {
     let loaded = blaming(&path.display().to_string(), || {
         let Text { scene, mut diagnostics, sources, files, .. } = text;
         beat.building(watch);
         let build = |scene: &Scene| {
-            let told = |_| progress::building(&watch.standing());
+            // Of what is not wanted any more nothing is told.
+            let line = || progress::building(&watch.standing());
+            let told = |_| if watch.is_cancelled() { String::new() } else { line() };
             let build = || stage::build_watched(scene, &plugins.registry, &files, before, watch);
-            progress::shown_while(told, *line, build)
+            progress::shown_while(told, *shown, build)
         };
         let built = scene.as_ref().map(build);
         let mut anew = Anew::default();
@@ -189,4 +191,26 @@ pub(crate) fn build(
 
 fn go_on(watch: &Watch) -> Result<(), Failure> {
     if watch.is_cancelled() { Err(Failure::new(Exit::Incomplete, CANCELLED)) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Folder;
+
+    #[test]
+    fn what_is_not_wanted_any_more_is_neither_read_nor_built() {
+        let folder = Folder::new("unwanted");
+        folder.write("a.scene", b"scene 1\nlight constant { scale = 1 }\nnope\n");
+        let path = folder.path("a.scene");
+        let plugins = registry(&PluginArgs::default()).unwrap();
+        let course = Course::default();
+        let text = read(&path, &LoadArgs::default(), None, &plugins, &course).unwrap();
+        assert!(!text.diagnostics.is_empty() && course.asked.lock().unwrap().contains_key(&path));
+        course.watch.cancel();
+        let read = read(&path, &LoadArgs::default(), None, &plugins, &course);
+        assert!(read.is_err_and(|failure| failure.exit == Exit::Incomplete));
+        let built = build(&path, text, &plugins, None, &course);
+        assert!(built.is_err_and(|failure| failure.exit == Exit::Incomplete));
+    }
 }

@@ -12,8 +12,8 @@ use crate::report;
 /// Between two redraws.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Runs `work` while a line is shown, which may depend on the seconds since the beginning. No line is
-/// shown unless standard error is a terminal and `shown` is true.
+/// Runs `work` while a line is shown, which may depend on the seconds since the beginning, until it is
+/// empty. No line is shown unless standard error is a terminal and `shown` is true.
 pub(crate) fn shown_while<T>(
     line: impl Fn(f64) -> String + Send,
     shown: bool,
@@ -28,7 +28,11 @@ pub(crate) fn shown_while<T>(
         scope.spawn(move || {
             let start = Instant::now();
             while ended.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
-                report::progress(&line(start.elapsed().as_secs_f64()));
+                let line = line(start.elapsed().as_secs_f64());
+                if line.is_empty() {
+                    return;
+                }
+                report::progress(&line);
             }
             report::progress("");
         });

@@ -75,7 +75,6 @@ fn what_does_not_look_whether_it_is_wanted_is_left_for_the_next_save() {
     until("an object that takes its time", || folder.names().contains(&"begun".to_owned()));
     folder.write("a.scene", SCENE);
     until("the picture of another scene", || !folder.read("a.exr").is_empty());
-    assert!(!folder.names().contains(&"go".to_owned()), "the object has ended first");
     folder.write("go", "");
     watching.interrupt();
     let done = watching.end();

@@ -10,6 +10,9 @@ use crate::exit::{Exit, Failure};
 /// So long work that was asked to end is waited for.
 const GRACE: Duration = Duration::from_millis(5);
 
+/// Between two looks at work that has to end.
+const MOMENT: Duration = Duration::from_millis(1);
+
 /// What came of an attempt.
 #[derive(Debug)]
 pub(super) enum Ended<T> {
@@ -65,12 +68,32 @@ impl<'scope, 'env> Attempts<'scope, 'env> {
             }
         };
         cancel();
-        if let Err(RecvTimeoutError::Timeout) = take.recv_timeout(GRACE)
-            && let Some(earlier) = self.left.replace(thread)
-        {
-            let _ = earlier.join();
+        if let Err(RecvTimeoutError::Timeout) = take.recv_timeout(GRACE) {
+            return Ok(Ended::Left(self.leave(thread, noticed, look)));
         }
+        let _ = thread.join();
         Ok(Ended::Left(noticed))
+    }
+
+    /// Leaves work to itself. Where there is such already, one of the two has to end first, unless the end
+    /// of all is asked for.
+    fn leave(
+        &mut self,
+        thread: ScopedJoinHandle<'scope, ()>,
+        mut noticed: Noticed,
+        mut look: impl FnMut() -> Noticed,
+    ) -> Noticed {
+        let both = self.left.take().into_iter().chain([thread]);
+        let mut both: Vec<_> = both.filter(|thread| !thread.is_finished()).collect();
+        while both.len() > 1 && noticed != Noticed::Stop {
+            std::thread::sleep(MOMENT);
+            if look() == Noticed::Stop {
+                noticed = Noticed::Stop;
+            }
+            both.retain(|thread| !thread.is_finished());
+        }
+        self.left = both.pop();
+        noticed
     }
 }
 
@@ -145,6 +168,7 @@ mod tests {
             };
             let ended = attempts.run(work, save, || asked.store(true, Ordering::SeqCst));
             assert!(matches!(ended, Ok(Ended::Left(Noticed::Save))), "{ended:?}");
+            assert!(attempts.left.is_none(), "it has ended");
             let ended = attempts.run(
                 || -> Result<(), Failure> { panic!("on purpose") },
                 || {

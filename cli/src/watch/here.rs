@@ -37,6 +37,9 @@ const TICK: Duration = Duration::from_millis(1);
 /// So long nothing is looked for while a scene is read: most are read by then.
 const SHORT: Duration = Duration::from_millis(5);
 
+/// Between two looks at whether such a scene is read.
+const STEP: Duration = Duration::from_micros(200);
+
 /// So long nothing is saved when a scene is called stable.
 const STILL: Duration = Duration::from_millis(120);
 
@@ -149,7 +152,7 @@ impl<'scope> Watching<'scope, '_> {
         loop {
             let next = self.round();
             // What is saved may leave the picture as it is.
-            self.hold(false);
+            self.shown.as_ref().inspect(|shown| shown.control.release());
             let next = next?;
             self.audience.page().inspect(|page| page.has_read());
             let next = match next {
@@ -159,15 +162,18 @@ impl<'scope> Watching<'scope, '_> {
             if next == Next::End {
                 return Ok(());
             }
-            self.hold(true);
+            self.hold();
             self.audience.page().inspect(|page| page.reading());
             self.renew(session, (&self.args.plugins, around))?;
         }
     }
 
-    /// Has the render in hand stand still while a save is looked at, or go on.
-    fn hold(&self, held: bool) {
-        self.shown.as_ref().inspect(|shown| shown.control.hold(held));
+    /// Has the render in hand stand still while a save is looked at, so that who looks on sees soon what
+    /// comes of it.
+    fn hold(&self) {
+        if let Some(shown) = self.shown.as_ref().filter(|_| self.args.preview) {
+            shown.control.hold();
+        }
     }
 
     /// Waits for a save, or for the picture if that is the end.
@@ -196,10 +202,10 @@ impl<'scope> Watching<'scope, '_> {
             Err(failure) if failure.exit == Exit::Ours => {
                 self.audience.failed(&failure);
                 self.has_told = true;
-                let libraries = self.libraries.keys().map(PathBuf::as_path);
-                let told = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
-                let also = libraries.chain([self.args.file.as_path()]);
-                self.changes.expect_more_than(told, also);
+                let mut told = self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                told.extend(self.libraries.clone());
+                self.changes.expect_more_than(told, [self.args.file.as_path()]);
+                self.impatient = true;
                 Ok(Next::Wait)
             }
             // Ctrl-C has ended it, which the wait is told too.
@@ -296,15 +302,13 @@ impl<'scope> Watching<'scope, '_> {
         look: &mut dyn FnMut(&mut Changes) -> Noticed,
     ) -> Result<Ended<T>, Failure> {
         self.in_hand.get().1 = course.watch.clone();
-        let (changes, impatient, mut has_saved) = (&mut self.changes, self.impatient, false);
-        let look = || {
-            if has_saved {
+        let (changes, impatient) = (&mut self.changes, self.impatient);
+        let look = || match look(changes) {
+            Noticed::Save if !impatient => {
                 std::thread::sleep(TICK);
-                return Noticed::Nothing;
+                Noticed::Nothing
             }
-            let noticed = look(changes);
-            has_saved = noticed == Noticed::Save && !impatient;
-            if has_saved { Noticed::Nothing } else { noticed }
+            noticed => noticed,
         };
         let ended = self.attempts.run(work, look, || course.watch.cancel());
         self.impatient &= !matches!(ended, Ok(Ended::Left(_)));
@@ -321,7 +325,7 @@ impl<'scope> Watching<'scope, '_> {
             course,
             &mut |changes| {
                 if begun.elapsed() < SHORT {
-                    std::thread::sleep(SHORT / 25);
+                    std::thread::sleep(STEP);
                     return Noticed::Nothing;
                 }
                 let now = course.asked.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -390,6 +394,8 @@ impl<'scope> Watching<'scope, '_> {
         let thread = self.scope.spawn(move || {
             let course = Course { control: &ends, guard, beat: &Beat::silent() };
             before.as_ref().filter(|_| goes_on).inspect(|before| sits.go_on_from(before));
+            // Until it is seen, the coarse picture of a page has hardly any room of its own.
+            before = before.filter(|_| args.preview);
             let mut look = |film: &Film, now: Reached| {
                 look(film, now);
                 // To give back the room of a picture takes as long as to make the first of another.

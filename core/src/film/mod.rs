@@ -61,7 +61,7 @@ impl Film {
         self.tiles.iter().map(|tile| u64::from(tile.next) * tile.area() as u64).sum()
     }
 
-    /// Room that its pixels take.
+    /// The most room that its pixels take.
     pub fn bytes(&self) -> usize {
         let of_pixel = size_of::<Pixel>() + size_of::<f64>() * self.holds.channels().len();
         self.window.area() * of_pixel

@@ -17,6 +17,7 @@ mod watched;
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
@@ -79,7 +80,8 @@ impl Options {
 pub struct Control {
     cancelled: AtomicBool,
     superseded: AtomicBool,
-    held: AtomicBool,
+    /// Until when it stands still, and whether that need be looked at.
+    held: (AtomicBool, Mutex<Option<Instant>>),
     samples: AtomicU64,
 }
 
@@ -105,14 +107,28 @@ impl Control {
         self.superseded.load(Ordering::Relaxed)
     }
 
-    /// Has the render stand still, but not before there is something to see, or go on again: whoever holds
-    /// it has better use for the processors. Changes no bit.
-    pub fn hold(&self, held: bool) {
-        self.held.store(held, Ordering::Relaxed);
+    /// Has the render stand still until it is released, a tenth of a second at most; a picture that begins
+    /// with coarse steps not before the first of them is to be seen. Whoever holds it has better use for
+    /// the processors. Changes no bit, unless time is what the picture is to have.
+    pub fn hold(&self) {
+        *self.until() = Some(Instant::now() + LONGEST);
+        self.held.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Lets it go on.
+    pub fn release(&self) {
+        self.held.0.store(false, Ordering::Relaxed);
+    }
+
+    fn until(&self) -> MutexGuard<'_, Option<Instant>> {
+        self.held.1.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn is_held(&self) -> bool {
-        self.held.load(Ordering::Relaxed) && !self.is_cancelled() && !self.is_superseded()
+        self.held.0.load(Ordering::Relaxed)
+            && !self.is_cancelled()
+            && !self.is_superseded()
+            && self.until().is_some_and(|until| Instant::now() < until)
     }
 
     /// Samples that have been added to pixels so far.
@@ -265,9 +281,9 @@ pub fn render_on(
                 let tiles = film.tiles_mut();
                 if turn.lattice.step() > 1 {
                     // Of one tile there are too few pixels to keep a worker busy.
-                    let rows = tiles.par_chunks_mut(columns);
-                    let strips = rows.flat_map(|row| row.par_chunks_mut(STRIP));
-                    strips.for_each_init(worker, |worker, strip| {
+                    let rows = tiles.chunks_mut(columns);
+                    let strips: Vec<_> = rows.flat_map(|row| row.chunks_mut(STRIP)).collect();
+                    strips.into_par_iter().for_each_init(worker, |worker, strip| {
                         worker.pass(strip, 0..1, turn.lattice, stop);
                     });
                 } else {
@@ -300,6 +316,9 @@ fn give_way(courteous: bool) {
 
 #[cfg(not(target_os = "linux"))]
 fn give_way(_: bool) {}
+
+/// So long a render is held at most.
+const LONGEST: Duration = Duration::from_millis(100);
 
 /// Between two looks of a thread that is held.
 const HELD: Duration = Duration::from_micros(200);
@@ -338,11 +357,14 @@ impl Stop<'_> {
         own
     }
 
-    /// Waits while the render is held; not before there is something to be seen.
-    fn is_asked(self) -> bool {
+    /// Waits while the render is held.
+    fn wait(self) {
         while self.control.is_held() && !self.first {
             std::thread::sleep(HELD);
         }
+    }
+
+    fn is_asked(self) -> bool {
         let superseded = self.control.is_superseded() && !self.first;
         self.control.is_cancelled() || superseded || self.is_late() || self.is_failure()
     }

@@ -191,6 +191,7 @@ impl<'s> Worker<'s> {
             if self.next.rays.is_empty() && self.next.shadows.is_empty() {
                 return true;
             }
+            stop.wait();
             if stop.is_asked() {
                 return false;
             }

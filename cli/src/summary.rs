@@ -27,6 +27,9 @@ pub(crate) struct Summary {
     seed: u32,
     mode: String,
     integrator: String,
+    precision: &'static str,
+    sampler: String,
+    filter: String,
     outcome: Outcome,
     seconds: f64,
     /// Of this run.
@@ -69,6 +72,9 @@ impl Summary {
             seed: options.seed(stage),
             mode: format!("{:?}", stage.mode).to_lowercase(),
             integrator: integrator.unwrap_or_else(|| "path".into()),
+            precision: stage.film.precision.word(),
+            sampler: stage.sampler.class().name.to_string(),
+            filter: stage.filter.class().name.to_string(),
             outcome,
             seconds,
             samples,
@@ -128,6 +134,10 @@ impl Summary {
             "seed": self.seed,
             "color": self.mode,
             "integrator": self.integrator,
+            "precision": self.precision,
+            "sampler": self.sampler,
+            "filter": self.filter,
+            "bad_samples": self.bad,
             "error_asked": self.goal.error,
             "time_asked": self.goal.time.map(|time| time.as_secs_f64()),
             "complete": self.outcome == Outcome::Complete && self.is_reached(),
@@ -146,7 +156,6 @@ impl Summary {
         all["samples"] = json!(self.samples);
         all["samples_per_second"] = json!(self.rate());
         all["mean_radiance"] = json!(self.mean.to_array());
-        all["bad_samples"] = json!(self.bad);
         all["exr"] = json!(output.exr);
         all["png"] = json!(output.png);
         all

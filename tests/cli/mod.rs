@@ -72,6 +72,8 @@ fn json_tells_size_samples_and_files() {
         "3",
         "--crop",
         "15,0,10,5",
+        "--precision",
+        "exact",
     ]);
     assert_eq!(done.code, 0, "{done:?}");
     for part in [
@@ -85,6 +87,18 @@ fn json_tells_size_samples_and_files() {
         assert!(done.out.contains(part), "{part} in {}", done.out);
     }
     assert_eq!(done.out.lines().count(), 1);
+    // How the picture came about stands in its file, too.
+    let exr = folder.read("a.exr");
+    let exr = String::from_utf8_lossy(&exr);
+    for part in [
+        r#""precision":"exact""#,
+        r#""sampler":"sobol""#,
+        r#""filter":"blackman_harris""#,
+        r#""bad_samples":0"#,
+        r#""size":[20,10]"#,
+    ] {
+        assert!(exr.contains(part), "{part}");
+    }
 }
 
 #[test]

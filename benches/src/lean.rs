@@ -93,8 +93,8 @@ fn programs(directory: &Path) -> Option<Vec<Program>> {
 fn told(scene: &Path, with: &Program, without: &Program) -> Result<String, String> {
     let (mut logs, mut same) = (vec![], true);
     // A program beside itself: one half of its orders beside the other.
-    let others = if with.name == without.name { with.orders.len() / 2 } else { 0 };
-    for (i, (with, without)) in with.orders.iter().zip(&without.orders[others..]).enumerate() {
+    let first = if with.name == without.name { with.orders.len() / 2 } else { 0 };
+    for (i, (with, without)) in with.orders.iter().zip(&without.orders[first..]).enumerate() {
         let (own, other);
         if i % 2 == 0 {
             own = shot(with, scene)?;

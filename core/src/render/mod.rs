@@ -80,7 +80,7 @@ impl Options {
 pub struct Control {
     cancelled: AtomicBool,
     superseded: AtomicBool,
-    /// Until when it stands still, and whether that need be looked at.
+    /// Whether it may have to stand still, and until when.
     held: (AtomicBool, Mutex<Option<Instant>>),
     samples: AtomicU64,
 }
@@ -383,6 +383,25 @@ impl Control {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_render_is_held_until_it_is_released_asked_to_end_or_held_for_long() {
+        let held = || {
+            let control = Control::default();
+            assert!(!control.is_held());
+            control.hold();
+            control
+        };
+        assert!(held().is_held());
+        for end in [Control::release, Control::supersede, Control::cancel] {
+            let control = held();
+            end(&control);
+            assert!(!control.is_held());
+        }
+        let control = held();
+        std::thread::sleep(LONGEST);
+        assert!(!control.is_held());
+    }
 
     #[test]
     #[cfg(target_os = "linux")]

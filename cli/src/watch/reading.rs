@@ -196,7 +196,7 @@ mod tests {
         let path = folder.path("a.scene");
         let wishes = wishes();
         let from = |scene: &Scene| match scene.node(scene.camera.unwrap()).get("look") {
-            Some(argument) => match argument.value {
+            Some(argument) => match &argument.value {
                 Value::Look(look) => look.from,
                 _ => panic!("no view"),
             },

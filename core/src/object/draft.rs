@@ -129,7 +129,7 @@ impl Draft {
                 self.block.write_raw(at, Table::new(table));
                 self.owned.push(Arc::new(table.clone()));
             }
-            (Type::Look, Value::Look(look)) => self.block.write(at, *look),
+            (Type::Look, Value::Look(look)) => self.block.write(at, **look),
             _ => return Err(format!("`{}` has a value of the wrong type", param.name)),
         }
         Ok(())

@@ -1,9 +1,9 @@
 //! A scene without what nothing refers to, in the order in which it is met from the world on.
 
-use super::{GroupId, NodeId, Scene, Target, Value, value};
+use super::{GroupId, NodeId, Placed, Scene, Target, Value, value};
 
 /// The number of what was not met.
-const UNMET: u32 = u32::MAX;
+pub(super) const UNMET: u32 = u32::MAX;
 
 impl Scene {
     /// Leaves out nodes and groups that nothing refers to, brings children before those that refer to
@@ -12,24 +12,18 @@ impl Scene {
     ///
     /// Nothing may stand in itself, nor so deep that the recursion has no room.
     pub fn compact(&mut self) {
-        let mut order = Order {
-            scene: self,
-            nodes: vec![UNMET; self.nodes.len()],
-            groups: vec![UNMET; self.groups.len()],
-            n_nodes: 0,
-            n_groups: 0,
-        };
-        order.items(&self.root.items);
-        let slots = [self.camera, self.film, self.integrator, self.sampler];
-        for id in slots.into_iter().chain([self.filter, self.medium]).flatten() {
-            order.node(id);
-        }
-        let Order { nodes, groups, n_nodes, n_groups, .. } = order;
+        let Order { nodes, groups, n_nodes, n_groups, .. } = Order::of(self);
         self.rename(&nodes, &groups);
         arrange(&mut self.nodes, nodes, n_nodes);
         arrange(&mut self.groups, groups, n_groups);
         self.own.clear();
-        for i in 0..self.nodes.len() {
+        self.hash_more();
+    }
+
+    /// Computes the hashes of the nodes that were put among `nodes` since it was last called; each
+    /// refers to nodes before it alone.
+    pub(super) fn hash_more(&mut self) {
+        for i in self.own.len()..self.nodes.len() {
             let hash = value::hash_node(&self.nodes[i], |id| self.node(id).hash);
             self.nodes[i].hash = hash;
             let own = self.new_own_hash(&self.nodes[i]);
@@ -38,10 +32,10 @@ impl Scene {
     }
 
     /// Gives what is referred to its new number.
-    fn rename(&mut self, nodes: &[u32], groups: &[u32]) {
+    pub(super) fn rename(&mut self, nodes: &[u32], groups: &[u32]) {
         let node = |id: &mut NodeId| id.0 = nodes[id.0 as usize];
         for (held, _) in self.nodes.iter_mut().zip(nodes).filter(|(_, number)| **number != UNMET) {
-            for argument in &mut held.params {
+            for argument in held.params.to_mut() {
                 if let Value::Node(id) | Value::Moved(id, _) = &mut argument.value {
                     node(id);
                 }
@@ -66,15 +60,26 @@ impl Scene {
 }
 
 /// New numbers, by the old ones.
-struct Order<'a> {
+pub(super) struct Order<'a> {
     scene: &'a Scene,
-    nodes: Vec<u32>,
-    groups: Vec<u32>,
-    n_nodes: u32,
-    n_groups: u32,
+    pub(super) nodes: Vec<u32>,
+    pub(super) groups: Vec<u32>,
+    pub(super) n_nodes: u32,
+    pub(super) n_groups: u32,
 }
 
-impl Order<'_> {
+impl<'a> Order<'a> {
+    pub(super) fn of(scene: &'a Scene) -> Self {
+        let (nodes, groups) = (vec![UNMET; scene.nodes.len()], vec![UNMET; scene.groups.len()]);
+        let mut out = Self { scene, nodes, groups, n_nodes: 0, n_groups: 0 };
+        out.items(&scene.root.items);
+        let slots = [scene.camera, scene.film, scene.integrator, scene.sampler];
+        for id in slots.into_iter().chain([scene.filter, scene.medium]).flatten() {
+            out.node(id);
+        }
+        out
+    }
+
     fn node(&mut self, id: NodeId) {
         if self.nodes[id.0 as usize] != UNMET {
             return;
@@ -101,7 +106,7 @@ impl Order<'_> {
         self.n_groups += 1;
     }
 
-    fn items(&mut self, items: &[super::Placed]) {
+    fn items(&mut self, items: &[Placed]) {
         for item in items {
             match item.target {
                 Target::Node(id) => self.node(id),

@@ -87,7 +87,7 @@ pub fn conform(param: &Param, given: Given, units: DefaultUnits<'_>) -> Result<V
         (Type::File, Given::Text(path)) => Ok(Value::Path(PathBuf::from(&*path))),
         (Type::File, Given::Path(path)) => Ok(Value::Path(path)),
         (Type::File, Given::Bytes(name, bytes)) => Ok(Value::Bytes(name, bytes)),
-        (Type::Look, Given::Look(look)) => Ok(Value::Look(look)),
+        (Type::Look, Given::Look(look)) => Ok(Value::look(look)),
         (
             Type::Float | Type::Double | Type::Int | Type::MaybeFloat,
             Given::Number(x, dimension),
@@ -315,7 +315,7 @@ fn vector(
     for (x, name) in v.iter().zip(["x", "y", "z"]) {
         in_range(param, *x, &format!(".{name}"))?;
     }
-    Ok(Value::Vector(v))
+    Ok(Value::vector(v))
 }
 
 fn table(

@@ -4,12 +4,14 @@
 //! their places). Groups that are placed several times are shared, not copied. Nothing here traces,
 //! reads files or knows a plugin by name.
 
+mod arguments;
 mod color;
 mod compact;
 mod conform;
 mod diff;
 mod expect;
 mod feature;
+mod gather;
 mod pose;
 mod print;
 mod setting;
@@ -23,6 +25,7 @@ use luxel_sdk::kind::Kind;
 use crate::diag::Span;
 use crate::registry::common_params;
 
+pub use arguments::Arguments;
 pub use color::Color;
 pub use conform::{
     DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, wanted,
@@ -59,7 +62,7 @@ pub struct Node {
     /// Its name, for people; does not count for its hash.
     pub label: Option<Arc<str>>,
     /// The parameters that were given, by name. Each fits its schema.
-    pub params: Vec<Argument>,
+    pub params: Arguments,
     /// For assets: materials that take the place of the file's own, by their name in the file
     /// (characters that no identifier has are `_`).
     pub overrides: Vec<(Arc<str>, NodeId)>,
@@ -231,7 +234,7 @@ impl Scene {
             return Some(node.hash);
         }
         let mut rest = node.clone();
-        rest.params.retain(|argument| !names.contains(&argument.name));
+        rest.params.to_mut().retain(|argument| !names.contains(&argument.name));
         Some(value::hash_node(&rest, |id| self.node(id).hash))
     }
 
@@ -247,7 +250,7 @@ impl Scene {
             return node.hash;
         }
         let mut own = node.clone();
-        own.params.retain(|argument| !added(argument.name));
+        own.params.to_mut().retain(|argument| !added(argument.name));
         value::hash_node(&own, |id| self.node(id).hash)
     }
 
@@ -282,7 +285,7 @@ mod tests {
             kind: Kind::Camera,
             class: "perspective".into(),
             label: Some(label.into()),
-            params: vec![Argument { name: "focal_length", value, span }],
+            params: vec![Argument { name: "focal_length", value, span }].into(),
             overrides: vec![],
             span,
             hash: [0; 32],
@@ -316,7 +319,7 @@ mod tests {
             scene.set_param(Setting::Film, name, value);
             (scene.hash(), scene.measured_hash())
         };
-        let plain = with("resolution", Value::Vector(vec![3.0, 4.0]));
+        let plain = with("resolution", Value::vector([3.0, 4.0]));
         for name in SHOWN {
             let shown = with(name, Value::Text("x".into()));
             assert!(shown.0 != plain.0 && shown.1 == plain.1, "{name}");

@@ -3,7 +3,7 @@
 use glam::UVec2;
 use luxel_sdk::kind::Kind;
 
-use super::{Argument, Node, NodeId, Scene, Value};
+use super::{Argument, Arguments, Node, NodeId, Scene, Value};
 use crate::accel::Precision;
 use crate::diag::{SourceId, Span};
 use crate::film::Layer;
@@ -44,6 +44,19 @@ impl Setting {
 }
 
 impl Scene {
+    /// The camera, film, … of a scene, by its kind; `None` for kinds of which it may have many.
+    pub fn slot_mut(&mut self, kind: Kind) -> Option<&mut Option<NodeId>> {
+        Some(match kind {
+            Kind::Camera => &mut self.camera,
+            Kind::Film => &mut self.film,
+            Kind::Integrator => &mut self.integrator,
+            Kind::Sampler => &mut self.sampler,
+            Kind::Filter => &mut self.filter,
+            Kind::Medium => &mut self.medium,
+            _ => return None,
+        })
+    }
+
     /// Its node, if the scene gives one.
     pub fn setting(&self, setting: Setting) -> Option<&Node> {
         let id = match setting {
@@ -57,7 +70,7 @@ impl Scene {
 
     /// Gives the film another size, in pixels; a scene without a film gets one.
     pub fn set_resolution(&mut self, size: UVec2) {
-        let size = Value::Vector(size.as_dvec2().to_array().to_vec());
+        let size = Value::vector(size.as_dvec2().to_array());
         self.set_param(Setting::Film, "resolution", size);
     }
 
@@ -74,8 +87,8 @@ impl Scene {
     /// Gives a parameter of a setting another value, which fits its class.
     pub fn set_param(&mut self, setting: Setting, name: &'static str, value: Value) {
         let mut node = self.own(setting);
-        node.params.retain(|argument| argument.name != name);
-        node.params.push(Argument { name, value, span: NOWHERE });
+        node.params.to_mut().retain(|argument| argument.name != name);
+        node.params.to_mut().push(Argument { name, value, span: NOWHERE });
         self.put(setting, node);
     }
 
@@ -88,7 +101,7 @@ impl Scene {
         }
         node.class = class.into();
         if setting != Setting::Film {
-            node.params.clear();
+            node.params = Arguments::default();
         }
         self.put(setting, node);
     }
@@ -99,7 +112,7 @@ impl Scene {
             kind: setting.kind(),
             class: setting.default_class().into(),
             label: None,
-            params: vec![],
+            params: Arguments::default(),
             overrides: vec![],
             span: NOWHERE,
             hash: [0; 32],

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use glam::DAffine3;
 use luxel_sdk::params::{Dimension, Look};
 
@@ -19,7 +20,7 @@ pub enum Value {
     /// A number in SI units with what it measures.
     Number(f64, Dimension),
     /// Two to four numbers in SI units.
-    Vector(Vec<f64>),
+    Vector(ArrayVec<f64, 4>),
     /// Text, or the word of a choice.
     Text(Arc<str>),
     /// A file, joined to the folder of the scene file that names it.
@@ -31,11 +32,23 @@ pub enum Value {
     /// A colour or spectrum, with the dimension that multiplies it.
     Color(Color, Dimension),
     /// Where something stands and looks.
-    Look(Look),
+    Look(Box<Look>),
     /// Another node.
     Node(NodeId),
     /// A shape that is a part of another, moved in the frame of that one.
     Moved(NodeId, Arc<DAffine3>),
+}
+
+impl Value {
+    /// Two to four numbers in SI units; what comes after them is left out.
+    pub fn vector(numbers: impl IntoIterator<Item = f64>) -> Self {
+        Self::Vector(numbers.into_iter().take(4).collect())
+    }
+
+    /// Where something stands and looks.
+    pub fn look(look: Look) -> Self {
+        Self::Look(Box::new(look))
+    }
 }
 
 /// The hash of a node, its children by theirs. Label and place in the file do not count.

@@ -84,7 +84,7 @@ impl Walk<'_> {
 mod tests {
     use super::*;
     use crate::diag::{SourceId, Span};
-    use crate::scene::{GroupId, Node, Placed};
+    use crate::scene::{Arguments, GroupId, Node, Placed};
 
     #[test]
     fn one_instance_more_than_the_limit_is_told_where_it_stands() {
@@ -94,7 +94,7 @@ mod tests {
             kind: Kind::Shape,
             class: "any".into(),
             label: None,
-            params: vec![],
+            params: Arguments::default(),
             overrides: vec![],
             span: at(0),
             hash: [0; 32],

@@ -226,7 +226,7 @@ impl Import<'_> {
             kind: node.kind,
             class: Arc::from(class.name),
             label: (!node.label.is_empty()).then(|| Arc::from(node.label.as_str())),
-            params,
+            params: params.into(),
             overrides: vec![],
             span,
             hash: [0; 32],
@@ -243,13 +243,13 @@ impl Import<'_> {
         let given = match value.clone() {
             Value::Bool(b) => Given::Bool(b),
             Value::Number(x, dimension) => Given::Number(x, dimension),
-            Value::Vector(v) => Given::Numbers(v.into(), dimension),
+            Value::Vector(v) => Given::Numbers(v.as_slice().into(), dimension),
             Value::Table(table) => Given::Numbers(table, dimension),
             Value::Text(text) => Given::Text(text),
             Value::Path(path) => Given::Path(path),
             Value::Bytes(name, bytes) => Given::Bytes(name, bytes),
             Value::Color(color, dimension) => Given::Color(color, dimension),
-            Value::Look(look) => Given::Look(look),
+            Value::Look(look) => Given::Look(*look),
             Value::Node(id) | Value::Moved(id, _) => Given::Node(id, self.out.node(id).kind),
         };
         match conform(param, given, &|_| None) {
@@ -332,14 +332,14 @@ fn convert(param: &Param, value: &ImportValue, ids: &[Option<NodeId>]) -> Option
             let unit = Unit::parse(unit).ok()?;
             Value::Number(x * unit.scale, unit.dimension)
         }
-        ImportValue::Vector(v) => Value::Vector(v.clone()),
+        ImportValue::Vector(v) => Value::Vector(v.as_slice().try_into().ok()?),
         ImportValue::Text(text) => match param.ty {
             Type::File => Value::Path(text.into()),
             _ => Value::Text(text.as_str().into()),
         },
         ImportValue::Rgb(rgb) => Value::Color(Color::Rgb(*rgb), own()),
         ImportValue::Table(table) => Value::Table(table.clone()),
-        ImportValue::Look(look) => Value::Look(*look),
+        ImportValue::Look(look) => Value::look(*look),
         ImportValue::Bytes(name, bytes) => Value::Bytes(name.as_str().into(), bytes.clone()),
         ImportValue::Node(index) => Value::Node(ids.get(*index).copied().flatten()?),
     })

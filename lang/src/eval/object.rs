@@ -212,7 +212,7 @@ impl Evaluator<'_> {
             kind: class.kind,
             class: self.shared(class.name),
             label: head.label.as_ref().map(|label| label.text.clone()),
-            params,
+            params: params.into(),
             overrides,
             span: head.span,
             hash: [0; 32],

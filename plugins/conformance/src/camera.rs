@@ -108,7 +108,7 @@ fn nearest(a: &luxel_sdk::num::Ray, b: &luxel_sdk::num::Ray) -> Option<DVec3> {
 
 /// As the raster says: x to the right, y down, the view at its middle.
 fn stands_upright(camera: &dyn Camera, set: &Set, judge: &mut Judge) {
-    let looks = set.given.iter().any(|(_, value)| *value == Value::Look(LOOK));
+    let looks = set.given.iter().any(|(_, value)| *value == Value::look(LOOK));
     if !looks {
         return;
     }

@@ -104,7 +104,7 @@ pub(crate) fn stage(
     let mut scene = bench.scene();
     fill(&mut scene);
     let side = f64::from(SIDE);
-    let size = ("resolution", Value::Vector(vec![side, side]));
+    let size = ("resolution", Value::vector([side, side]));
     scene.film = Some(node(&mut scene, Kind::Film, "rgb", &[size]));
     scene.sampler = Some(node(&mut scene, Kind::Sampler, "reference_numbers", &[]));
     scene.filter = Some(node(&mut scene, Kind::Filter, "reference_block", &[]));
@@ -155,7 +155,7 @@ fn foggy_scene(scene: &mut Scene, glow: f64) {
 }
 
 fn ball_and_lamp(scene: &mut Scene, brightness: f64) {
-    let look = ("look", Value::Look(LOOK));
+    let look = ("look", Value::look(LOOK));
     scene.camera = Some(node(scene, Kind::Camera, "reference_pinhole", &[look]));
     let material = matt(scene, 0.6);
     let body = ball(scene, 1.0, Some(material));
@@ -173,7 +173,7 @@ fn ball_and_lamp(scene: &mut Scene, brightness: f64) {
 
 /// The inside of a ball that shines with radiance 1 and reflects: everywhere Σ albedoᵏ.
 fn furnace(scene: &mut Scene) {
-    let look = ("look", Value::Look(luxel_sdk::params::Look { from: DVec3::X, ..LOOK }));
+    let look = ("look", Value::look(luxel_sdk::params::Look { from: DVec3::X, ..LOOK }));
     scene.camera = Some(node(scene, Kind::Camera, "reference_pinhole", &[look]));
     let material = matt(scene, ALBEDO);
     let shape = ball(scene, 5.0, Some(material));

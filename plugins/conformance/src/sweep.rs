@@ -111,7 +111,7 @@ impl Bench {
             for (center, radius) in ORBS {
                 let center = (center * scale + place).to_array().to_vec();
                 let given = [
-                    ("center", Value::Vector(center)),
+                    ("center", Value::vector(center)),
                     ("radius", Value::Number(radius * scale, Dimension::LENGTH)),
                 ];
                 node(&mut props, Kind::Shape, "reference_orb", &given);

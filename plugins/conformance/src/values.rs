@@ -114,7 +114,7 @@ pub(crate) fn sensible(
     if let Some(n) = lanes(param.ty) {
         // Where no part may be negative, it is an extent; else directions across each other.
         let axis = |i: usize| if param.min >= 0.0 || i == index % n { 1.0 } else { 0.0 };
-        return Some(Value::Vector(match param.default {
+        return Some(Value::vector(match param.default {
             Preset::Numbers(numbers) => numbers[..n].to_vec(),
             _ => (0..n).map(axis).collect(),
         }));
@@ -126,7 +126,7 @@ pub(crate) fn sensible(
         Type::File => Some(Value::Path(PathBuf::from(file))),
         Type::Table if file.is_empty() => Some(Value::Table(Arc::from(BOW))),
         Type::Table => Some(Value::Table(Arc::from([0.0; SIDE * SIDE]))),
-        Type::Look => Some(Value::Look(LOOK)),
+        Type::Look => Some(Value::look(LOOK)),
         Type::Object(_) | Type::Part => prop(param.ty, index),
         _ => None,
     }
@@ -143,7 +143,7 @@ pub(crate) fn extremes(param: &Param) -> Vec<(Value, Level)> {
         if is_number(param) {
             out.push((number(param, x), level));
         } else if let Some(n) = lanes(param.ty) {
-            out.push((Value::Vector(vec![x; n]), Level::Edge));
+            out.push((Value::vector(vec![x; n]), Level::Edge));
         } else if param.ty == Type::Bool {
             out.push((Value::Bool(i == 1), Level::Usual));
         }
@@ -225,8 +225,8 @@ pub(crate) fn draw(param: &Param, rng: &mut Rng, bright: bool) -> Option<Value> 
             let sign = if signed && rng.f32() < 0.5 { -1.0 } else { 1.0 };
             sign * scale * (0.2 + 0.8 * rng.f64())
         };
-        let vector = (0..n).map(|_| part().clamp(param.min, param.max)).collect();
-        return Some(Value::Vector(vector));
+        let vector = (0..n).map(|_| part().clamp(param.min, param.max));
+        return Some(Value::vector(vector));
     }
     match param.ty {
         Type::Bool => Some(Value::Bool(rng.f32() < 0.5)),

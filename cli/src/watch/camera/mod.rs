@@ -79,7 +79,7 @@ pub(super) fn stand(scene: &mut Scene, before: Option<&Stage>, view: &Wished) {
     let Some((mut node, pose)) = own.or_else(brought) else { return };
     let Some((look, pose)) = placed(&view.look, &pose, before) else { return };
     let Some(own) = look_of(&mut node) else { return };
-    own.value = Value::Look(look);
+    own.value = Value::look(look);
     if let (Some(zoom), Some(height)) = (view.zoom, height_of(&mut node)) {
         *height = significant(*height * zoom);
     }
@@ -99,13 +99,13 @@ fn camera_of(scene: &Scene) -> Option<Standing> {
 }
 
 fn look_of(node: &mut Node) -> Option<&mut Argument> {
-    node.params.iter_mut().find(|argument| matches!(argument.value, Value::Look(_)))
+    node.params.to_mut().iter_mut().find(|argument| matches!(argument.value, Value::Look(_)))
 }
 
 /// How much a camera sees, where its file says so.
 fn height_of(node: &mut Node) -> Option<&mut f64> {
     let whole = node.span;
-    let argument = node.params.iter_mut().find(|argument| argument.name == HEIGHT)?;
+    let argument = node.params.to_mut().iter_mut().find(|argument| argument.name == HEIGHT)?;
     // What an asset brings is written nowhere: its parameters stand where the whole does. It comes from
     // the stage before, which has the last wish already.
     let is_written = argument.span != whole && !whole.range().is_empty();
@@ -151,7 +151,7 @@ pub(super) fn told(
 ) -> Option<Camera> {
     let moved = wished.is_some();
     let (mut node, pose) = camera_of(&stage.scene)?;
-    let Value::Look(local) = look_of(&mut node)?.value else { return None };
+    let Value::Look(local) = look_of(&mut node)?.value.clone() else { return None };
     let place = stage.camera_place.first();
     let point = |p| place.map_or(p, |place| place.point(p));
     let vector = |v| place.map_or(v, |place| place.vector(v));

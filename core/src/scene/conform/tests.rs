@@ -119,7 +119,7 @@ fn vectors_have_their_length_and_tables_their_numbers() {
     let vector = Param { ty: Type::DVec3, min: f64::NEG_INFINITY, ..LENGTH };
     let numbers = |v: &[f64]| Given::Numbers(v.into(), Dimension::LENGTH);
     assert_eq!(fit(&vector, numbers(&[1.0, 2.0])), Err("E0207"));
-    assert_eq!(fit(&vector, numbers(&[1.0, 2.0, -3.0])), Ok(Value::Vector(vec![1.0, 2.0, -3.0])));
+    assert_eq!(fit(&vector, numbers(&[1.0, 2.0, -3.0])), Ok(Value::vector([1.0, 2.0, -3.0])));
     let table = Param { ty: Type::Table, ..LENGTH };
     let misfit = conform(&table, numbers(&[1.0, -2.0]), &|_| None).unwrap_err();
     assert!(misfit.message.contains("[1]"), "{}", misfit.message);

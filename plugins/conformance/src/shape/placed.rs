@@ -61,7 +61,7 @@ fn changed(
         let lanes = if param.ty == Type::DVec3 { 3 } else { 1 };
         let old = match (at.map(|at| &given[at].1), &param.default) {
             (Some(Value::Number(x, _)), _) => vec![*x],
-            (Some(Value::Vector(x)), _) => x.clone(),
+            (Some(Value::Vector(x)), _) => x.to_vec(),
             (Some(Value::Table(x)), _) => x.to_vec(),
             (None, Preset::Numbers(numbers)) if numbers.len() >= lanes => numbers[..lanes].to_vec(),
             _ => continue,
@@ -74,7 +74,7 @@ fn changed(
         let new = match *new {
             _ if param.ty == Type::Table => Value::Table(new.into()),
             [x] => Value::Number(x, dimension(param)),
-            _ => Value::Vector(new),
+            _ => Value::vector(new),
         };
         match at {
             Some(at) => given[at].1 = new,

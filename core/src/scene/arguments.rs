@@ -1,0 +1,107 @@
+//! The parameters of a node, which many nodes may hold in one piece of memory.
+
+use std::fmt;
+use std::ops::{Deref, Range};
+use std::sync::Arc;
+
+use super::Argument;
+
+/// The parameters that a node was given: a run of a list that other nodes may have runs of too, so that a
+/// large scene is copied, and given back, as few pieces of memory.
+#[derive(Clone, Default)]
+pub struct Arguments {
+    all: Arc<Vec<Argument>>,
+    range: Range<u32>,
+}
+
+impl Arguments {
+    /// Runs of a list, which follow one another and have these lengths.
+    pub(super) fn runs(all: Vec<Argument>, lengths: &[u32]) -> impl Iterator<Item = Self> {
+        let all = Arc::new(all);
+        let mut end = 0;
+        lengths.iter().map(move |length| {
+            let start = end;
+            end += length;
+            Self { all: all.clone(), range: start..end }
+        })
+    }
+
+    /// A list of its own, to be changed.
+    pub fn to_mut(&mut self) -> &mut Vec<Argument> {
+        let is_whole = self.len() == self.all.len() && Arc::get_mut(&mut self.all).is_some();
+        if !is_whole {
+            self.all = Arc::new(self.to_vec());
+        }
+        // Its length may change under the hands of whoever has it.
+        self.range = 0..u32::MAX;
+        Arc::make_mut(&mut self.all)
+    }
+}
+
+impl Deref for Arguments {
+    type Target = [Argument];
+
+    fn deref(&self) -> &[Argument] {
+        let end = (self.range.end as usize).min(self.all.len());
+        &self.all[self.range.start as usize..end]
+    }
+}
+
+impl From<Vec<Argument>> for Arguments {
+    fn from(all: Vec<Argument>) -> Self {
+        Self { all: Arc::new(all), range: 0..u32::MAX }
+    }
+}
+
+impl FromIterator<Argument> for Arguments {
+    fn from_iter<I: IntoIterator<Item = Argument>>(all: I) -> Self {
+        all.into_iter().collect::<Vec<_>>().into()
+    }
+}
+
+impl<'a> IntoIterator for &'a Arguments {
+    type Item = &'a Argument;
+    type IntoIter = std::slice::Iter<'a, Argument>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl PartialEq for Arguments {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl fmt::Debug for Arguments {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::{SourceId, Span};
+    use crate::scene::Value;
+
+    fn argument(name: &'static str) -> Argument {
+        Argument { name, value: Value::Bool(true), span: Span::new(SourceId(0), 0, 0) }
+    }
+
+    #[test]
+    fn runs_of_one_list_change_each_for_itself() {
+        let all: Vec<_> = ["a", "b", "c"].map(argument).into();
+        let mut runs: Vec<_> = Arguments::runs(all, &[2, 0, 1]).collect();
+        runs[0].to_mut().push(argument("d"));
+        runs[1].to_mut().push(argument("e"));
+        runs[1].to_mut().insert(0, argument("f"));
+        let names = |run: &Arguments| run.iter().map(|it| it.name).collect::<Vec<_>>();
+        let all: Vec<_> = runs.iter().map(names).collect();
+        assert_eq!(all, [vec!["a", "b", "d"], vec!["f", "e"], vec!["c"]]);
+        assert_eq!(runs[2], Arguments::from(vec![argument("c")]));
+        assert_ne!(runs[2], runs[1]);
+        assert_eq!(Arguments::default().to_mut().len(), 0);
+    }
+}

@@ -1,0 +1,235 @@
+//! A scene whose nodes are known for the most part: what is new is taken over, and the whole is copied in
+//! the order in which it is met from the world on.
+
+use std::sync::Arc;
+
+use super::compact::{Order, UNMET};
+use super::{
+    Argument, Arguments, Expectation, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value,
+};
+use crate::diag::Span;
+
+/// Of how much a thread has something to do at least.
+const PART: usize = 4096;
+
+impl Scene {
+    /// The scene that `compact` would make of this one, whose nodes are hashed, with every place in a
+    /// file as `place` has it.
+    #[must_use]
+    pub fn gathered(&self, place: &(dyn Fn(Span) -> Span + Sync)) -> Self {
+        let order = Order::of(self);
+        let nodes = met(&order.nodes, order.n_nodes);
+        let groups = met(&order.groups, order.n_groups);
+        let put = Put { nodes: &order.nodes, groups: &order.groups, place };
+        let slot = |id: Option<NodeId>| id.map(|id| put.id(id));
+        let expected = |said: &Expectation| Expectation { span: place(said.span), ..said.clone() };
+        let of_nodes = |part: &[u32]| put.nodes(part.iter().map(|old| self.node(NodeId(*old))));
+        let of_items = |part: &[Placed]| part.iter().map(|item| put.item(item)).collect();
+        let root = Group { label: None, items: in_parts(&self.root.items, &of_items) };
+        Self {
+            nodes: in_parts(&nodes, &of_nodes),
+            groups: groups.iter().map(|old| put.group(self.group(GroupId(*old)))).collect(),
+            root,
+            camera: slot(self.camera),
+            camera_pose: self.camera_pose.clone(),
+            film: slot(self.film),
+            integrator: slot(self.integrator),
+            sampler: slot(self.sampler),
+            filter: slot(self.filter),
+            medium: slot(self.medium),
+            expectations: self.expectations.iter().map(expected).collect(),
+            required: self.required.clone(),
+            dropped: self.dropped.clone(),
+            own: nodes.iter().map(|old| self.own[*old as usize]).collect(),
+        }
+    }
+
+    /// Makes a scene as it was evaluated one of which copies are gathered: changes every place in a file,
+    /// and hashes the nodes, each of which refers to nodes before it alone.
+    pub fn prepare(&mut self, place: &(dyn Fn(Span) -> Span + Sync)) {
+        let numbers = |n: usize| (0..).take(n).collect::<Vec<u32>>();
+        let (nodes, groups) = (numbers(self.nodes.len()), numbers(self.groups.len()));
+        let put = Put { nodes: &nodes, groups: &groups, place };
+        self.nodes = put.nodes(self.nodes.iter());
+        // Next to one another, so that copying finds them soon.
+        for label in self.nodes.iter_mut().filter_map(|node| node.label.as_mut()) {
+            *label = Arc::from(&**label);
+        }
+        self.groups = self.groups.iter().map(|group| put.group(group)).collect();
+        self.root = put.group(&self.root);
+        self.hash_more();
+    }
+
+    /// Takes over nodes and groups of another scene: `nodes` and `groups` are their numbers here, of which
+    /// those that are free are taken in order; what has the number of something here stands for that.
+    /// Gives what stands in the other's world. The settings stay what they are.
+    pub fn take_over(&mut self, mut other: Self, nodes: &[u32], groups: &[u32]) -> Vec<Placed> {
+        other.rename(nodes, groups);
+        for (node, number) in other.nodes.into_iter().zip(nodes) {
+            if *number as usize == self.nodes.len() {
+                self.nodes.push(node);
+            }
+        }
+        for (group, number) in other.groups.into_iter().zip(groups) {
+            if *number as usize == self.groups.len() {
+                self.groups.push(group);
+            }
+        }
+        self.hash_more();
+        other.root.items
+    }
+}
+
+/// What `f` makes of a list, in parts of it on as many threads as there are cores, in order.
+fn in_parts<T: Sync, R: Send>(list: &[T], f: &(dyn Fn(&[T]) -> Vec<R> + Sync)) -> Vec<R> {
+    let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let length = list.len().div_ceil(n_cores).max(PART);
+    let mut parts = list.chunks(length);
+    let Some(first) = parts.next() else { return vec![] };
+    std::thread::scope(|scope| {
+        let others: Vec<_> = parts.map(|part| scope.spawn(move || f(part))).collect();
+        let mut all = f(first);
+        all.reserve_exact(list.len().saturating_sub(all.len()));
+        for other in others {
+            all.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        }
+        all
+    })
+}
+
+/// The old numbers of what was met, by the new ones.
+fn met(numbers: &[u32], n_met: u32) -> Vec<u32> {
+    let mut out = vec![UNMET; n_met as usize];
+    for (old, new) in (0..).zip(numbers).filter(|(_, new)| **new != UNMET) {
+        out[*new as usize] = old;
+    }
+    out
+}
+
+/// Copies with new numbers, and places in a file.
+struct Put<'a> {
+    nodes: &'a [u32],
+    groups: &'a [u32],
+    place: &'a (dyn Fn(Span) -> Span + Sync),
+}
+
+impl Put<'_> {
+    fn id(&self, NodeId(old): NodeId) -> NodeId {
+        NodeId(self.nodes[old as usize])
+    }
+
+    /// Nodes whose parameters are one piece of memory.
+    fn nodes<'n>(&self, nodes: impl Iterator<Item = &'n Node> + Clone) -> Vec<Node> {
+        let lengths = nodes.clone().map(|node| u32::try_from(node.params.len()).unwrap_or(0));
+        let lengths: Vec<u32> = lengths.collect();
+        let mut all = Vec::with_capacity(lengths.iter().map(|length| *length as usize).sum());
+        for node in nodes.clone() {
+            all.extend(node.params.iter().map(|argument| self.argument(argument)));
+        }
+        let runs = Arguments::runs(all, &lengths);
+        nodes.zip(runs).map(|(node, params)| self.node(node, params)).collect()
+    }
+
+    fn argument(&self, argument: &Argument) -> Argument {
+        let value = match &argument.value {
+            Value::Node(id) => Value::Node(self.id(*id)),
+            Value::Moved(id, transform) => Value::Moved(self.id(*id), transform.clone()),
+            value => value.clone(),
+        };
+        Argument { name: argument.name, value, span: (self.place)(argument.span) }
+    }
+
+    fn node(&self, node: &Node, params: Arguments) -> Node {
+        let overridden = |(name, id): &(_, NodeId)| (Arc::clone(name), self.id(*id));
+        Node {
+            kind: node.kind,
+            class: node.class.clone(),
+            label: node.label.clone(),
+            params,
+            overrides: node.overrides.iter().map(overridden).collect(),
+            span: (self.place)(node.span),
+            hash: node.hash,
+        }
+    }
+
+    fn item(&self, item: &Placed) -> Placed {
+        Placed {
+            target: match item.target {
+                Target::Node(id) => Target::Node(self.id(id)),
+                Target::Group(GroupId(old)) => Target::Group(GroupId(self.groups[old as usize])),
+            },
+            pose: item.pose.clone(),
+            material: item.material.map(|id| self.id(id)),
+            span: (self.place)(item.span),
+        }
+    }
+
+    fn group(&self, group: &Group) -> Group {
+        let items = group.items.iter().map(|item| self.item(item));
+        Group { label: group.label.clone(), items: items.collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luxel_sdk::kind::Kind;
+
+    use super::*;
+    use crate::diag::SourceId;
+    use crate::scene::Pose;
+
+    fn node(at: usize, child: Option<u32>) -> Node {
+        let span = Span::new(SourceId(0), at, at + 1);
+        let value = |id| Argument { name: "base", value: Value::Node(NodeId(id)), span };
+        Node {
+            kind: Kind::Shape,
+            class: "any".into(),
+            label: None,
+            params: child.map(value).into_iter().collect(),
+            overrides: vec![],
+            span,
+            hash: [0; 32],
+        }
+    }
+
+    fn placed(target: Target, at: usize) -> Placed {
+        let span = Span::new(SourceId(0), at, at);
+        Placed { target, pose: Pose::IDENTITY, material: None, span }
+    }
+
+    #[test]
+    fn what_is_gathered_is_what_is_compact() {
+        let nodes = vec![node(0, None), node(1, None), node(2, None), node(3, Some(2))];
+        let mut scene = Scene { nodes, camera: Some(NodeId(0)), ..Scene::default() };
+        let inner = Group { label: None, items: vec![placed(Target::Node(NodeId(3)), 0)] };
+        scene.groups = vec![Group::default(), inner];
+        scene.root.items = vec![placed(Target::Group(GroupId(1)), 7)];
+        let mut kept = scene.clone();
+        kept.prepare(&|span| span);
+        scene.compact();
+        assert_eq!(kept.gathered(&|span| span), scene);
+        let further = kept.gathered(&|span| Span { start: span.start + 3, ..span });
+        assert_eq!(further.nodes[1].span.start, scene.nodes[1].span.start + 3);
+        assert_eq!(further.nodes[1].params[0].span.start, scene.nodes[1].span.start + 3);
+        assert_eq!(further.root.items[0].span.start, 10);
+    }
+
+    #[test]
+    fn what_is_taken_over_refers_to_what_it_stands_for() {
+        let mut kept = Scene { nodes: vec![node(0, None), node(1, None)], ..Scene::default() };
+        kept.prepare(&|span| span);
+        let mut other = Scene { nodes: vec![node(1, None), node(5, Some(0))], ..Scene::default() };
+        other.groups = vec![Group { label: None, items: vec![placed(Target::Node(NodeId(1)), 0)] }];
+        other.root.items = vec![placed(Target::Group(GroupId(0)), 0)];
+        let items = kept.take_over(other, &[1, 2], &[0]);
+        assert_eq!(kept.nodes.len(), 3);
+        assert_eq!(kept.nodes[2].params[0].value, Value::Node(NodeId(1)));
+        assert_eq!(kept.groups[0].items[0].target, Target::Node(NodeId(2)));
+        kept.root.items = items;
+        let mut fresh = Scene { nodes: vec![node(1, None), node(5, Some(0))], ..Scene::default() };
+        fresh.groups = vec![Group { label: None, items: vec![placed(Target::Node(NodeId(1)), 0)] }];
+        fresh.root.items = vec![placed(Target::Group(GroupId(0)), 0)];
+        fresh.compact();
+        assert_eq!(kept.gathered(&|span| span), fresh);
+    }
+}

@@ -138,7 +138,7 @@ fn measured(case: &Case, sampler: &str) -> Found {
     };
     std::thread::scope(|scope| {
         let begun: Vec<_> = (0..THREADS).map(|i| scope.spawn(move || some(i))).collect();
-        let found = begun.into_iter().map(|it| it.join().unwrap());
+        let found = begun.into_iter().map(|it| it.join().expect("no render panics"));
         found.fold(Found::default(), Found::and)
     })
 }

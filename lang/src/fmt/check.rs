@@ -29,11 +29,17 @@ pub(crate) fn tree(text: &str) -> Option<String> {
 /// The comments of a text in order, found without the formatter's help.
 fn comments(text: &str) -> Vec<String> {
     let (mut found, mut rest) = (vec![], text);
-    while let Some(at) = rest.find(['"', '/']) {
+    while let Some(at) = rest.find(['"', '/', '#']) {
         rest = &rest[at..];
         let line = rest.find('\n').unwrap_or(rest.len());
         let length = match rest.get(..2) {
             Some("//") => line,
+            // The bracket of a table ends the comments in it too.
+            Some("#[") => {
+                let end = rest.find(']').unwrap_or(rest.len());
+                found.extend(comments(&rest[2..end]));
+                end
+            }
             Some("/*") => rest[2..].find("*/").map_or(rest.len(), |end| end + 4),
             _ if rest.starts_with('"') => {
                 // The first quote that has an even number of backslashes before it.

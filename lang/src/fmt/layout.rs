@@ -51,11 +51,7 @@ impl<'a> Layout<'a> {
     /// Whether the piece itself cannot be on one line.
     fn breaks_after(&self, at: usize) -> bool {
         let piece = &self.pieces[at];
-        match piece.kind {
-            Kind::Line | Kind::Doc => true,
-            Kind::Block | Kind::Table => piece.text.contains('\n'),
-            _ => piece.broken,
-        }
+        piece.is_long() || piece.broken
     }
 
     /// Whether pieces fit on one line from this column on, with `after` columns behind them.

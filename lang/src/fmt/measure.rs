@@ -29,9 +29,7 @@ pub(super) fn measure(pieces: &mut [Piece<'_>]) {
         piece.hard = hard + u32::from(kept);
         piece.width = width(piece);
         at = piece.at + piece.width;
-        let several = matches!(piece.kind, Kind::Line | Kind::Doc)
-            || matches!(piece.kind, Kind::Block | Kind::Table) && piece.text.contains('\n');
-        hard = piece.hard + u32::from(several || piece.broken);
+        hard = piece.hard + u32::from(piece.is_long() || piece.broken);
         if !piece.is_comment() {
             significant = Some(i);
         }
@@ -59,9 +57,7 @@ fn brackets(pieces: &mut [Piece<'_>]) {
             pieces[bracket].broken |= newline && pieces[bracket].text != "{";
         }
         let piece = &pieces[i];
-        if matches!(piece.kind, Kind::Block | Kind::Table) && piece.text.contains('\n')
-            || matches!(piece.kind, Kind::Line | Kind::Doc)
-        {
+        if piece.is_long() {
             lines += 1;
         }
         match piece.kind {

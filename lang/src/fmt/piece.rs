@@ -3,6 +3,7 @@
 use std::iter::Peekable;
 
 use super::marks::Marks;
+use super::table;
 use crate::prescan::block_comment;
 use crate::syntax::{Op, Token, TokenKind, tokens};
 
@@ -83,6 +84,16 @@ impl Piece<'_> {
 
     pub(super) fn is_keyword(&self, word: &str) -> bool {
         self.kind == Kind::Keyword && self.text == word
+    }
+
+    /// Whether it takes several lines whatever stands around it.
+    pub(super) fn is_long(&self) -> bool {
+        match self.kind {
+            Kind::Line | Kind::Doc => true,
+            Kind::Block => self.text.contains('\n'),
+            Kind::Table => table::is_long(self.text),
+            _ => false,
+        }
     }
 
     /// Whether it could end an operand.

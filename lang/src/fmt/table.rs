@@ -66,9 +66,14 @@ fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
     })
 }
 
+/// Whether a table takes several lines: it has them, or a comment in it goes to the end of its line.
+pub(super) fn is_long(text: &str) -> bool {
+    text.contains('\n') || text.contains("//")
+}
+
 /// Puts a table; `after` columns stand behind it.
 pub(super) fn put(text: &str, out: &mut Out, after: usize) {
-    if text.contains('\n') {
+    if is_long(text) {
         return rows(body(text), out);
     }
     let flat = flat(text);

@@ -75,7 +75,8 @@ fn next<'a>(text: &'a str, at: &mut usize) -> Option<Token<'a>> {
         let rest = &text[*at..];
         let c = rest.chars().next()?;
         let is_doc = rest.starts_with("///") && !rest.starts_with("////");
-        if c.is_whitespace() || c == '\u{FEFF}' {
+        // What else is blank to the eye is none to the grammar.
+        if matches!(c, ' ' | '\t' | '\r' | '\n' | '\u{FEFF}') {
             first_on_line |= c == '\n';
             *at += c.len_utf8();
         } else if rest.starts_with("//") && !is_doc {

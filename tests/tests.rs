@@ -1,6 +1,7 @@
 //! Whole-system tests.
 
 #[cfg(test)]
+mod again;
 mod asked;
 #[cfg(test)]
 mod assets;

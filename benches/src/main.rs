@@ -17,6 +17,7 @@ mod evaluate;
 mod features;
 #[path = "../../cli/src/verify/generated.rs"]
 mod generated;
+mod graph;
 mod lean;
 mod parse;
 mod peer;
@@ -64,13 +65,14 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last five are not among `all`: they take long, or another program, or measure nothing new.
-const BENCHES: [Bench; 23] = [
+const BENCHES: [Bench; 24] = [
     of_crates("parse", |_| parse::run().and_then(|()| evaluate::run())),
     of_crates("evaluate", |_| evaluate::run()),
     of_crates("editor", |_| {
         editor::run();
         Ok(())
     }),
+    of_crates("graph", |_| graph::run()),
     of_program("cold", |plan| peer::cold(&plan.luxel)),
     of_program("attacks", |plan| attacks::run(&plan.luxel)),
     of_program("memory", |plan| peer::memory(&plan.luxel)),

@@ -1,14 +1,14 @@
 //! From a scene file to a stage: the registry, the language, and what may be changed from outside.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, TryLockError};
 
 use glam::UVec2;
 use luxel_core::accel::Watch;
 use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::scene::Scene;
 use luxel_core::stage::{self, Anew, Stage, Unbuilt};
-use luxel_lang::ParamInfo;
+use luxel_lang::{Kept, ParamInfo};
 
 use crate::args::{LoadArgs, PluginArgs};
 use crate::exit::{Exit, Failure, blaming};
@@ -75,6 +75,8 @@ pub(crate) struct Course {
     pub(crate) asked: Asked,
     /// Whether a line tells of it on a terminal.
     pub(crate) line: bool,
+    /// What the load before has left to go on from, if there will be another one.
+    pub(crate) kept: Option<Arc<Mutex<Kept>>>,
 }
 
 /// Reads a scene and makes it ready to trace, at `size` if one is given.
@@ -115,7 +117,7 @@ pub(crate) fn read(
     args: &LoadArgs,
     size: Option<UVec2>,
     plugins: &Plugins,
-    Course { beat, known, asked, watch, .. }: &Course,
+    Course { beat, known, asked, watch, kept, .. }: &Course,
 ) -> Result<Text, Failure> {
     let mut text = blaming(&path.display().to_string(), || {
         let files = DiskFiles::new(path, &args.allow_path).knowing(known).telling(asked);
@@ -127,7 +129,20 @@ pub(crate) fn read(
             stop: Some(watch.flag()),
             ..Default::default()
         };
-        let mut read = luxel_lang::load(path, &files, &plugins.registry, &settings);
+        let registry = &plugins.registry;
+        let mut read = match kept.as_ref().map(|kept| kept.try_lock()) {
+            Some(Ok(mut kept)) => kept.load(path, &files, registry, &settings),
+            // A panic may have left half of it.
+            Some(Err(TryLockError::Poisoned(kept))) => {
+                let mut kept = kept.into_inner();
+                *kept = Kept::default();
+                kept.load(path, &files, registry, &settings)
+            }
+            // A load that nobody waits for any more has it, or nobody wants it.
+            Some(Err(TryLockError::WouldBlock)) | None => {
+                luxel_lang::load(path, &files, registry, &settings)
+            }
+        };
         let mut scene = read.scene.take();
         if let (Some(scene), Some(size)) = (&mut scene, size) {
             scene.set_resolution(size);

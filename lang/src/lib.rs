@@ -134,6 +134,32 @@ pub fn load(path: &Path, files: &dyn Files, registry: &Registry, settings: &Sett
     eval::load(path, files, registry, settings)
 }
 
+/// What is kept of a load, so that the next one of the same file goes on from it.
+///
+/// Of a file of 256 KiB or more, only the statements that an edit concerns are read and evaluated again,
+/// if nothing is wrong with it. What a load gives is what [`load`] gives, to the last place in the file;
+/// only how long that takes differs, and the memory that a second copy of the scene holds.
+#[derive(Debug, Default)]
+pub struct Kept(Option<Box<eval::again::State>>);
+
+impl Kept {
+    /// As [`load`]. `registry` has the same classes at every call: where they change, a new `Kept` begins.
+    pub fn load(
+        &mut self,
+        path: &Path,
+        files: &dyn Files,
+        registry: &Registry,
+        settings: &Settings,
+    ) -> Loaded {
+        eval::again::load(&mut self.0, path, files, registry, settings)
+    }
+
+    /// How many statements of the file the last load evaluated, if it gave something to go on from.
+    pub fn n_evaluated(&self) -> Option<usize> {
+        self.0.as_ref().and_then(|state| state.n_evaluated())
+    }
+}
+
 /// Reads a text without evaluating it; gives how many statements stand at its top level and what is
 /// wrong with it. For measuring the parser alone.
 pub fn parse_only(text: &str, budgets: &Budgets) -> (usize, Vec<Diagnostic>) {

@@ -10,6 +10,7 @@ use luxel_core::accel::Watch;
 use luxel_core::film::Film;
 use luxel_core::render::{Control, Reached};
 use luxel_core::stage::Anew;
+use luxel_lang::Kept;
 use serde_json::json;
 
 use super::Args;
@@ -93,6 +94,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
             plugins: Arc::new(plugins),
             changes,
             asked: Asked::default(),
+            kept: Arc::default(),
             shown: None,
             impatient: true,
             is_good: false,
@@ -131,6 +133,8 @@ struct Watching<'scope, 'env> {
     changes: Changes,
     /// What the last load has asked for so far.
     asked: Asked,
+    /// What the last load has left for the next one.
+    kept: Arc<Mutex<Kept>>,
     /// The last good scene.
     shown: Option<Shown<'scope>>,
     /// Whether a save ends the reading or the making ready of a scene. Not twice in a row: however fast
@@ -217,7 +221,8 @@ impl<'scope> Watching<'scope, '_> {
     fn load(&mut self) -> Result<Next, Failure> {
         let (form, begun) = (self.args.form(), Instant::now());
         let (line, known) = (!self.args.quiet, self.changes.known().clone());
-        let course = load::Course { known, line, ..load::Course::default() };
+        let kept = Some(self.kept.clone());
+        let course = load::Course { known, line, kept, ..load::Course::default() };
         self.is_good = false;
         self.asked = course.asked.clone();
         let text = match self.read(&course)? {
@@ -440,6 +445,7 @@ impl<'scope> Watching<'scope, '_> {
             Ok(renewed) => {
                 self.libraries.clone_from(&renewed.watched);
                 self.plugins = Arc::new(renewed);
+                self.kept = Arc::default();
                 self.plugins.notes.tell(self.args.form(), Stream::Error)
             }
             // A lock or configuration that cannot be understood leaves everything as it was.

@@ -33,6 +33,29 @@ impl Sources {
         SourceId(u32::try_from(self.files.len() - 1).expect("fewer than 2^32 files are read"))
     }
 
+    /// Adds the texts of `all` that come after as many as there are here.
+    pub fn add_rest(&mut self, all: &Self) {
+        self.files.extend(all.files.iter().skip(self.files.len()).cloned());
+    }
+
+    /// Gives a text that is known another content.
+    pub fn replace(&mut self, id: SourceId, text: Arc<str>) {
+        if let Some(file) = self.files.get_mut(id.0 as usize) {
+            file.1 = text;
+        }
+    }
+
+    /// The text of that name and content, if it is here.
+    pub fn find(&self, name: &str, text: &str) -> Option<SourceId> {
+        let found = self.files.iter().position(|(known, it)| known == name && **it == *text)?;
+        u32::try_from(found).ok().map(SourceId)
+    }
+
+    /// How many texts there are.
+    pub fn n_texts(&self) -> usize {
+        self.files.len()
+    }
+
     /// The name of a text, as the author wrote it; empty when unknown.
     pub fn name(&self, id: SourceId) -> &str {
         self.files.get(id.0 as usize).map_or("", |(name, _)| name)
@@ -41,6 +64,11 @@ impl Sources {
     /// The text; empty when unknown.
     pub fn text(&self, id: SourceId) -> &str {
         self.files.get(id.0 as usize).map_or("", |(_, text)| text)
+    }
+
+    /// The text, shared; empty when unknown.
+    pub fn shared(&self, id: SourceId) -> Arc<str> {
+        self.files.get(id.0 as usize).map_or_else(|| "".into(), |(_, text)| text.clone())
     }
 
     /// Every text, in reading order.

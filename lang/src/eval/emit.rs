@@ -88,27 +88,20 @@ impl Evaluator<'_> {
         if self.quiet > 0 {
             return;
         }
-        if let Some(first) = self.slots.get(&kind) {
+        if let Some((_, first)) = self.slots.iter().find(|(given, _)| *given == kind) {
             let code = if kind == Kind::Camera { "E0409" } else { "E0419" };
             let message = format!("a second {kind}: a scene has one");
             let diagnostic = Diagnostic::error(code, span, message).label(*first, "the first one");
             self.tell(diagnostic.help("`@off` before a statement takes it out of the scene"));
             return;
         }
-        self.slots.insert(kind, span);
-        let scene = &mut self.scene;
+        self.slots.push((kind, span));
         if kind == Kind::Camera {
-            scene.camera_pose = object.pose.clone();
+            self.scene.camera_pose = object.pose.clone();
         }
-        let slot = match kind {
-            Kind::Camera => &mut scene.camera,
-            Kind::Film => &mut scene.film,
-            Kind::Integrator => &mut scene.integrator,
-            Kind::Sampler => &mut scene.sampler,
-            Kind::Filter => &mut scene.filter,
-            _ => &mut scene.medium,
-        };
-        *slot = Some(id);
+        if let Some(slot) = self.scene.slot_mut(kind) {
+            *slot = Some(id);
+        }
     }
 
     /// Puts a target into the open group; `outer` is applied after the object's own transform.

@@ -76,7 +76,7 @@ impl Evaluator<'_> {
     /// Another scene's file, which must be there.
     fn same_as(&mut self, name: &Name, env: &Env) -> Option<Claim> {
         let path = env.file.folder.join(&*name.text);
-        if let Err(error) = self.files.read(&path) {
+        if let Err(error) = self.bytes(&path) {
             self.unreadable(name, &path, &error);
             return None;
         }

@@ -10,15 +10,7 @@ use crate::Loaded;
 impl Evaluator<'_> {
     /// The scene, if there is no error, with everything that was found.
     pub(super) fn finish(mut self) -> Loaded {
-        let incomplete = self.damaged || self.stopped || self.sink.errors() > 0;
-        if !self.has_asset && !self.slots.contains_key(&Kind::Camera) && !incomplete {
-            let known: Vec<_> = self.registry.of_kind(Kind::Camera).map(|e| e.class.name).collect();
-            self.tell(
-                Diagnostic::unplaced("E0409", "the scene has no camera")
-                    .help(format!("known are {}", known.join(", "))),
-            );
-        }
-        self.expectations_fit();
+        self.lacks();
         let errors = self.sink.errors();
         let scene = (errors == 0 && !self.damaged && !self.stopped).then(|| {
             self.scene.root = self.open_groups.pop().unwrap_or_default().group;
@@ -32,6 +24,19 @@ impl Evaluator<'_> {
         }
         let values = self.values.unwrap_or_default();
         Loaded { scene, diagnostics, sources: self.sources, params: self.params, values }
+    }
+
+    /// Tells what the scene lacks as a whole.
+    pub(super) fn lacks(&mut self) {
+        let incomplete = self.damaged || self.stopped || self.sink.errors() > 0;
+        if !self.has_asset && self.scene.camera.is_none() && !incomplete {
+            let known: Vec<_> = self.registry.of_kind(Kind::Camera).map(|e| e.class.name).collect();
+            self.tell(
+                Diagnostic::unplaced("E0409", "the scene has no camera")
+                    .help(format!("known are {}", known.join(", "))),
+            );
+        }
+        self.expectations_fit();
     }
 }
 

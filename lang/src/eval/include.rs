@@ -28,7 +28,7 @@ impl Evaluator<'_> {
     pub(super) fn root(&mut self, path: &Path, set: &[(String, String)]) {
         self.open_groups.push(OpenGroup::default());
         let canonical = self.files.canonical(path);
-        let text = match self.files.read(path) {
+        let text = match self.bytes(path) {
             Ok(bytes) => self.text(path, &bytes, None),
             Err(error) => {
                 let code = if error == FileError::Outside { "E0108" } else { "E0107" };
@@ -44,7 +44,7 @@ impl Evaluator<'_> {
         };
         self.chain.push((canonical, None));
         if let Some(declared) = self.declared(&text, source, set) {
-            self.run_in_turns((&text, source), path, &declared, set);
+            self.run_in_turns((&text, source), path, declared, set);
         } else {
             let read = self.read_text(&text, source);
             let overrides = self.settings(&read.tree, set);
@@ -87,7 +87,8 @@ impl Evaluator<'_> {
             }
         };
         let text: Arc<str> = text.into();
-        let source = self.sources.add(name, text.clone());
+        let known = self.sources.find(&name, &text).filter(|_| self.n_foreseen > 0);
+        let source = known.unwrap_or_else(|| self.sources.add(name, text.clone()));
         Some((text, source))
     }
 
@@ -186,7 +187,7 @@ impl Evaluator<'_> {
         if let Some(read) = self.read.get(&canonical) {
             return Some((path, canonical, read.clone()));
         }
-        let bytes = match self.files.read(&path) {
+        let bytes = match self.bytes(&path) {
             Ok(bytes) => bytes,
             Err(error) => {
                 self.unreadable(name, &path, &error);

@@ -4,6 +4,7 @@
 //! again. Evaluation is total: functions see only what stands before them, loops run over finite
 //! lists, and budgets bound steps, lists, nodes, files and nesting.
 
+pub(crate) mod again;
 pub(crate) mod builtins;
 mod by_name;
 mod call;
@@ -35,9 +36,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Sources, Span};
-use luxel_core::files::Files;
+use luxel_core::files::{FileError, Files};
 use luxel_core::registry::Registry;
 use luxel_core::scene::{Group, Scene};
+use luxel_sdk::kind::Kind;
 
 #[cfg(test)]
 pub(crate) use self::resolve::resolve;
@@ -67,37 +69,7 @@ fn load_in_turns(
     settings: &Settings,
     turn: usize,
 ) -> Loaded {
-    let mut evaluator = Evaluator {
-        files,
-        registry,
-        unloaded: &settings.unloaded,
-        budgets: settings.budgets,
-        sources: Sources::default(),
-        sink: Sink::new(settings.budgets.diagnostics).until(settings.stop.clone()),
-        scene: Scene::default(),
-        open_groups: vec![],
-        turn,
-        quiet: 0,
-        steps: 0,
-        depth: 0,
-        placements: 0,
-        stopped: false,
-        spent: None,
-        held: 0,
-        bytes_read: 0,
-        includes: 0,
-        read: BTreeMap::new(),
-        imported: BTreeMap::new(),
-        chain: vec![],
-        loops: vec![],
-        labels: Labels::default(),
-        classes: BTreeMap::new(),
-        slots: BTreeMap::new(),
-        has_asset: false,
-        damaged: false,
-        params: vec![],
-        values: settings.noting.then(BTreeMap::new),
-    };
+    let mut evaluator = Evaluator::new(files, registry, settings, turn);
     evaluator.root(path, &settings.set);
     evaluator.finish()
 }
@@ -129,6 +101,10 @@ struct Evaluator<'a> {
     bytes_read: usize,
     /// Files included or imported so far.
     includes: usize,
+    /// How often a file was asked for.
+    n_reads: usize,
+    /// Texts that stand among `sources` before they are read.
+    n_foreseen: usize,
     /// Files that were read, by canonical path.
     read: BTreeMap<PathBuf, Rc<ReadFile>>,
     imported: BTreeMap<PathBuf, Rc<Module>>,
@@ -140,13 +116,15 @@ struct Evaluator<'a> {
     /// The names of the classes that objects have.
     classes: BTreeMap<&'static str, Arc<str>>,
     /// Where the camera, film, … were given.
-    slots: BTreeMap<luxel_sdk::kind::Kind, Span>,
+    slots: Vec<(Kind, Span)>,
     has_asset: bool,
     /// Some statement could not be read: what is missing may stand there.
     damaged: bool,
     params: Vec<ParamInfo>,
     /// Values for editors, if they are wanted.
     values: Option<BTreeMap<Span, String>>,
+    /// What each statement of a large root file came to, if that is wanted.
+    record: Option<again::Record>,
 }
 
 /// A group that is being filled.
@@ -157,7 +135,56 @@ struct OpenGroup {
     instances: u64,
 }
 
-impl Evaluator<'_> {
+impl<'a> Evaluator<'a> {
+    /// Nothing is evaluated yet; root files from `turn` bytes on are read in turns of so many.
+    fn new(
+        files: &'a dyn Files,
+        registry: &'a Registry,
+        settings: &'a Settings,
+        turn: usize,
+    ) -> Self {
+        Self {
+            files,
+            registry,
+            unloaded: &settings.unloaded,
+            budgets: settings.budgets,
+            sources: Sources::default(),
+            sink: Sink::new(settings.budgets.diagnostics).until(settings.stop.clone()),
+            scene: Scene::default(),
+            open_groups: vec![],
+            turn,
+            quiet: 0,
+            steps: 0,
+            depth: 0,
+            placements: 0,
+            stopped: false,
+            spent: None,
+            held: 0,
+            bytes_read: 0,
+            includes: 0,
+            n_reads: 0,
+            n_foreseen: 0,
+            read: BTreeMap::new(),
+            imported: BTreeMap::new(),
+            chain: vec![],
+            loops: vec![],
+            labels: Labels::default(),
+            classes: BTreeMap::new(),
+            slots: vec![],
+            has_asset: false,
+            damaged: false,
+            params: vec![],
+            values: settings.noting.then(BTreeMap::new),
+            record: None,
+        }
+    }
+
+    /// The bytes of a file.
+    fn bytes(&mut self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+        self.n_reads += 1;
+        self.files.read(path)
+    }
+
     /// Keeps a diagnostic; too many end the evaluation.
     fn tell(&mut self, diagnostic: Diagnostic) {
         self.sink.push(diagnostic);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use luxel_core::diag::{Diagnostic, SourceId, Span};
 
 use super::mention::mention_stmts;
-use super::numbered::Firsts;
+use super::numbered::{Firsts, Tables};
 pub(crate) use super::numbered::{Known, Numbered};
 use super::resolve::{Resolver, Scope, defines, mentions};
 use crate::sink::Sink;
@@ -75,7 +75,8 @@ pub(crate) fn resolve_placed<'p>(
     at: &dyn Fn(usize) -> Placed<'p>,
     sink: &mut Sink,
 ) {
-    let (firsts, odd) = Firsts::of(known, all.clone());
+    let (tables, odd) = Tables::of(known, all.clone());
+    let firsts = Firsts::new(known, &tables);
     let around = Among { firsts: &firsts, at };
     let mut mentions: Option<Mentions> = None;
     for i in odd {

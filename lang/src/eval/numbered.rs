@@ -16,7 +16,7 @@ pub(crate) struct Known {
 }
 
 /// What a statement has to do with names, which are numbers here.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Numbered {
     /// First the names that it uses and how often, by turns, then those that it defines, then labels.
     all: Arc<[u32]>,
@@ -40,6 +40,11 @@ impl Known {
         number
     }
 
+    /// How many names there are.
+    pub(crate) fn len(&self) -> usize {
+        self.names.len()
+    }
+
     /// A statement's names.
     pub(crate) fn numbered(&mut self, facts: &Facts) -> Numbered {
         let mut all = vec![];
@@ -57,16 +62,24 @@ impl Known {
 }
 
 impl Numbered {
+    /// Moves its numbers to where memory is taken now: those of statements that are moved one after another
+    /// are found soon.
+    pub(super) fn move_together(&mut self) {
+        self.all = Arc::from(&*self.all);
+    }
+
     /// Whether its numbers are still to be found.
     pub(crate) fn is_unknown(&self) -> bool {
         !self.is_known
     }
 
-    fn uses(&self) -> impl Iterator<Item = (u32, u32)> {
+    /// The names that others must define, and how often it uses each.
+    pub(super) fn uses(&self) -> impl Iterator<Item = (u32, u32)> {
         self.all[..self.ends[0] as usize].chunks_exact(2).map(|use_| (use_[0], use_[1]))
     }
 
-    fn defines(&self) -> &[u32] {
+    /// The names that it defines.
+    pub(super) fn defines(&self) -> &[u32] {
         &self.all[self.ends[0] as usize..self.ends[1] as usize]
     }
 
@@ -75,21 +88,27 @@ impl Numbered {
     }
 }
 
-/// Which statement defines each name first, and which bears each label first.
-pub(super) struct Firsts<'k> {
-    known: &'k Known,
+/// Which statement defines each name first, and which bears each label first, by the names' numbers.
+#[derive(Debug, Default)]
+pub(super) struct Tables {
     defines: Vec<u32>,
     labels: Vec<u32>,
 }
 
-impl<'k> Firsts<'k> {
+/// The same by name.
+pub(super) struct Firsts<'k> {
+    known: &'k Known,
+    tables: &'k Tables,
+}
+
+impl Tables {
     /// Looks through statements in order; gives also the numbers of those that something is wrong with.
     pub(super) fn of<'n>(
-        known: &'k Known,
+        known: &Known,
         all: impl Iterator<Item = &'n Numbered>,
     ) -> (Self, Vec<usize>) {
         let none = || vec![NONE; known.names.len()];
-        let mut out = Self { known, defines: none(), labels: none() };
+        let mut out = Self { defines: none(), labels: none() };
         let mut odd = vec![];
         for (i, numbered) in all.enumerate() {
             let place = u32::try_from(i).unwrap_or(NONE);
@@ -107,15 +126,27 @@ impl<'k> Firsts<'k> {
         }
         (out, odd)
     }
+}
+
+impl<'k> Firsts<'k> {
+    /// Names, and what has been found of them.
+    pub(super) fn new(known: &'k Known, tables: &'k Tables) -> Self {
+        Self { known, tables }
+    }
 
     /// The statement that first defines a name.
     pub(super) fn definer(&self, name: &str) -> Option<usize> {
-        self.place(&self.defines, name)
+        self.place(&self.tables.defines, name)
+    }
+
+    /// The same for a name by its number.
+    pub(super) fn definer_of(&self, name: u32) -> Option<usize> {
+        Some(self.tables.defines[name as usize]).filter(|at| *at != NONE).map(|at| at as usize)
     }
 
     /// The statement that first bears a label.
     pub(super) fn labeller(&self, label: &str) -> Option<usize> {
-        self.place(&self.labels, label)
+        self.place(&self.tables.labels, label)
     }
 
     fn place(&self, places: &[u32], name: &str) -> Option<usize> {
@@ -125,7 +156,7 @@ impl<'k> Firsts<'k> {
 
     /// The names that are defined before a statement.
     pub(super) fn before(&self, statement: usize) -> Vec<&'k str> {
-        let names = self.known.names.iter().zip(&self.defines);
+        let names = self.known.names.iter().zip(&self.tables.defines);
         names.filter(|(_, at)| (**at as usize) < statement).map(|(name, _)| &**name).collect()
     }
 
@@ -133,13 +164,13 @@ impl<'k> Firsts<'k> {
     /// uses and that nothing before it defines.
     pub(super) fn count(&self, statement: usize, numbered: &Numbered) -> Option<usize> {
         let is_before = |places: &[u32], name: u32| (places[name as usize] as usize) < statement;
-        let is_new = |name: &u32| self.defines[*name as usize] as usize == statement;
-        let is_own = |label: &u32| self.labels[*label as usize] as usize == statement;
+        let is_new = |name: &u32| self.tables.defines[*name as usize] as usize == statement;
+        let is_own = |label: &u32| self.tables.labels[*label as usize] as usize == statement;
         let simple = numbered.is_sound
             && numbered.defines().len() + numbered.labels().len() < 2
             && numbered.defines().iter().all(is_new)
             && numbered.labels().iter().all(is_own);
-        let unknown = numbered.uses().filter(|(name, _)| !is_before(&self.defines, *name));
+        let unknown = numbered.uses().filter(|(name, _)| !is_before(&self.tables.defines, *name));
         simple.then(|| unknown.map(|(_, times)| times as usize).sum())
     }
 }

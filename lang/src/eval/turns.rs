@@ -10,7 +10,7 @@ use super::by_name::ByName;
 use super::exec::{Body, Place};
 use super::names::{Around, Facts, Mentions, Odd, tell_odd};
 use crate::sink::Sink;
-use crate::syntax::{self, Name, Stmt, StmtNode, Tree, Turns};
+use crate::syntax::{self, Cut, Name, Stmt, StmtNode, Tree, Turns};
 
 /// Bytes from which on a file is large, and that are read in one turn.
 pub(super) const TURN: usize = 1 << 20;
@@ -26,12 +26,13 @@ impl Evaluator<'_> {
         text: &str,
         source: SourceId,
         set: &[(String, String)],
-    ) -> Option<Tree> {
+    ) -> Option<Declared> {
         if text.len() < self.turn {
             return None;
         }
         let (from, _) = syntax::read_head(text, &self.budgets);
-        let pieces = syntax::cut_whole(text, from?, &self.budgets);
+        let from = from?;
+        let pieces = syntax::cut_whole(text, from, &self.budgets);
         let mut out = Tree::default();
         for piece in pieces.iter().filter(|piece| !piece.faulty) {
             let part = &text[piece.range.clone()];
@@ -45,7 +46,8 @@ impl Evaluator<'_> {
         }
         // What is set and not declared here may stand where nothing can be read.
         let is_known = |name: &str| super::include::params(&out).any(|known| *known.text == *name);
-        set.iter().all(|(name, _)| is_known(name)).then_some(out)
+        let is_told = set.iter().all(|(name, _)| is_known(name));
+        is_told.then_some(Declared { tree: out, from, pieces })
     }
 
     /// Evaluates the root file, some statements after others. What was told of its text and its names
@@ -54,11 +56,12 @@ impl Evaluator<'_> {
         &mut self,
         (text, source): (&str, SourceId),
         path: &Path,
-        declared: &Tree,
+        Declared { tree, from, pieces }: Declared,
         set: &[(String, String)],
     ) {
-        let units = self.units(&declared.stmts);
-        let overrides = self.settings(declared, set);
+        let units = self.units(&tree.stmts);
+        let overrides = self.settings(&tree, set);
+        self.begin_record(from, pieces);
         let env = Self::file_env(path, units, overrides, true);
         let mut body = Body::new(Place::File);
         let budgets = self.budgets;
@@ -66,14 +69,17 @@ impl Evaluator<'_> {
         let mut names = Seen::default();
         let bytes = self.turn;
         let mut take = |stmts: Vec<Stmt>| {
-            self.stmts(&stmts, &env, &mut body);
+            let made = self.stmts_recorded(&stmts, &env, &mut body);
             // What stands in the file itself is no object's.
             body.fields.clear();
             // Where a budget is spent, the rest is not read.
             let goes_on = self.spent.is_none();
             if goes_on {
+                let mut made = made.into_iter();
                 for stmt in stmts {
-                    names.add(text, stmt);
+                    let facts = Facts::of(text, std::slice::from_ref(&stmt));
+                    self.record_next(&stmt, &facts, made.next());
+                    names.add(stmt, facts);
                 }
             }
             goes_on
@@ -83,11 +89,21 @@ impl Evaluator<'_> {
         if self.spent.is_none() {
             names.tell(text, &mut told);
         }
+        self.end_record();
         self.apply_sets();
         self.stopped |= told.is_full();
         told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;
     }
+}
+
+/// What a large file declares for all of it, and where its statements are.
+pub(super) struct Declared {
+    /// Units and parameters.
+    tree: Tree,
+    /// Where statements may begin.
+    from: usize,
+    pieces: Vec<Cut>,
 }
 
 /// The names of the statements so far.
@@ -105,8 +121,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn add(&mut self, text: &str, stmt: Stmt) {
-        let facts = Facts::of(text, std::slice::from_ref(&stmt));
+    fn add(&mut self, stmt: Stmt, facts: Facts) {
         let n = u32::try_from(self.n_stmts).unwrap_or(u32::MAX);
         let unknown = facts.free.iter().filter(|(name, _)| !self.defines.contains_key(*name));
         let n_unknown: usize = unknown.map(|(_, times)| *times as usize).sum();

@@ -189,7 +189,7 @@ impl Evaluator<'_> {
             None => None,
         };
         let path = call.env.file.folder.join(&*name);
-        let bytes = match self.files.read(&path) {
+        let bytes = match self.bytes(&path) {
             Ok(bytes) => bytes,
             Err(error) => {
                 let message = format!("\"{name}\": {error}");

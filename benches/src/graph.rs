@@ -1,0 +1,107 @@
+//! How soon the scene graph of a large file that was edited is up to date.
+
+use std::path::Path;
+use std::time::Instant;
+
+use luxel_core::files::MemoryFiles;
+use luxel_core::registry::Registry;
+use luxel_lang::{Kept, Loaded, Settings, load};
+
+use crate::scene::{lines, linked};
+use crate::series::Series;
+
+const BYTES: usize = 10_000_000;
+
+/// Edits of a file that are measured, each there and back.
+const EDITS: usize = 9;
+
+const HEAD: &str = "scene 1
+camera perspective { fov = 40 deg, look = look_at(from = (0, 1, 9) m, to = (0, 1, 0) m, up = (0, 1, 0)) }
+let r = 50 cm
+let rare = material diffuse { reflectance = 0.2 }
+let m1 = material diffuse { reflectance = 0.5 }
+let ball = shape sphere { radius = r, material = m1 }
+";
+
+/// A text, and what of it becomes what else.
+struct Case {
+    name: &'static str,
+    text: String,
+    from: &'static str,
+    to: &'static str,
+}
+
+/// Prints milliseconds from an edited text to its scene graph.
+///
+/// # Errors
+/// What is wrong with a scene.
+pub(crate) fn run() -> Result<(), String> {
+    println!("graph, ms from an edited text of 10 MB to its scene graph (goal 50)");
+    let object = |i: usize| {
+        let material = if i.is_multiple_of(1000) { "rare" } else { "m1" };
+        format!(
+            "shape sphere \"ball {i}\" {{ center = (1.2, 0.5, -3.25) m, radius = r, material = {material} }}\n"
+        )
+    };
+    let placement = |i: usize| format!("place ball {{ transform = move(({i}, 0.5, -3.25) m) }}\n");
+    let objects = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), object));
+    let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
+    let case = |name, text: &str, from, to| Case { name, text: text.to_owned(), from, to };
+    let cases = [
+        case(
+            "objects, a number",
+            &objects,
+            "ball 50001\" { center = (1.2",
+            "ball 50001\" { center = (1.3",
+        ),
+        case(
+            "objects, one more",
+            &objects,
+            "shape sphere \"ball 50001",
+            "place ball\nshape sphere \"ball 50001",
+        ),
+        case("objects, the camera", &objects, "fov = 40", "fov = 35"),
+        case(
+            "objects, a material of one in a thousand",
+            &objects,
+            "reflectance = 0.2",
+            "reflectance = 0.3",
+        ),
+        case("objects, what all use", &objects, "r = 50 cm", "r = 40 cm"),
+        case("placements, a number", &placements, "move((50001, 0.5", "move((50001, 0.25"),
+    ];
+    let registry = linked();
+    cases.iter().try_for_each(|case| report(case, &registry))
+}
+
+fn report(case: &Case, registry: &Registry) -> Result<(), String> {
+    let other = case.text.replacen(case.from, case.to, 1);
+    let files = |text: &str| MemoryFiles::default().with("a.scene", text.as_bytes());
+    let files = [files(&case.text), files(&other)];
+    let (path, settings) = (Path::new("a.scene"), Settings::default());
+    let mut kept = Kept::default();
+    let mut again = |i: usize| timed(|| kept.load(path, &files[i % 2], registry, &settings));
+    again(0)?;
+    let took: Vec<f64> = (1..=EDITS).map(&mut again).collect::<Result<_, _>>()?;
+    let fresh: Vec<f64> = (0..3)
+        .map(|i| timed(|| load(path, &files[i % 2], registry, &settings)))
+        .collect::<Result<_, _>>()?;
+    let (series, fresh) = (Series::from(took), Series::from(fresh));
+    println!(
+        "  {:42} {:7.1} ms (spread {:.0} %), from nothing {:6.0} ms, {:7} statements evaluated",
+        case.name,
+        series.median(),
+        series.spread(),
+        fresh.median(),
+        kept.n_evaluated().unwrap_or_default(),
+    );
+    Ok(())
+}
+
+/// Milliseconds, dropping what was made left out.
+fn timed(run: impl FnOnce() -> Loaded) -> Result<f64, String> {
+    let start = Instant::now();
+    let loaded = std::hint::black_box(run());
+    let took = start.elapsed().as_secs_f64() * 1e3;
+    loaded.scene.map(|_| took).ok_or_else(|| format!("{:?}", loaded.diagnostics))
+}

@@ -1,0 +1,192 @@
+//! A large file again: after an edit only the statements that it concerns are evaluated.
+//!
+//! Of each statement is kept what it put into the scene. A statement is evaluated again if its text has
+//! changed, or if it uses a name whose statement is; with it those that define the names it uses, whose
+//! own nodes are known. All others are as they were: places in the root file count from the first byte
+//! of their statement, so that they are right wherever it moves.
+//!
+//! Whatever this does not know how to go on from is loaded anew, as a whole: mistakes and warnings, a
+//! `set`, other files that have changed, a changed `units` or `param`, a changed statement that other
+//! files come into. `docs/decisions/0042` says why.
+
+mod asked;
+mod edit;
+mod made;
+mod plan;
+mod put;
+mod record;
+mod slice;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use luxel_core::diag::{SourceId, Sources, Span};
+use luxel_core::files::Files;
+use luxel_core::registry::Registry;
+use luxel_core::scene::{Pose, Scene};
+
+use self::asked::{Questions, Remembering};
+use self::made::{Cost, Made};
+pub(super) use self::record::Record;
+use super::Evaluator;
+use super::names::{Known, Numbered};
+use super::numbered::Tables;
+use crate::{Loaded, ParamInfo, Settings};
+
+/// Bytes from which on a file is read in turns, so that what its statements came to is kept: smaller
+/// ones are loaded anew as soon.
+const KEPT: usize = 1 << 18;
+
+/// Sources from here on are statements of the root file, by their `id`.
+const STATEMENTS: u32 = 1 << 31;
+
+/// The source of places that count from the first byte of a statement.
+fn source_of(id: u32) -> SourceId {
+    SourceId(STATEMENTS.saturating_add(id))
+}
+
+/// A statement of the root file.
+#[derive(Debug)]
+struct Statement {
+    /// Its own for as long as it is the same.
+    id: u32,
+    /// Its bytes, up to the next one.
+    range: Range<usize>,
+    names: Numbered,
+    made: Made,
+    /// It is about the whole file: units, a parameter.
+    declares: bool,
+    /// It defines a name that every scene has.
+    shadows: bool,
+    /// What it concerns is not known from its names.
+    is_wide: bool,
+}
+
+/// What is kept of a load.
+#[derive(Debug)]
+pub(crate) struct State {
+    path: PathBuf,
+    settings: Settings,
+    text: Arc<str>,
+    /// Where statements may begin.
+    from: usize,
+    names: Known,
+    tables: Tables,
+    /// How many names the file defines, and how many statements define one that every scene has.
+    n_names: usize,
+    n_shadows: usize,
+    stmts: Vec<Statement>,
+    n_ids: usize,
+    /// All nodes and groups of all statements, those that are gone too; hashed, in no order but that each
+    /// stands behind those that it refers to.
+    scene: Scene,
+    /// Nodes and groups when nothing was gone.
+    n_kept: usize,
+    sources: Sources,
+    params: Vec<ParamInfo>,
+    asked: Questions,
+    /// What was spent.
+    spent: Cost,
+    /// Bytes of other files.
+    other_bytes: usize,
+    /// How many statements were evaluated the last time.
+    n_evaluated: usize,
+}
+
+/// Evaluates the scene at `path`, going on from `kept` if that is possible.
+pub(crate) fn load(
+    kept: &mut Option<Box<State>>,
+    path: &Path,
+    files: &dyn Files,
+    registry: &Registry,
+    settings: &Settings,
+) -> Loaded {
+    load_in_turns(kept, (path, files), registry, settings, KEPT)
+}
+
+/// The same of files from so many bytes on.
+fn load_in_turns(
+    kept: &mut Option<Box<State>>,
+    (path, files): (&Path, &dyn Files),
+    registry: &Registry,
+    settings: &Settings,
+    turn: usize,
+) -> Loaded {
+    let is_of = |state: &&mut Box<State>| state.path == path && state.is_set(settings);
+    let again = kept.as_mut().filter(is_of);
+    if let Some(loaded) = again.and_then(|state| state.again(files, registry, settings)) {
+        return loaded;
+    }
+    let files = Remembering::new(files);
+    let mut evaluator = Evaluator::new(&files, registry, settings, turn);
+    evaluator.record = (!settings.noting).then(Record::default);
+    evaluator.root(path, &settings.set);
+    let (loaded, state) = evaluator.finish_recorded(path, settings);
+    if let Some(state) = state {
+        *kept = Some(Box::new(State { asked: files.beside(path), ..state }));
+    } else if let Some(state) = kept {
+        state.n_evaluated = 0;
+    }
+    loaded
+}
+
+impl State {
+    /// How many statements the last load evaluated, if it went on from another one or can be gone on from.
+    pub(crate) fn n_evaluated(&self) -> Option<usize> {
+        Some(self.n_evaluated).filter(|n| *n > 0)
+    }
+
+    fn is_set(&self, now: &Settings) -> bool {
+        let Settings { set, budgets, unloaded, noting, stop: _ } = now;
+        let before = &self.settings;
+        *set == before.set && *budgets == before.budgets && *unloaded == before.unloaded && !noting
+    }
+
+    /// The scene of all statements, with what was told of it as a whole in `evaluator`. `None` if that is
+    /// something, or a setting is given twice.
+    fn gathered(&mut self, evaluator: &mut Evaluator<'_>) -> Option<Loaded> {
+        let mut starts = vec![0; self.n_ids];
+        let mut rare = vec![];
+        for stmt in &self.stmts {
+            starts[stmt.id as usize] = stmt.range.start;
+            rare.extend(stmt.made.rare.as_deref());
+        }
+        let scene = &mut self.scene;
+        (scene.camera, scene.film, scene.integrator) = (None, None, None);
+        (scene.sampler, scene.filter, scene.medium) = (None, None, None);
+        scene.camera_pose = Pose::IDENTITY;
+        for slot in rare.iter().flat_map(|rare| &rare.slots) {
+            if scene.slot_mut(slot.kind)?.replace(slot.id).is_some() {
+                return None;
+            }
+            if slot.kind == luxel_sdk::kind::Kind::Camera {
+                scene.camera_pose = slot.pose.clone();
+            }
+        }
+        let said = rare.iter().flat_map(|rare| &rare.expectations);
+        scene.expectations = said.cloned().collect();
+        evaluator.has_asset = rare.iter().any(|rare| rare.has_asset);
+        let place = |span: Span| in_file(span, &starts);
+        evaluator.scene = self.scene.gathered(&place);
+        evaluator.lacks();
+        if !evaluator.sink.is_empty() {
+            return None;
+        }
+        let param = |param: &ParamInfo| ParamInfo { span: place(param.span), ..param.clone() };
+        Some(Loaded {
+            scene: Some(std::mem::take(&mut evaluator.scene)),
+            diagnostics: vec![],
+            sources: self.sources.clone(),
+            params: self.params.iter().map(param).collect(),
+            values: std::collections::BTreeMap::new(),
+        })
+    }
+}
+
+/// A place in a statement as one in the root file.
+fn in_file(span: Span, starts: &[usize]) -> Span {
+    let Some(id) = span.source.0.checked_sub(STATEMENTS) else { return span };
+    let (start, at) = (starts[id as usize], span.range());
+    Span::new(SourceId(0), start + at.start, start + at.end)
+}

@@ -1,0 +1,90 @@
+//! What was evaluated takes the place of what was kept.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use luxel_core::diag::SourceId;
+use luxel_core::scene::{NodeId, Placed};
+
+use super::State;
+use super::made::Made;
+use super::plan::Plan;
+use crate::eval::Evaluator;
+
+impl State {
+    /// Becomes the state of the new text. `nodes` and `groups` are the numbers here of those that were
+    /// evaluated.
+    pub(super) fn put(
+        &mut self,
+        plan: Plan,
+        mut made: Vec<Made>,
+        text: Arc<str>,
+        evaluator: &mut Evaluator<'_>,
+        [nodes, groups]: [Vec<u32>; 2],
+    ) {
+        let mut evaluated = std::mem::take(&mut evaluator.scene);
+        let open = std::mem::take(&mut evaluator.open_groups);
+        evaluated.root = open.into_iter().next().unwrap_or_default().group;
+        let items = self.scene.take_over(evaluated, &nodes, &groups);
+        self.put_items(&plan, &made, items);
+        for made in &mut made {
+            made.nodes = renamed(&made.nodes, &nodes);
+            made.groups = renamed(&made.groups, &groups);
+            for slot in made.rare.iter_mut().flat_map(|rare| &mut rare.slots) {
+                slot.id = NodeId(nodes[slot.id.0 as usize]);
+            }
+        }
+        let Plan { edit, gone, fresh, tasks, tables, n_names } = plan;
+        self.n_names = n_names;
+        if let Some(tables) = tables {
+            self.tables = tables;
+        }
+        for stmt in &mut self.stmts[gone.end..] {
+            stmt.range = edit.shifted(stmt.range.start)..edit.shifted(stmt.range.end);
+        }
+        self.n_ids += fresh.len();
+        self.stmts.splice(gone, fresh);
+        for (task, made) in tasks.into_iter().zip(made).filter(|(task, _)| task.is_new) {
+            self.stmts[task.i].made = made;
+        }
+        self.sources.replace(SourceId(0), text.clone());
+        self.text = text;
+    }
+
+    /// Puts what stands in the world now in the place of what stood there.
+    fn put_items(&mut self, plan: &Plan, made: &[Made], items: Vec<Placed>) {
+        let mut starts = Vec::with_capacity(self.stmts.len() + 1);
+        let mut start = 0;
+        for stmt in &self.stmts {
+            starts.push(start);
+            start += stmt.made.n_items;
+        }
+        starts.push(start);
+        let n_fresh = plan.fresh.len();
+        let fresh = plan.gone.start..plan.gone.start + n_fresh;
+        let mut changes = vec![(starts[plan.gone.start]..starts[plan.gone.end], vec![])];
+        let mut items = items.into_iter();
+        for (task, made) in plan.tasks.iter().zip(made) {
+            let some = items.by_ref().take(made.n_items);
+            if !task.is_new {
+                some.for_each(drop);
+            } else if fresh.contains(&task.i) {
+                changes[0].1.extend(some);
+            } else {
+                let old = task.i - n_fresh + plan.gone.len();
+                changes.push((starts[old]..starts[old + 1], some.collect()));
+            }
+        }
+        // From the end, so that the places before stay what they are.
+        for (range, some) in changes.into_iter().rev() {
+            self.scene.root.items.splice(range, some);
+        }
+    }
+}
+
+/// Numbers that follow one another, under their new names.
+fn renamed(numbers: &Range<usize>, names: &[u32]) -> Range<usize> {
+    let first = names.get(numbers.start).filter(|_| !numbers.is_empty());
+    let first = first.map_or(0, |first| *first as usize);
+    first..first + numbers.len()
+}

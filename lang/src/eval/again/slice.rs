@@ -1,0 +1,155 @@
+//! Evaluation of some statements of a file, and what of it takes the place of what was kept.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use luxel_core::files::Files;
+use luxel_core::registry::Registry;
+
+use super::made::{Cost, Made};
+use super::plan::{After, Plan, Task};
+use super::{State, Statement};
+use crate::eval::env::{Env, File};
+use crate::eval::exec::{Body, Place};
+use crate::eval::resolve::defines;
+use crate::eval::value::Value;
+use crate::eval::{Evaluator, OpenGroup};
+use crate::syntax::{Tree, read_piece};
+use crate::{Loaded, Settings};
+
+/// A number that nothing has.
+const NONE: u32 = u32::MAX;
+
+/// How many statements may come to another number of things than before: for each, all that stand behind
+/// it are moved.
+const MOVED: usize = 8;
+
+impl State {
+    /// The load that follows an edit; `None` if it cannot go on from this one, which stays as it is or
+    /// is of the new text.
+    pub(super) fn again(
+        &mut self,
+        files: &dyn Files,
+        registry: &Registry,
+        settings: &Settings,
+    ) -> Option<Loaded> {
+        if !self.asked.are_answered_alike(files) || self.is_worn() {
+            return None;
+        }
+        let bytes = files.read(&self.path).ok()?;
+        let budgets = &self.settings.budgets;
+        let n_bytes = self.other_bytes.saturating_add(bytes.len());
+        if bytes.len() > budgets.file_bytes || n_bytes > budgets.total_bytes {
+            return None;
+        }
+        let text: Arc<str> = str::from_utf8(&bytes).ok()?.into();
+        let plan = self.plan(&text)?;
+        let mut evaluator = Evaluator::new(files, registry, settings, usize::MAX);
+        let made = self.evaluate(&plan, &text, &mut evaluator)?;
+        let after = After::of(self, &plan.gone, &plan.fresh);
+        let renamed = self.renamed(&plan.tasks, &made, &after, &plan)?;
+        let spent = self.spent(&plan, &made, &after)?;
+        if evaluator.sink.is_stopped() {
+            return None;
+        }
+        (self.n_evaluated, self.spent) = (plan.tasks.len(), spent);
+        self.put(plan, made, text, &mut evaluator, renamed);
+        self.gathered(&mut evaluator)
+    }
+
+    /// Whether more is gone than is left.
+    fn is_worn(&self) -> bool {
+        self.scene.nodes.len() + self.scene.groups.len() > 2 * self.n_kept + self.stmts.len()
+    }
+
+    /// What each statement of a plan comes to; `None` if something is told of one, or what it does cannot
+    /// be put in the place of what it did.
+    fn evaluate(
+        &self,
+        plan: &Plan,
+        text: &Arc<str>,
+        evaluator: &mut Evaluator<'_>,
+    ) -> Option<Vec<Made>> {
+        let env = self.surroundings(text, evaluator);
+        let mut body = Body::new(Place::File);
+        let mut all = vec![];
+        for Task { stmt, is_new, .. } in &plan.tasks {
+            let mark = evaluator.mark();
+            evaluator.stmts(std::slice::from_ref(stmt), &env, &mut body);
+            let made = evaluator.made_since(&mark);
+            let poisoned = defines(stmt).and_then(|name| env.get(&name.text));
+            let is_poisoned = poisoned.is_some_and(|value| matches!(value, Value::Poison));
+            if is_poisoned || *is_new && made.has_read() {
+                return None;
+            }
+            all.push(made);
+        }
+        let is_good = evaluator.sink.is_empty() && !evaluator.damaged && !evaluator.stopped;
+        let is_alike = evaluator.sources.n_texts() == self.sources.n_texts();
+        (is_good && is_alike && evaluator.labels.sets.is_empty()).then_some(all)
+    }
+
+    /// What stands around the statements of the file, with the texts that were read before.
+    fn surroundings(&self, text: &Arc<str>, evaluator: &mut Evaluator<'_>) -> Env {
+        let Settings { set, budgets, .. } = &self.settings;
+        evaluator.sources.add(self.path.to_string_lossy(), text.clone());
+        let declaring = self.stmts.iter().filter(|stmt| stmt.declares);
+        let read = |stmt: &Statement| {
+            // They stand where they stood: what declares is not among what is gone.
+            let part = &self.text[stmt.range.clone()];
+            read_piece(part, false, super::source_of(stmt.id), budgets).0
+        };
+        let declared = Tree { stmts: declaring.flat_map(read).collect() };
+        let units = evaluator.units(&declared.stmts);
+        let overrides = evaluator.settings(&declared, set);
+        evaluator.sources.add_rest(&self.sources);
+        evaluator.n_foreseen = evaluator.sources.n_texts();
+        evaluator.chain.push((evaluator.files.canonical(&self.path), None));
+        evaluator.open_groups.push(OpenGroup::default());
+        let folder = self.path.parent().map_or_else(Default::default, std::path::Path::to_path_buf);
+        Env::new(Rc::new(File { folder, units, overrides, is_root: true }))
+    }
+
+    /// For nodes and groups that were evaluated, their numbers among those that are kept: those of what is
+    /// as it was, and new ones. `None` if what is as it was has others than before.
+    fn renamed(
+        &self,
+        tasks: &[Task],
+        made: &[Made],
+        after: &After<'_>,
+        plan: &Plan,
+    ) -> Option<[Vec<u32>; 2]> {
+        let narrow = |n: usize| u32::try_from(n).unwrap_or(NONE);
+        let mut next = [narrow(self.scene.nodes.len()), narrow(self.scene.groups.len())];
+        let mut out = [vec![], vec![]];
+        for (task, made) in tasks.iter().zip(made) {
+            let before = &after.get(task.i, &plan.edit).0.made;
+            let kept = [&before.nodes, &before.groups];
+            for (k, now) in [&made.nodes, &made.groups].into_iter().enumerate() {
+                if task.is_new {
+                    out[k].extend(next[k]..next[k] + narrow(now.len()));
+                    next[k] += narrow(now.len());
+                } else if now.len() == kept[k].len() {
+                    out[k].extend(kept[k].clone().map(narrow));
+                } else {
+                    return None;
+                }
+            }
+        }
+        Some(out)
+    }
+
+    /// What is spent now; `None` if that is more than the budgets allow, or many statements have come to
+    /// another number of things.
+    fn spent(&self, plan: &Plan, made: &[Made], after: &After<'_>) -> Option<Cost> {
+        let gone = self.stmts[plan.gone.clone()].iter();
+        let mut spent = gone.fold(self.spent, |sum, stmt| sum.minus(stmt.made.cost));
+        let (mut n_moved, end) = (0, plan.gone.start + plan.fresh.len());
+        for (task, made) in plan.tasks.iter().zip(made).filter(|(task, _)| task.is_new) {
+            let before = &after.get(task.i, &plan.edit).0.made;
+            spent = spent.minus(before.cost).plus(made.cost);
+            n_moved += usize::from(task.i >= end && before.n_items != made.n_items);
+        }
+        (n_moved <= MOVED && spent.is_within(&self.settings.budgets)).then_some(spent)
+    }
+}

@@ -1,0 +1,173 @@
+//! A large file, loaded again after each edit, is what a load from nothing gives.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use luxel_core::diag::Sources;
+use luxel_core::files::MemoryFiles;
+use luxel_core::registry::Registry;
+use luxel_lang::{Kept, Loaded, Settings, load};
+use luxel_sdk::sampling::Rng;
+
+use crate::load::registry;
+
+const CAMERA: &str = "camera perspective { fov = 40 deg, look = look_at(from = (0, 0, 9) m, \
+                      to = (0, 0, 0) m, up = (0, 1, 0)) }";
+
+/// Statements that depend on others, emit, share, declare, read other files, or are wrong.
+const LINES: [&str; 36] = [
+    "let r = 5 cm",
+    "let r = 25 cm",
+    "let grey = material diffuse { reflectance = 0.5 }",
+    "let grey = material diffuse { reflectance = rgb.linear_srgb(0.1, 0.2, size) }",
+    "let shiny = material mix { a = grey, b = material dielectric { }, weight = 0.5 }",
+    "let ball = shape sphere { radius = r, material = grey }",
+    "let pair = group \"pair\" { place ball shape disk { radius = r, material = shiny } }",
+    "let wide = ball with { radius = 2 * r }",
+    "let rows = [for i in 0..3 => i * r]",
+    "fn tower(n: int, step: length = r) { for i in 0..n { place ball { transform = move((0, i, 0) * step) } } }",
+    "fn twice(x: length) = 2 * x",
+    "shape sphere { radius = twice(r), center = (1, 2, 3) m, material = grey }",
+    "shape sphere \"one\" { radius = 1 m }",
+    "shape sphere \"two\" { radius = 1.5 m, material = shiny }",
+    "shape sphere { radius = 1 m }\n// a remark\n",
+    "/// What is said of it.\nshape disk { radius = 3 m, material = grey }",
+    "place pair { transform = move((1, 0, 0) m), material = shiny }",
+    "place wide",
+    "tower(2)",
+    "tower(3, step = 4 cm)",
+    "for x in rows { shape sphere { radius = 1 cm, center = (x, 0, 0) } }",
+    "group \"inner\" { place pair shape disk { radius = 1 cm } }",
+    "if size < 0.5 { place ball } else { place wide }",
+    "light constant { scale = 0.1 }",
+    CAMERA,
+    "film auto { resolution = (32, 16) }",
+    "sampler sobol { samples = 4 }",
+    "expect pixel (20, 10) = 0.5 ± 0.1",
+    "import \"other.scene\" as other",
+    "shape sphere { radius = other.far, material = other.red }",
+    "include \"other.scene\" with { far = 3 m }",
+    "let glass = material dielectric { n = glass(\"BK7\") }",
+    "shape sphere { radius = r, material = glass }",
+    "set one.radius = 7 cm",
+    "material dielectric { }",
+    "@off shape sphere \"three\" { radius = nope }",
+];
+
+/// Half-written things, and what ends statements.
+const PARTS: [&str; 12] =
+    ["7", " ", "\n", "{", "}", "r", "//", "\"", "= ", "let ", "place ball\n", "1 m"];
+
+const OTHER: &str = "scene 1\nparam far: length = 2 m\nlet red = material diffuse { reflectance = rgb.linear_srgb(1, 0, 0) }\n\
+                     shape sphere { radius = far, material = red }\n";
+
+/// What the file begins with, and what makes it large at no cost.
+fn text_of(lines: &[String]) -> String {
+    let head =
+        format!("scene 1\nparam size: float = 0.4 in 0..=1\nunits {{ length = mm }}\n{CAMERA}");
+    format!("{head}\n{}\n//{}\n", lines.join("\n"), " ".repeat(1 << 18))
+}
+
+/// What a load gives, in words that can be compared.
+fn told(loaded: &Loaded) -> String {
+    let texts: Vec<_> = Sources::texts(&loaded.sources).map(str::len).collect();
+    let Loaded { scene, diagnostics, params, .. } = loaded;
+    format!("{scene:#?}\n{diagnostics:#?}\n{params:#?}\n{texts:?}")
+}
+
+/// A file that is edited, and another one that it reads.
+struct Edited {
+    registry: Registry,
+    kept: Kept,
+    settings: Settings,
+    other: String,
+    n_short: usize,
+}
+
+impl Edited {
+    fn load(&mut self, text: &str, step: &str) -> Loaded {
+        let files = || {
+            let other: Arc<[u8]> = self.other.as_bytes().into();
+            MemoryFiles::default().with("a.scene", text.as_bytes()).with("other.scene", other)
+        };
+        let path = Path::new("a.scene");
+        let (short, whole) = (files(), files());
+        let again = self.kept.load(path, &short, &self.registry, &self.settings);
+        let fresh = load(path, &whole, &self.registry, &self.settings);
+        let shown = text.trim_end_matches(['/', ' ', '\n']);
+        assert!(again.scene == fresh.scene, "{step}\n{shown}\n{}\n{}", told(&again), told(&fresh));
+        assert_eq!(told(&again), told(&fresh), "{step}\n{shown}");
+        let mut asked = [short.asked(), whole.asked()];
+        for asked in &mut asked {
+            asked.sort();
+            asked.dedup();
+        }
+        // Where it cannot go on from the last one, it has asked for what that one had read.
+        assert!(asked[1].iter().all(|path| asked[0].contains(path)), "{step}\n{shown}");
+        let n_stmts = text.lines().count();
+        let is_short = self.kept.n_evaluated().is_some_and(|n| n < n_stmts / 3);
+        self.n_short += usize::from(is_short);
+        again
+    }
+}
+
+/// A number below `n`.
+fn pick(rng: &mut Rng, n: usize) -> usize {
+    rng.u32() as usize % n.max(1)
+}
+
+/// Changes some lines, as people and programs do.
+fn edit(lines: &mut Vec<String>, rng: &mut Rng) {
+    let i = pick(rng, lines.len());
+    match pick(rng, 6) {
+        0 => lines.insert(i, LINES[pick(rng, LINES.len())].to_owned()),
+        1 if lines.len() > 4 => drop(lines.remove(i)),
+        2 => lines[i] = LINES[pick(rng, LINES.len())].to_owned(),
+        3 => {
+            let j = pick(rng, lines.len());
+            lines.swap(i, j);
+        }
+        4 => {
+            let at = pick(rng, lines[i].len() + 1);
+            let at = (0..=at).rev().find(|at| lines[i].is_char_boundary(*at)).unwrap_or(0);
+            lines[i].insert_str(at, PARTS[pick(rng, PARTS.len())]);
+        }
+        _ => lines[i] = lines[i].replace(" = ", " =  ").replace('1', "2"),
+    }
+}
+
+#[test]
+fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
+    let (mut n_short, mut n_good, mut n_loads) = (0, 0, 0);
+    for seed in 0..40 {
+        let mut rng = Rng::new(seed);
+        let set = if seed % 4 == 0 { vec![("size".to_owned(), "0.6".to_owned())] } else { vec![] };
+        let settings = Settings { set, ..Settings::default() };
+        let other = OTHER.to_owned();
+        let mut edited =
+            Edited { registry: registry(), kept: Kept::default(), settings, other, n_short: 0 };
+        let good = [0, 2, 4, 5, 6, 8, 9, 10, 11, 12, 14, 15, 18, 20];
+        let mut lines: Vec<String> = good.iter().map(|i| LINES[*i].to_owned()).collect();
+        let mut last = lines.clone();
+        for step in 0..25 {
+            let loaded = edited.load(&text_of(&lines), &format!("seed {seed}, step {step}"));
+            n_loads += 1;
+            if step == 0 {
+                assert!(loaded.scene.is_some(), "{:#?}", loaded.diagnostics);
+            }
+            n_good += usize::from(loaded.scene.is_some());
+            // Mistakes are taken back more often than not, as people do.
+            if loaded.scene.is_some() {
+                last.clone_from(&lines);
+            } else if step % 4 > 0 {
+                lines.clone_from(&last);
+            }
+            edit(&mut lines, &mut rng);
+            if pick(&mut rng, 12) == 0 {
+                edited.other = OTHER.replace("2 m", &format!("{step} m"));
+            }
+        }
+        n_short += edited.n_short;
+    }
+    assert!(n_good * 4 > n_loads && n_short * 4 > n_good, "{n_short} of {n_good} of {n_loads}");
+}

@@ -16,6 +16,7 @@ use crate::files::{Asked, DiskFiles, Known};
 use crate::interrupt::CANCELLED;
 use crate::isolate::{Beat, Phase};
 use crate::libraries::{Plugins, Session, Surroundings};
+use crate::origin::Origin;
 use crate::progress;
 
 /// A scene file as far as it could be read, with everything that was found.
@@ -32,6 +33,8 @@ pub(crate) struct Loaded {
     pub(crate) files: DiskFiles,
     /// What had to be made; the rest was kept.
     pub(crate) anew: Anew,
+    /// How a picture of the stage comes about.
+    pub(crate) origin: Origin,
 }
 
 /// Every class that a scene may name: the built-in ones, and those of trusted libraries.
@@ -105,6 +108,8 @@ pub(crate) struct Text {
     pub(crate) files: DiskFiles,
     /// What may be set.
     pub(crate) params: Vec<ParamInfo>,
+    /// What was set.
+    pub(crate) set: Vec<(String, String)>,
 }
 
 /// Reads a scene, whose picture is to have `size` if one is given.
@@ -154,7 +159,7 @@ pub(crate) fn read(
             args.layers.iter().for_each(|layer| scene.add_layer(*layer));
         }
         let luxel_lang::Loaded { diagnostics, sources, params, .. } = read;
-        Text { scene, diagnostics, sources, files, params }
+        Text { scene, diagnostics, sources, files, params, set: settings.set }
     })?;
     go_on(watch)?;
     text.scene.as_mut().map_or(Ok(()), |scene| args.change_features(scene))?;
@@ -174,7 +179,7 @@ pub(crate) fn build(
     Course { beat, watch, line: shown, .. }: &Course,
 ) -> Result<Loaded, Failure> {
     let loaded = blaming(&path.display().to_string(), || {
-        let Text { scene, mut diagnostics, sources, files, .. } = text;
+        let Text { scene, mut diagnostics, sources, files, set, .. } = text;
         beat.building(watch);
         let build = |scene: &Scene| {
             // Of what is not wanted any more nothing is told.
@@ -198,7 +203,9 @@ pub(crate) fn build(
             Some(Err(Unbuilt::Cancelled)) | None => None,
         };
         let stage = stage.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
-        Loaded { scene, stage, diagnostics, sources, files, anew }
+        let origin = |stage: &Stage| Origin::of(&set, &stage.scene, &plugins.registry, &sources);
+        let origin = stage.as_ref().map(origin).unwrap_or_default();
+        Loaded { scene, stage, diagnostics, sources, files, anew, origin }
     })?;
     go_on(watch)?;
     Ok(loaded)

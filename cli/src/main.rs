@@ -22,6 +22,7 @@ mod list;
 mod load;
 mod lsp;
 mod measure;
+mod origin;
 mod output;
 mod picture;
 mod plugin;

@@ -125,7 +125,7 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let _whole = guard.saving();
     beat.phase(Phase::Saving);
     let Measured { film, outcome, seconds } = &measured;
-    let (of, took) = ((stage, &loaded.files), (*seconds, control.samples_done()));
+    let (of, took) = ((stage, &loaded.files, &loaded.origin), (*seconds, control.samples_done()));
     let summary = Summary::new(of, &options, (film, *outcome), took);
     save(args, (stage, &summary), &measured, &output, &mut kept)
 }

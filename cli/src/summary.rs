@@ -8,6 +8,7 @@ use luxel_core::stage::Stage;
 use serde_json::{Value, json};
 
 use crate::files::DiskFiles;
+use crate::origin::Origin;
 use crate::output::Output;
 use crate::picture::Notes;
 use crate::progress::duration;
@@ -40,6 +41,7 @@ pub(crate) struct Summary {
     error: Option<Errors>,
     scene: String,
     files: String,
+    origin: Origin,
     /// What the scene requires and was not modelled.
     dropped: Vec<Feature>,
     /// What the numbers of layers mean, by layer: names, the first of which is number 1.
@@ -50,7 +52,7 @@ pub(crate) struct Summary {
 
 impl Summary {
     pub(crate) fn new(
-        (stage, files): (&Stage, &DiskFiles),
+        (stage, files, origin): (&Stage, &DiskFiles, &Origin),
         options: &Options,
         (film, outcome): (&Film, Outcome),
         (seconds, samples): (f64, u64),
@@ -83,6 +85,7 @@ impl Summary {
             error: Errors::of_film(film, goal.error.unwrap_or(f64::INFINITY)),
             scene: hex(stage.scene.hash()),
             files: files.hash().to_hex().to_string(),
+            origin: origin.clone(),
             dropped: stage.scene.left_out().collect(),
             names: names(stage, film),
             bad: film.bad_samples(),
@@ -96,6 +99,7 @@ impl Summary {
 
     fn settings(&self) -> Value {
         let mut settings = self.common_settings();
+        self.origin.say(&mut settings);
         self.say_reached(&mut settings);
         if self.names.as_object().is_some_and(|names| !names.is_empty()) {
             settings["names"] = self.names.clone();

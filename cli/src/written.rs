@@ -7,6 +7,14 @@ use luxel_core::registry::Registry;
 use luxel_core::scene::{Argument, Node, Value};
 use luxel_sdk::params::{Dimension, Unit};
 
+/// A class with its parameters as a scene gives them: `path { max_depth = 8 }`.
+pub(crate) fn node(node: &Node, value: impl Fn(&Argument) -> String) -> String {
+    let fields = node.params.iter().map(|given| format!("{} = {}", given.name, value(given)));
+    let fields = fields.collect::<Vec<_>>().join(", ");
+    let inside = if fields.is_empty() { "{}".to_owned() } else { format!("{{ {fields} }}") };
+    format!("{} {inside}", node.class)
+}
+
 /// The value of a parameter, as it is written.
 pub(crate) fn value(
     argument: &Argument,

@@ -23,6 +23,7 @@ mod isolate;
 mod judged;
 mod libraries;
 mod lsp;
+mod origin;
 mod plugin;
 #[cfg(test)]
 pub(crate) mod program;

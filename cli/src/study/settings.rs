@@ -2,11 +2,11 @@
 
 use luxel_core::diag::Sources;
 use luxel_core::registry::Registry;
-use luxel_core::scene::{Node, Scene, Setting, Value};
+use luxel_core::scene::{Argument, Node, Scene, Setting, Value};
 use luxel_sdk::params::Dimension as Unit;
 
 use super::sweep::Change;
-use crate::written::value;
+use crate::written;
 
 /// The sampler with its number of samples, and what else differs from the scene.
 ///
@@ -37,9 +37,6 @@ pub(super) fn lines(
 }
 
 fn line(node: &Node, registry: &Registry, sources: &Sources) -> String {
-    let field = |argument| value(argument, node, registry, sources);
-    let fields = node.params.iter().map(|given| format!("{} = {}", given.name, field(given)));
-    let fields = fields.collect::<Vec<_>>().join(", ");
-    let inside = if fields.is_empty() { "{}".to_owned() } else { format!("{{ {fields} }}") };
-    format!("{} {} {inside}", node.kind, node.class)
+    let value = |argument: &Argument| written::value(argument, node, registry, sources);
+    format!("{} {}", node.kind, written::node(node, value))
 }

@@ -35,7 +35,7 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
         return Ok(Exit::Fine);
     }
     report::diagnostics(&loaded.diagnostics, &loaded.sources, args.form(), Stream::Error)?;
-    let Loaded { stage: Some(stage), files, sources, .. } = loaded else {
+    let Loaded { stage: Some(stage), files, sources, origin, .. } = loaded else {
         return Ok(Exit::Input);
     };
     let (control, guard) = (Arc::new(Control::default()), Guard::default());
@@ -43,7 +43,7 @@ pub(super) fn one(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let interrupt = guard.on_ctrl_c(move || stop.cancel())?;
     beat.rendering(&control, interrupt);
     let course = Course { control: &control, guard: &guard, beat };
-    let read = Arc::new(Read { files, sources });
+    let read = Arc::new(Read { files, sources, origin });
     let sitting = Sitting::new(Arc::new(stage), read, None);
     sitting.render(args, &course, &mut |_, _| {})?;
     let _whole = guard.saving();

@@ -261,7 +261,7 @@ impl<'scope> Watching<'scope, '_> {
             self.audience.page().inspect(|page| page.problems(&told));
             self.has_told = loaded.stage.is_none();
         }
-        let Loaded { scene, stage, files, sources, mut diagnostics, anew } = loaded;
+        let Loaded { scene, stage, files, sources, mut diagnostics, anew, origin } = loaded;
         if let (Some(stage), Some(scene)) = (stage, scene) {
             self.is_good = true;
             let before = self.shown.as_ref().map(|Shown { subject, .. }| subject);
@@ -272,7 +272,7 @@ impl<'scope> Watching<'scope, '_> {
             self.tell(&edit.words(), report::aside);
             self.audience.page().inspect(|page| page.changed(edit.words()));
             let (scene, stage) = (Arc::new(scene), Arc::new(stage));
-            let read = Arc::new(Read { files, sources });
+            let read = Arc::new(Read { files, sources, origin });
             let warnings = diagnostics.split_off(n_told.min(diagnostics.len()));
             self.turn_to(Subject { scene, stage, read, files: watched, texts, warnings }, edit);
         }

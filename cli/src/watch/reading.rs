@@ -145,10 +145,10 @@ mod tests {
             registry.add("builtin", classes).unwrap();
         }
         let files = DiskFiles::new(path, &[]);
-        let settings = luxel_lang::Settings { set, ..Default::default() };
+        let settings = luxel_lang::Settings { set: set.clone(), ..Default::default() };
         let luxel_lang::Loaded { scene, diagnostics, sources, params, .. } =
             luxel_lang::load(path, &files, &registry, &settings);
-        Text { scene, diagnostics, sources, files, params }
+        Text { scene, diagnostics, sources, files, params, set }
     }
 
     fn scene(params: &str, from: &str) -> String {

@@ -14,6 +14,7 @@ use crate::files::DiskFiles;
 use crate::interrupt::Guard;
 use crate::isolate::{Beat, Phase};
 use crate::measure::{self, Measured};
+use crate::origin::Origin;
 use crate::output::Output;
 use crate::picture;
 use crate::report::{self, Stream};
@@ -23,6 +24,7 @@ use crate::summary::Summary;
 pub(super) struct Read {
     pub(super) files: DiskFiles,
     pub(super) sources: Sources,
+    pub(super) origin: Origin,
 }
 
 /// How a render is ended from outside, and what is told of it.
@@ -282,7 +284,7 @@ impl Print {
         let (Measured { film, outcome, seconds }, samples) = &**done;
         let output = output((stage, read), args)?;
         beat.phase(Phase::Saving);
-        let (of, took) = ((&**stage, &read.files), (*seconds, *samples));
+        let (of, took) = ((&**stage, &read.files, &read.origin), (*seconds, *samples));
         let summary = Summary::new(of, &args.render.options(), (film, *outcome), took);
         picture::write(&output, film, &stage.film, &summary.notes())?;
         if args.json {

@@ -33,7 +33,8 @@ fn subject(folder: &Folder, samples: u32) -> (Arc<Stage>, Arc<Read>) {
     let settings = luxel_lang::Settings::default();
     let read = luxel_lang::load(&path, &files, &registry, &settings);
     let stage = luxel_core::stage::build(&read.scene.unwrap(), &registry, &files, None);
-    (Arc::new(stage.unwrap().stage), Arc::new(Read { files, sources: read.sources }))
+    let read = Read { files, sources: read.sources, origin: Origin::default() };
+    (Arc::new(stage.unwrap().stage), Arc::new(read))
 }
 
 fn edit(word: &str) -> Edit {

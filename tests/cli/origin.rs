@@ -28,7 +28,7 @@ fn rendered(name: &str) -> (Folder, Value, Vec<u8>) {
 }
 
 /// The attribute `luxel` of an EXR.
-fn attribute(exr: &[u8]) -> Value {
+pub(super) fn attribute(exr: &[u8]) -> Value {
     let begin = b"luxel\0string\0";
     let at = exr.windows(begin.len()).position(|part| part == begin).unwrap() + begin.len();
     let (length, text) = exr[at..].split_first_chunk().unwrap();

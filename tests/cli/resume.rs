@@ -5,6 +5,8 @@ use std::time::Duration;
 use luxel_core::film::Film;
 use luxel_sdk::sampling::Rng;
 
+#[cfg(unix)]
+use super::origin::attribute;
 use super::program::{Folder, SCENE};
 use super::until;
 
@@ -48,6 +50,45 @@ fn killed(asked: &[&str], times: u32) {
     let last = folder.luxel(&[&args[..], &["--json"]].concat());
     assert_eq!((last.code, whole.code), (0, 0), "{last:?}");
     assert!(folder.read("left.exr") == folder.read("whole.exr"));
+    assert!(!folder.path("left.checkpoint").exists());
+}
+
+/// More samples than a test can wait for.
+#[cfg(unix)]
+const ENDLESS: &str = "4000000000";
+
+#[cfg(unix)]
+#[test]
+fn a_render_that_is_interrupted_leaves_a_picture_and_goes_on_to_the_same_as_an_undisturbed_one() {
+    let folder = Folder::new("stopped").with("a.scene", SCENE);
+    let args = ["render", "a.scene", "--json", "-o", "left", "--checkpoint", "0.02"];
+    let mut running = folder.start(&[&args[..], &["--spp", ENDLESS]].concat());
+    until("a checkpoint", || folder.path("left.checkpoint").exists());
+    running.interrupt();
+    let done = running.end();
+    assert_eq!(done.code, 3, "{done:?}");
+    assert_eq!(folder.names(), ["a.scene", "left.checkpoint", "left.exr", "left.png"]);
+    // The picture is whole as a file, and says that it is not as a measurement.
+    let about = attribute(&folder.read("left.exr"));
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    assert_eq!(
+        (&about["complete"], &about["most_samples"]),
+        (&false.into(), &told["most_samples"])
+    );
+    assert_eq!(folder.luxel(&["compare", "left.exr", "left.exr"]).code, 0);
+    assert!(folder.read("left.png").ends_with(b"IEND\xae\x42\x60\x82"));
+    // A little more than it has: by going on, and without a stop.
+    let number = |told: &serde_json::Value, name: &str| told[name].as_u64().unwrap();
+    let (before, wanted) = (number(&told, "samples"), number(&told, "most_samples") + 50);
+    assert!(before > 0, "{told}");
+    let spp = wanted.to_string();
+    let resumed = folder.luxel(&[&args[..], &["--resume", "--spp", &spp]].concat());
+    let whole = folder.luxel(&["render", "a.scene", "-q", "-o", "whole", "--spp", &spp]);
+    assert_eq!((resumed.code, whole.code), (0, 0), "{resumed:?} {whole:?}");
+    let told = serde_json::from_str(&resumed.out).unwrap();
+    assert_eq!(before + number(&told, "samples"), 32 * 32 * wanted, "it began anew");
+    assert!(folder.read("left.exr") == folder.read("whole.exr"), "at {spp} samples");
+    assert!(folder.read("left.png") == folder.read("whole.png"));
     assert!(!folder.path("left.checkpoint").exists());
 }
 

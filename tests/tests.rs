@@ -38,7 +38,7 @@ mod fenced;
 #[cfg(test)]
 mod fuzz;
 #[cfg(test)]
-#[path = "../cli/src/verify/generated.rs"]
+#[path = "../cli/src/generated.rs"]
 mod generated;
 #[cfg(test)]
 mod goals;

@@ -21,11 +21,12 @@ use crate::series::Series;
 /// The library is missing or does not open; the program failed.
 pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
     println!(
-        "pictures, 256 x 256, {SPP} spp, processor seconds of the whole process, {ROUNDS} rounds \
-              in turn (goal 1.10)"
+        "pictures, {0} x {0}, {SPP} spp, processor seconds of the whole process, {1} rounds \
+              in turn (goal 1.10)",
+        WHOLE.size, WHOLE.rounds
     );
     println!("  {:18} {:>9} {:>9} {:>7} {:>9}", "scene", "linked", "loaded", "ratio", "spread");
-    for (name, both) in PICTURES.into_iter().zip(pictures(luxel)?) {
+    for (name, both) in PICTURES.into_iter().zip(pictures(luxel, WHOLE)?) {
         println!(
             "  {name:18} {:7.3} s {:7.3} s {:7.3} {:7.1} %",
             both.linked.min(),
@@ -39,7 +40,7 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
 
 /// The library of the built-ins in the folder of the program.
 fn library(luxel: &Luxel) -> Result<PathBuf, String> {
-    let words = ["rustc", "--release", "-p", "luxel-builtin-library", "--crate-type", "cdylib"];
+    let words = ["rustc", "-p", "luxel-builtin-library", "--crate-type", "cdylib"];
     process::library(luxel, "builtins", &words)
 }
 
@@ -61,8 +62,16 @@ impl Both {
     }
 }
 
-/// Rounds of pictures, each of both ways.
-const ROUNDS: usize = 7;
+/// How much is measured.
+#[derive(Clone, Copy)]
+pub(crate) struct Amount {
+    /// Width and height of the pictures.
+    pub(crate) size: u32,
+    /// Rounds of pictures, each of both ways.
+    pub(crate) rounds: usize,
+}
+
+pub(crate) const WHOLE: Amount = Amount { size: 256, rounds: 7 };
 /// Samples per pixel: enough that opening the library does not count.
 const SPP: u32 = 64;
 
@@ -73,15 +82,18 @@ const PICTURES: [&str; 2] = ["cornell_rgb", "glass_metal"];
 ///
 /// # Errors
 /// As `run`.
-pub(crate) fn pictures(luxel: &Luxel) -> Result<Vec<Both>, String> {
+pub(crate) fn pictures(
+    luxel: &Luxel,
+    Amount { size, rounds }: Amount,
+) -> Result<Vec<Both>, String> {
     let flag = format!("--builtins={}", library(luxel)?.display());
     let mut found = vec![];
     for name in PICTURES {
         let scene = here().join(format!("scenes/{name}.scene"));
         let (mut linked, mut loaded) = (vec![], vec![]);
-        for _ in 0..ROUNDS {
-            linked.push(luxel.render_with(&scene, 256, SPP, &[])?.cpu);
-            loaded.push(luxel.render_with(&scene, 256, SPP, &[&flag])?.cpu);
+        for _ in 0..rounds {
+            linked.push(luxel.render_with(&scene, size, SPP, &[])?.cpu);
+            loaded.push(luxel.render_with(&scene, size, SPP, &[&flag])?.cpu);
         }
         found.push(Both { linked: Series::from(linked), loaded: Series::from(loaded) });
     }

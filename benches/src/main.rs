@@ -15,7 +15,7 @@ mod editor;
 mod errors;
 mod evaluate;
 mod features;
-#[path = "../../cli/src/verify/generated.rs"]
+#[path = "../../cli/src/generated.rs"]
 mod generated;
 mod graph;
 mod lean;

@@ -13,6 +13,9 @@ use crate::series::Series;
 /// The word that makes this program read a text once.
 const ONCE: &str = "parse-once";
 
+/// Measurements of a rate.
+pub(crate) const ROUNDS: usize = 5;
+
 /// Processor seconds of one measurement.
 const LEAST: f64 = 0.4;
 
@@ -92,7 +95,7 @@ pub(crate) fn run() -> Result<(), String> {
         let text = case.scene();
         print!("  {:12} {:5.1} MB", case.name, text.len() as f64 / 1e6);
         for reader in &READERS {
-            let series = rates(&text, reader);
+            let series = rates(&text, reader, ROUNDS);
             let held = peak(case, reader)? / text.len() as f64;
             print!(
                 "   {} {:6.1} MB/s (spread {:2.0} %), {held:4.1} bytes a byte",
@@ -107,14 +110,13 @@ pub(crate) fn run() -> Result<(), String> {
     Ok(())
 }
 
-/// Megabytes per second of processor time of the reader that is in use.
-pub(crate) fn ours(case: &Case) -> Series {
-    rates(&case.scene(), &READERS[0])
+/// Megabytes per second of processor time of the reader that is in use, measured so many times.
+pub(crate) fn ours(case: &Case, times: usize) -> Series {
+    rates(&case.scene(), &READERS[0], times)
 }
 
-/// Of five measurements.
-fn rates(text: &str, reader: &Reader) -> Series {
-    Series::of(5, || rate(text, reader))
+fn rates(text: &str, reader: &Reader, times: usize) -> Series {
+    Series::of(times, || rate(text, reader))
 }
 
 /// How long a mistake inside many objects takes, on the wall.

@@ -14,6 +14,9 @@ shape sphere { radius = 1 m, material = material diffuse {} }
 light area { shape = shape sphere { center = (0, 5, 0) m, radius = 1 m }, radiance = 1 W/m^2/sr }
 ";
 
+/// Starts that are timed.
+pub(crate) const STARTS: usize = 20;
+
 /// What starting the program takes.
 pub(crate) struct Start {
     /// From its start to its end with a trivial picture on disk, milliseconds.
@@ -27,21 +30,21 @@ pub(crate) struct Start {
 /// # Errors
 /// The program failed; its words.
 pub(crate) fn cold(luxel: &Luxel) -> Result<(), String> {
-    let Start { ms, mb } = start(luxel)?;
-    println!("start to a trivial 64 x 64 picture, whole process, 20 runs (goal 20 ms)");
+    let Start { ms, mb } = start(luxel, STARTS)?;
+    println!("start to a trivial 64 x 64 picture, whole process, {STARTS} runs (goal 20 ms)");
     println!("  min {:.1} ms, median {:.1} ms, peak {:.0} MiB", ms.min(), ms.median(), mb.median());
     Ok(())
 }
 
-/// Starts the program many times.
+/// Starts the program so many times.
 ///
 /// # Errors
 /// The program failed; its words.
-pub(crate) fn start(luxel: &Luxel) -> Result<Start, String> {
+pub(crate) fn start(luxel: &Luxel, times: usize) -> Result<Start, String> {
     let scene = write("trivial.scene", TRIVIAL.as_bytes())?;
     luxel.render(&scene, 64, 1)?;
     let (mut ms, mut mb) = (vec![], vec![]);
-    for _ in 0..20 {
+    for _ in 0..times {
         let took = luxel.render(&scene, 64, 1)?;
         ms.push(took.seconds * 1e3);
         mb.extend(took.megabytes);

@@ -8,9 +8,16 @@ use serde_json::Value;
 use crate::process::{Luxel, has_mitsuba, here, write};
 use crate::series::Series;
 
-/// Vertices along each side of the grid: 2 · 1023² = 2,093,058 triangles.
-const SIDE: u32 = 1024;
-const ROUNDS: usize = 5;
+/// How much is measured.
+#[derive(Clone, Copy)]
+pub(crate) struct Amount {
+    /// Vertices along each side of the grid.
+    pub(crate) side: u32,
+    pub(crate) rounds: usize,
+}
+
+/// 2 · 1023² = 2,093,058 triangles.
+pub(crate) const WHOLE: Amount = Amount { side: 1024, rounds: 5 };
 
 const SCENE: &str = "scene 1
 camera perspective { look = look_at(from = (0, 2, 3) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }
@@ -33,9 +40,9 @@ pub(crate) struct Loaded {
 /// # Errors
 /// As `measure`.
 pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
-    let n = 2 * (SIDE - 1) * (SIDE - 1);
+    let n = 2 * (WHOLE.side - 1) * (WHOLE.side - 1);
     println!("binary PLY of {n} triangles, read and built (goals: 1 s, 300 MiB)");
-    for Loaded { program, seconds, memory, spread } in measure(luxel, python)? {
+    for Loaded { program, seconds, memory, spread } in measure(luxel, python, WHOLE)? {
         let spread = spread.map_or(String::new(), |spread| format!(" (spread {spread:.0} %)"));
         println!("  {program:11} {seconds:.2} s{spread}, peak {memory:.0} MiB");
     }
@@ -46,13 +53,17 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
 ///
 /// # Errors
 /// A program failed; its words.
-pub(crate) fn measure(luxel: &Luxel, python: Option<&Path>) -> Result<Vec<Loaded>, String> {
-    let ply = write("waves.ply", &grid(SIDE))?;
+pub(crate) fn measure(
+    luxel: &Luxel,
+    python: Option<&Path>,
+    Amount { side, rounds }: Amount,
+) -> Result<Vec<Loaded>, String> {
+    let ply = write("waves.ply", &grid(side))?;
     let empty = write("empty.scene", SCENE.as_bytes())?;
     let mesh = "shape mesh \"waves\" { file = \"waves.ply\", unit = 1 m }\n";
     let full = write("waves.scene", format!("{SCENE}{mesh}").as_bytes())?;
     let (mut seconds, mut memory) = (vec![], vec![]);
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         let (with, without) = (luxel.render(&full, 8, 1)?, luxel.render(&empty, 8, 1)?);
         seconds.push(with.seconds - without.seconds);
         memory.extend(with.megabytes);

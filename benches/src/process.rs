@@ -124,7 +124,8 @@ pub(crate) fn has_mitsuba(python: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-/// A library in the folder of the program; where none is there, `cargo` makes it with these words.
+/// A library in the folder of the program; where none is there, `cargo` makes it with these words, and
+/// with the program's profile.
 ///
 /// # Errors
 /// It is not built, or elsewhere.
@@ -133,7 +134,9 @@ pub(crate) fn library(luxel: &Luxel, name: &str, words: &[&str]) -> Result<PathB
     let library = luxel.program.with_file_name(name);
     if !library.exists() {
         let mut cargo = Command::new("cargo");
-        let built = cargo.args(words).current_dir(here()).status();
+        let is_release = luxel.program.parent().is_some_and(|folder| folder.ends_with("release"));
+        cargo.args(words).args(is_release.then_some("--release"));
+        let built = cargo.current_dir(here()).status();
         built.map_err(|error| format!("cargo: {error}"))?;
     }
     let told = || format!("no {}: `cargo {}` makes it", library.display(), words.join(" "));

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 use crate::process::{self, Luxel, read, scratch, write};
 use crate::series::Series;
 
-const RELOADS: usize = 200;
+pub(crate) const RELOADS: usize = 200;
 /// Patience with one reload.
 const LONGEST: Duration = Duration::from_secs(20);
 
@@ -34,7 +34,7 @@ pub(crate) struct Reloads {
 /// # Errors
 /// As `measure`.
 pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
-    let Reloads { ms, grown, file } = measure(luxel)?;
+    let Reloads { ms, grown, file } = measure(luxel, RELOADS)?;
     println!(
         "reload in `luxel watch`: from the library's rename to the written 64 x 64 picture, \
               {RELOADS} reloads (goal 50 ms)"
@@ -49,12 +49,12 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
     Ok(())
 }
 
-/// Puts a library in the place of a watched one, many times.
+/// Puts a library in the place of a watched one so many times.
 ///
 /// # Errors
 /// The example library is missing, or the watch never answers.
-pub(crate) fn measure(luxel: &Luxel) -> Result<Reloads, String> {
-    let original = process::library(luxel, "velvet", &["build", "--release", "-p", "velvet"])?;
+pub(crate) fn measure(luxel: &Luxel, times: usize) -> Result<Reloads, String> {
+    let original = process::library(luxel, "velvet", &["build", "-p", "velvet"])?;
     let bytes = read(&original)?;
     let name = original.file_name().expect("a library is a file");
     let scene = write("reload.scene", SCENE.as_bytes())?;
@@ -65,7 +65,8 @@ pub(crate) fn measure(luxel: &Luxel) -> Result<Reloads, String> {
     let _ = std::fs::remove_file(picture.with_extension("exr"));
     put(&library, &bytes)?;
     let mut watch = watch(luxel, &scene, &folder, &picture)?;
-    let measured = reloads(&mut watch, &bytes, &library, &picture.with_extension("exr"));
+    let places = (library.as_path(), &*picture.with_extension("exr"));
+    let measured = reloads(&mut watch, &bytes, places, times);
     let _ = watch.kill();
     let _ = watch.wait();
     let (ms, grown) = measured?;
@@ -82,12 +83,12 @@ fn watch(luxel: &Luxel, scene: &Path, folder: &Path, out: &Path) -> Result<Child
 fn reloads(
     watch: &mut Child,
     bytes: &[u8],
-    library: &Path,
-    picture: &Path,
+    (library, picture): (&Path, &Path),
+    times: usize,
 ) -> Result<(Vec<f64>, Option<f64>), String> {
     let mut seen = newer(picture, None, watch)?;
     let (mut ms, mut memory) = (vec![], vec![]);
-    for i in 0..RELOADS {
+    for i in 0..times {
         // Bytes behind the end are not loaded, and make another file of it.
         let mut changed = bytes.to_vec();
         changed.extend((i as u64).to_le_bytes());
@@ -99,9 +100,11 @@ fn reloads(
         memory.extend(resident(watch.id()));
     }
     // The first ones fill caches.
-    let warm = RELOADS / 10;
-    let grown = (memory.len() == RELOADS)
-        .then(|| (memory[RELOADS - 1] - memory[warm]) / (RELOADS - 1 - warm) as f64);
+    let behind = memory.get(times / 10..).filter(|_| memory.len() == times).unwrap_or_default();
+    let grown = match behind {
+        [first, .., last] => Some((last - first) / (behind.len() - 1) as f64),
+        _ => None,
+    };
     Ok((ms, grown))
 }
 

@@ -14,6 +14,9 @@ mod exit;
 mod explain;
 mod files;
 mod fmt;
+mod generated;
+#[cfg(test)]
+mod generated_tests;
 mod goal;
 mod interrupt;
 mod isolate;

@@ -1,8 +1,11 @@
-//! Folders that tests write to.
+//! Folders that tests write to, and the document that shows what they find.
 
 use std::fs;
 use std::io;
 use std::path::PathBuf;
+
+#[path = "../../tests/published.rs"]
+pub(crate) mod published;
 
 /// A folder of one test's own, removed in the end.
 pub(crate) struct Folder(PathBuf);

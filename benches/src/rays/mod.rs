@@ -106,21 +106,29 @@ pub(crate) fn run(given: Option<&Path>, python: Option<&Path>) {
     for field in [
         Field { name: "small", soup: knot(375, 94), eye: near },
         Field { name: "large", soup: knot(1341, 335), eye: near },
-        huge(),
+        knots(FINE),
     ] {
         mesh(&field, library.as_ref());
     }
 }
 
-fn huge() -> Field {
-    Field { name: "huge", soup: eight(&knot(1341, 335)), eye: Vec3::new(0.9, 2.4, 4.4) }
+/// Steps along and around each of the knots that the largest mesh is made of.
+pub(crate) const FINE: [u32; 2] = [1341, 335];
+
+/// Eight knots of so many steps along and around.
+fn knots([along, around]: [u32; 2]) -> Field {
+    Field { name: "huge", soup: eight(&knot(along, around)), eye: Vec3::new(0.9, 2.4, 4.4) }
 }
 
-/// Rays per second in turns through the largest mesh, in parts of those of Embree's default: the least
-/// and the greatest of all sets. `None` without Embree.
-pub(crate) fn in_turns(given: Option<&Path>, python: Option<&Path>) -> Option<[f64; 2]> {
+/// Rays per second in turns through eight knots of so many steps, in parts of those of Embree's default:
+/// the least and the greatest of all sets. `None` without Embree.
+pub(crate) fn in_turns(
+    given: Option<&Path>,
+    python: Option<&Path>,
+    steps: [u32; 2],
+) -> Option<[f64; 2]> {
     let library = embree::load(&embree_path(given, python))?;
-    let field = huge();
+    let field = knots(steps);
     let runners = [turns(&field.soup), with_embree(&library, &field.soup, EMBREE)?];
     let best = race(&runners, &field.sets(&runners[0]));
     let ratios = best[0].iter().zip(&best[1]).map(|(ours, theirs)| theirs.min() / ours.min());

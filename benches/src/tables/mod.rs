@@ -20,13 +20,19 @@ use studied::STUDIES;
 /// The documents, below the project's folder.
 const ACCURACY: &str = "docs/accuracy.md";
 const PERFORMANCE: &str = "docs/performance.md";
+const README: &str = "README.md";
 /// Where the plots of studies stand.
 const IMAGES: &str = "docs/images";
+
+/// Packages, and those of their tests that write what they find.
+const TESTS: [[&str; 2]; 2] =
+    [["luxel-tests", "intervals_hold_the_truth"], ["luxel", "compare::trials"]];
 
 /// The names of their parts.
 const ASKED: &str = "asked";
 const SAID: &str = "said";
 const DENOISED: &str = "denoised";
+const CALIBRATION: &str = "calibration";
 const MANY: &str = "many";
 const FURNACE: &str = "furnace";
 const REGIONS: &str = "peers";
@@ -63,11 +69,13 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     let (luxel, place) = (&plan.luxel, root.join(ACCURACY));
     told(Command::new(&luxel.program).args(["verify", "--write"]).arg(&place))?;
     errors::run(Some(&place), errors::RAYS)?;
-    let tests = ["test", "-p", "luxel-tests", "intervals_hold_the_truth"];
-    told(Command::new("cargo").args(tests).env("LUXEL_WRITE_DOCS", "1").current_dir(root))?;
+    for [package, tests] in TESTS {
+        let words = ["test", "-p", package, tests];
+        told(Command::new("cargo").args(words).env("LUXEL_WRITE_DOCS", "1").current_dir(root))?;
+    }
     write(&place, MANY, &many(root, "1e9")?)?;
     renders(luxel, &place, Path::new(IMAGES), Form::Whole)?;
-    readme::alone(plan, root)?;
+    readme::alone(plan, &root.join(README), Form::Whole)?;
     let Some(python) = plan.python.as_deref().filter(|python| has_mitsuba(python)) else {
         println!(
             "Mitsuba is not to be had (--python PATH of one that imports it): what is measured beside it stays as it is"
@@ -79,19 +87,22 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     write(&place, REGIONS, &found.regions()?)?;
     write(&place, BLOCKS, &found.blocks()?)?;
     write(&root.join(PERFORMANCE), SPEED, &found.speed()?)?;
-    readme::beside(&found, root)
+    readme::beside(&found, &root.join(README))
 }
 
-/// Makes those tables of docs/accuracy.md that no test makes, of next to nothing and in a copy.
+/// Makes those tables of docs/accuracy.md that no test makes, and the rows of the README, of next to nothing
+/// and in copies; without another renderer what is measured beside it is left out.
 ///
 /// # Errors
 /// What a command or the disk says.
 pub(crate) fn short(plan: &Plan) -> Result<(), String> {
     let place = process::write("accuracy.md", &read(&root()?.join(ACCURACY))?)?;
+    let readme = process::write(README, &read(&root()?.join(README))?)?;
     errors::run(Some(&place), 100)?;
     write(&place, MANY, &many(root()?, "1e6")?)?;
     write(&place, FURNACE, &furnace::tables(root()?, None, Form::Short)?)?;
-    renders(&plan.luxel, &place, &scratch()?, Form::Short)
+    renders(&plan.luxel, &place, &scratch()?, Form::Short)?;
+    readme::alone(plan, &readme, Form::Short)
 }
 
 /// What the film's test of the mean of so many samples of a pixel says.
@@ -111,6 +122,7 @@ fn renders(luxel: &Luxel, place: &Path, images: &Path, form: Form) -> Result<(),
     write(place, SAID, &said::table(root, form)?)?;
     write(place, ASKED, &asked::table(root, form)?)?;
     write(place, DENOISED, &denoised::table(luxel, root, form)?)?;
+    write(place, CALIBRATION, &studied::calibration(luxel, root)?)?;
     STUDIES
         .iter()
         .try_for_each(|study| write(place, &study.name(), &study.run(luxel, root, images, form)?))
@@ -159,6 +171,9 @@ mod tests {
             "errors",
             "coverage",
             "coverage-asked",
+            "trials-same",
+            "trials-different",
+            CALIBRATION,
             SAID,
             ASKED,
             MANY,

@@ -73,6 +73,22 @@ impl Found {
         Ok(Self { accuracy: asked("accuracy", accuracy)?, speed: asked("speed", &speed)? })
     }
 
+    /// The same figures everywhere, to try what is made of them.
+    #[cfg(test)]
+    pub(super) fn made_up() -> Self {
+        use serde_json::json;
+
+        let regions = REGIONS.map(|(_, region)| (region, json!(vec![[-0.002, 0.001]; 3])));
+        let regions: Value = regions.into_iter().map(|(name, it)| (name.to_owned(), it)).collect();
+        let accuracy =
+            CHANNELS.map(|(_, scene, _)| (scene.to_owned(), json!({ "regions": regions })));
+        let figures = json!({ "rate": 1.5, "efficiency": 250.0 });
+        let programs = PROGRAMS.map(|(_, program)| (program.to_owned(), figures.clone()));
+        let programs: Value = programs.into_iter().collect();
+        let speed = TIMED.map(|(_, scene)| (scene.to_owned(), programs.clone()));
+        Self { accuracy: accuracy.into_iter().collect(), speed: speed.into_iter().collect() }
+    }
+
     /// Luxel / Mitsuba − 1 of a region's mean, and its standard error.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Form, answer, luxel};
+use super::{Form, answer, luxel, told};
 use crate::process::Luxel;
 
 /// A scene, and the error that its settings are to reach.
@@ -16,6 +16,15 @@ pub(super) const STUDIES: [Study; 3] = [
     Study { scene: "shapes", target: "5%" },
     Study { scene: "caustic", target: "10%" },
 ];
+
+/// What every study begins with.
+///
+/// # Errors
+/// The program's words.
+pub(super) fn calibration(program: &Luxel, root: &Path) -> Result<String, String> {
+    let told = told(&mut luxel(program, root, &["study", "--calibrate"]))?;
+    Ok(format!("```text\n{}\n```\n", told.trim_end()))
+}
 
 impl Study {
     /// Of its place in the document, and of its files.

@@ -12,6 +12,7 @@ use super::numbers::Numbers;
 use super::pair::Pair;
 use super::verdict::{Limits, Verdict, Word};
 use crate::picture::{self, Notes, Picture};
+use crate::testing::published;
 
 /// A ball on a ground under a sky.
 const SCENE: &str = "scene 1
@@ -98,9 +99,13 @@ fn words(rho: &str, spp: u32) -> Vec<(Word, f64)> {
 fn two_seeds_of_one_scene_are_the_same() {
     let words = words("0.5", 48);
     let same = words.iter().filter(|(word, _)| *word == Word::Same).count();
-    println!("{same} of {} are the same", words.len());
-    // 190 of 200.
-    assert!(same * 20 >= words.len() * 19, "{words:?}");
+    // 190 of 200: one in a hundred may be called different, and some be too noisy.
+    let least = words.len() * 19 / 20;
+    assert!(same >= least, "{words:?}");
+    let n = words.len();
+    let told =
+        format!("{same} of {n} pairs of seeds of one scene are `same`; {least} are asked for.");
+    published::hold("trials-same", &told);
 }
 
 #[test]
@@ -122,9 +127,15 @@ fn a_bias_of_a_hundredth_in_one_material_is_found_with_the_stated_power() {
     let words = words("0.505", 48);
     let seen = words.iter().map(|(_, seen)| *seen).fold(0.0, f64::max);
     let found = words.iter().filter(|(word, _)| *word == Word::Different).count();
-    println!("{found} of {} found; bias {bias}, stated {seen}", words.len());
     assert!(seen <= bias, "the picture's mean is off by {bias}, and {seen} is seen");
-    assert!(found >= least(TRIALS, POWER) as usize, "{words:?}");
+    let least = least(TRIALS, POWER) as usize;
+    assert!(found >= least, "{words:?}");
+    let [bias, seen] = [bias, seen].map(|share| format!("{:.2} %", share * 100.0));
+    let told = format!(
+        "{found} of {TRIALS} are `different` where the ball's reflectance is 1 % higher in one, which is {bias} of the\n\
+         mean, {seen} or less of which was stated to be found; {least} are asked for."
+    );
+    published::hold("trials-different", &told);
 }
 
 #[test]

@@ -1,8 +1,5 @@
 //! `luxel verify`: whether the renderer is right, and whether what is said of scenes is so.
 
-mod generated;
-#[cfg(test)]
-mod generated_tests;
 mod mean;
 mod published;
 mod row;

@@ -3,9 +3,9 @@
 use std::io::Write;
 use std::path::Path;
 
-use super::generated::{part, replaced};
 use super::row::{self, Row};
 use crate::exit::{Exit, Failure};
+use crate::generated::{part, replaced};
 use crate::output::{Draft, unwritable};
 
 /// The name of its part.

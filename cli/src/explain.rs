@@ -98,16 +98,14 @@ impl Told<'_> {
             page.push_str("  none of the features below\n");
         }
         for feature in needed {
-            let why = feature.dropped().err().map(|_| "it cannot be dropped");
-            let cost = self.cost(feature, "the time without it", why);
+            let cost = self.cost(feature, "the time without it");
             let cost = cost.map(|cost| format!(": {cost}"));
             page.extend(["  ", feature.name(), &cost.unwrap_or_default(), "\n"]);
             self.reasons(feature, &mut page);
         }
         page.push_str("left out\n");
         for feature in rest {
-            let why = feature.unrequirable().map(|_| "it cannot be required");
-            let cost = self.cost(feature, "the time if it ran", why);
+            let cost = self.cost(feature, "the time if it ran");
             let cost = cost.map(|cost| format!("; {cost}"));
             let why = absence(stage, feature) + &cost.unwrap_or_default();
             let _ = writeln!(page, "  {:14}{why}", feature.name());
@@ -141,12 +139,25 @@ impl Told<'_> {
     }
 
     /// `1.93 × (1.90–1.97) the time without it`, or why that is not known; nothing if nobody asked.
-    fn cost(&self, feature: Feature, of: &str, why: Option<&str>) -> Option<String> {
-        self.prices.as_ref()?;
+    fn cost(&self, feature: Feature, of: &str) -> Option<String> {
         let Some([low, median, high]) = self.price(feature) else {
-            return why.map(|why| format!("no cost is known, as {why}"));
+            return self.unpriced(feature).map(|why| format!("no cost is known, as {why}"));
         };
         Some(format!("{median:.2} × ({low:.2}–{high:.2}) {of}"))
+    }
+
+    /// Why a cost that was asked for is not known, and what comes nearest to it.
+    fn unpriced(&self, feature: Feature) -> Option<String> {
+        self.prices.as_ref().filter(|_| self.price(feature).is_none())?;
+        if !self.stage.needs(feature) {
+            return feature.unrequirable().map(|_| "it cannot be required".to_owned());
+        }
+        let why = feature.dropped().err()?;
+        let nearest = match feature {
+            Feature::OpenSurfaces => OPEN_SURFACES,
+            _ => ALIKE,
+        };
+        Some(format!("it cannot be dropped ({why}); {nearest}"))
     }
 
     fn object(&self) -> Value {
@@ -170,6 +181,7 @@ impl Told<'_> {
                 "dropped": stage.scene.leaves_out(feature),
                 "by": stage.reasons.of(feature).filter(|_| is_needed).map(by).collect::<Vec<_>>(),
                 "time_ratio_quartiles": self.price(feature),
+                "why_no_cost": self.unpriced(feature),
                 "why_not": (!is_needed).then(|| absence(stage, feature)),
             })
         };
@@ -184,6 +196,13 @@ impl Told<'_> {
         })
     }
 }
+
+/// What is said of surfaces that only bound a medium: without media none of them is left.
+const OPEN_SURFACES: &str = "what `media` costs includes it";
+
+/// What is said where nothing of the scene itself can be measured.
+const ALIKE: &str =
+    "scenes that look alike with it and without are measured in docs/performance.md";
 
 /// What is said where shapes are too many to tell which of them lie within each other.
 const UNTOLD: &str = "refracting shapes are too many to tell whether they overlap";

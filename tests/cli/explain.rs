@@ -1,6 +1,7 @@
 //! `luxel explain`, `--require` and `--drop` as a person meets them.
 
 use super::program::{Folder, SCENE};
+use crate::disk::{root, text};
 
 const GHOST: &str = "shape sphere \"ghost\" { radius = 2 m, interior = medium homogeneous { sigma_t = 0.1 / (1 m), albedo = 0.5 } }\n";
 
@@ -70,11 +71,36 @@ fn costs_are_measured_of_what_can_be_left_out_and_of_what_could_run_for_nothing(
     assert_eq!(measured, ["media", "nested", "motion", "light_choice"]);
     let text = folder.luxel(&["explain", "a.scene", "--cost"]).out;
     for told in [
-        "open_surfaces: no cost is known, as it cannot be dropped",
+        "open_surfaces: no cost is known, as it cannot be dropped (the boundary of a medium would be seen: \
+         drop `media`); what `media` costs includes it",
         "no cost is known, as it cannot be required",
     ] {
         assert!(text.contains(told), "{text}");
     }
+}
+
+#[test]
+fn of_what_cannot_be_dropped_the_nearest_measurement_is_told() {
+    let lamp = "light point { position = (0, 3, 0) m, intensity = 1 W/sr }\n";
+    let folder = Folder::new("explain-nearest").with("a.scene", &(foggy() + lamp));
+    let done = folder.luxel(&["explain", "a.scene", "--cost", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    let of = |name: &str| {
+        let features = told["features"].as_array().unwrap();
+        features.iter().find(|it| it["name"] == name).unwrap().clone()
+    };
+    let why = |name: &str| of(name)["why_no_cost"].as_str().map(str::to_owned);
+    assert!(why("light_choice").is_some_and(|why| why.contains("docs/performance.md")), "{done:?}");
+    assert!(why("open_surfaces").is_some_and(|why| why.contains("what `media` costs includes it")));
+    assert_eq!((why("media"), why("nested")), (None, None));
+    // What is said holds: with the media these surfaces go, and the rows are there.
+    let without = folder.luxel(&["explain", "a.scene", "--drop", "media"]).out;
+    let left_out = without.split_once("left out").unwrap().1;
+    assert!(left_out.contains("open_surfaces"), "{without}");
+    let rows = text(&root().join("docs/performance.md"));
+    assert!(rows.contains("| `light_choice` | used / alike without |"));
+    let unasked = folder.luxel(&["explain", "a.scene", "--json"]).out;
+    assert!(unasked.contains(r#""why_no_cost":null"#) && !unasked.contains("costs includes it"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use luxel_core::diag::Sources;
 use luxel_core::files::MemoryFiles;
 use luxel_core::registry::Registry;
-use luxel_lang::{Kept, Loaded, Settings, load};
+use luxel_lang::{Budgets, Kept, Loaded, Settings, load};
 use luxel_sdk::sampling::Rng;
 
 use crate::load::registry;
@@ -139,10 +139,16 @@ fn edit(lines: &mut Vec<String>, rng: &mut Rng) {
 #[test]
 fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
     let (mut n_short, mut n_good, mut n_loads) = (0, 0, 0);
-    for seed in 0..40 {
+    for seed in 0..40_u64 {
         let mut rng = Rng::new(seed);
         let set = if seed % 4 == 0 { vec![("size".to_owned(), "0.6".to_owned())] } else { vec![] };
-        let settings = Settings { set, ..Settings::default() };
+        // Some are spent by one statement more.
+        let budgets = Budgets {
+            nodes: if seed % 3 == 0 { 1_000_000 } else { 35 },
+            names: if seed % 2 == 0 { 500_000 } else { 9 },
+            ..Budgets::default()
+        };
+        let settings = Settings { set, budgets, ..Settings::default() };
         let other = OTHER.to_owned();
         let mut edited =
             Edited { registry: registry(), kept: Kept::default(), settings, other, n_short: 0 };

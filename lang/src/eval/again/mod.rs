@@ -118,10 +118,16 @@ fn load_in_turns(
     if let Some(loaded) = again.and_then(|state| state.again(files, registry, settings)) {
         return loaded;
     }
+    let plain = files;
     let files = Remembering::new(files);
     let mut evaluator = Evaluator::new(&files, registry, settings, turn);
     evaluator.record = (!settings.noting).then(Record::default);
     evaluator.root(path, &settings.set);
+    // How much is told where a budget is spent depends on how much was read by then.
+    if evaluator.spent.is_some() {
+        kept.iter_mut().for_each(|state| state.n_evaluated = 0);
+        return super::load(path, plain, registry, settings);
+    }
     let (loaded, state) = evaluator.finish_recorded(path, settings);
     if let Some(state) = state {
         *kept = Some(Box::new(State { asked: files.beside(path), ..state }));

@@ -70,7 +70,16 @@ fn weigh(text: &str, limit: usize) -> Weight {
                 }
                 out.pieces += 1;
             }
-            b'0'..=b'9' | b'.' | b'e' | b'E' if is_number(last, byte) => {}
+            b'0'..=b'9' => {
+                // Digits, what parts numbers, and blanks count nothing, whatever stands before.
+                let is_plain = |b: &&u8| matches!(b, b'0'..=b'9' | b',' | b' ' | b'\n');
+                at += bytes[at..].iter().take_while(is_plain).count();
+                let is_blank = |b: &u8| matches!(b, b' ' | b'\n');
+                last =
+                    bytes[start..at].iter().rev().copied().find(|b| !is_blank(b)).unwrap_or(byte);
+                continue;
+            }
+            b'.' | b'e' | b'E' if is_number(last, byte) => {}
             b',' => {}
             // A sign before a number, or in its exponent.
             b'+' | b'-' if matches!(last, b',' | b'[' | b'(' | b'e' | b'E') => {}
@@ -90,11 +99,9 @@ fn weigh(text: &str, limit: usize) -> Weight {
     out
 }
 
-/// Whether a byte belongs to a number, by the byte before that is no blank.
+/// Whether a point or an `e` belongs to a number, by the byte before that is no blank.
 fn is_number(last: u8, byte: u8) -> bool {
-    let digit = byte.is_ascii_digit() || (byte == b'.' && last.is_ascii_digit());
-    let exponent = matches!(byte, b'e' | b'E') && (last.is_ascii_digit() || last == b'.');
-    digit || exponent
+    last.is_ascii_digit() || last == b'.' && byte != b'.'
 }
 
 /// One past the quote that ends a text.

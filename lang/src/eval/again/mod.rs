@@ -125,7 +125,9 @@ fn load_in_turns(
     evaluator.root(path, &settings.set);
     // How much is told where a budget is spent depends on how much was read by then.
     if evaluator.spent.is_some() {
-        kept.iter_mut().for_each(|state| state.n_evaluated = 0);
+        if let Some(state) = kept {
+            state.n_evaluated = 0;
+        }
         return super::load(path, plain, registry, settings);
     }
     let (loaded, state) = evaluator.finish_recorded(path, settings);

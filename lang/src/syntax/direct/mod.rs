@@ -11,6 +11,7 @@
 mod cursor;
 mod expr;
 mod head;
+mod numbers;
 mod stmt;
 mod token;
 mod words;
@@ -39,16 +40,7 @@ pub(super) fn read(
 ) -> Option<Stmt> {
     let end = range.end;
     let cursor = Cursor::new(&text[..end], range.start);
-    let mut reader = Reader {
-        cursor,
-        source,
-        budgets,
-        words,
-        numbers: vec![],
-        operands: vec![],
-        ops: vec![],
-        depth: 0,
-    };
+    let mut reader = Reader::new(cursor, source, budgets, words);
     reader.cursor.skip();
     let stmt = reader.stmt()?;
     reader.cursor.skip();
@@ -69,7 +61,17 @@ struct Reader<'a> {
     depth: usize,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    fn new(
+        cursor: Cursor<'a>,
+        source: SourceId,
+        budgets: &'a Budgets,
+        words: &'a mut Words,
+    ) -> Self {
+        let (numbers, operands, ops) = (vec![], vec![], vec![]);
+        Self { cursor, source, budgets, words, numbers, operands, ops, depth: 0 }
+    }
+
     /// From `start` to where reading stands.
     fn span(&self, start: usize) -> Span {
         Span::new(self.source, start, self.cursor.at)

@@ -61,7 +61,7 @@ impl Cursor<'_> {
     }
 
     /// Takes a number with or without sign; gives what it is.
-    fn number(&mut self) -> Option<f64> {
+    pub(super) fn number(&mut self) -> Option<f64> {
         let start = self.at;
         let _sign = self.takes(b'-') || self.takes(b'+');
         let is_number = self.unsigned();
@@ -192,6 +192,7 @@ impl Reader<'_> {
     fn literals(&mut self, close: u8) -> Option<(Inside, bool)> {
         let start = self.cursor.at;
         self.numbers.clear();
+        self.most_literals(close);
         while let Some(number) = self.cursor.number() {
             self.numbers.push(number);
             let span = self.span(start);

@@ -141,7 +141,8 @@ impl<'k> Firsts<'k> {
 
     /// The same for a name by its number.
     pub(super) fn definer_of(&self, name: u32) -> Option<usize> {
-        Some(self.tables.defines[name as usize]).filter(|at| *at != NONE).map(|at| at as usize)
+        let place = *self.tables.defines.get(name as usize)?;
+        (place != NONE).then_some(place as usize)
     }
 
     /// The statement that first bears a label.
@@ -150,7 +151,8 @@ impl<'k> Firsts<'k> {
     }
 
     fn place(&self, places: &[u32], name: &str) -> Option<usize> {
-        let place = places[*self.known.numbers.get(name)? as usize];
+        // Names that became known later have no place.
+        let place = *places.get(*self.known.numbers.get(name)? as usize)?;
         (place != NONE).then_some(place as usize)
     }
 

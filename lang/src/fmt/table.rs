@@ -66,9 +66,13 @@ fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
     })
 }
 
-/// Whether a table takes several lines: it has them, or a comment in it goes to the end of its line.
+/// Whether a table takes several lines: its bracket ends its first line, it has other rows, or a comment
+/// in it goes to the end of its line.
 pub(super) fn is_long(text: &str) -> bool {
-    text.contains('\n') || text.contains("//")
+    let rows = body(text).split_once('\n');
+    let has_several =
+        |(head, rest): (&str, &str)| head.trim().is_empty() || !rest.trim().is_empty();
+    rows.is_some_and(has_several) || text.contains("//")
 }
 
 /// Puts a table; `after` columns stand behind it.

@@ -277,7 +277,10 @@ impl Reader<'_> {
             }
             return Some(first.start);
         }
-        let version = tokens.next().filter(|t| !t.first_on_line && t.kind == TokenKind::Number);
+        // Blanks alone may stand before the version: no comment, no carriage return.
+        let is_next =
+            |t: &Token<'_>| self.text[first.end()..t.start].trim_matches([' ', '\t']).is_empty();
+        let version = tokens.next().filter(|t| t.kind == TokenKind::Number && is_next(t));
         let Some(version) = version else {
             let message = "`scene` wants the version of the language";
             let end = self.span(first.end()..first.end());

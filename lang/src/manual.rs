@@ -1,9 +1,11 @@
-//! The manual in a few words: what parameters take, and the words of the language that stand for no
-//! plugin.
+//! The manual in a few words: what parameters take, the words of the language that stand for no plugin,
+//! and the functions that every scene has.
 
 use luxel_core::scene::{number_words, range_words};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Preset, Role, Type};
+
+pub use crate::eval::builtins::{Function, functions};
 
 /// A field that the language reads: name, facts in a few words, manual.
 pub type Field = (&'static str, &'static str, &'static str);
@@ -77,6 +79,11 @@ pub fn fields_of(kind: Kind) -> &'static [Field] {
 /// The word, if it is one of these.
 pub fn find(word: &str) -> Option<&'static Word> {
     WORDS.iter().find(|known| known.name == word)
+}
+
+/// The function or constant of that name that every scene has.
+pub fn function(name: &str) -> Option<Function> {
+    functions().find(|function| function.name == name)
 }
 
 /// Type, unit, range, default and the like, each in a few words.

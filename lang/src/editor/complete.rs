@@ -13,7 +13,7 @@ use super::define::{Project, beside};
 use super::document::Document;
 use super::schema::{self, Given};
 use super::statements;
-use crate::eval::{builtins, types};
+use crate::eval::types;
 use crate::manual;
 use crate::syntax::TokenKind;
 
@@ -80,6 +80,12 @@ impl Item {
 
     pub(super) fn insert(self, insert: impl Into<String>) -> Self {
         Self { insert: insert.into(), ..self }
+    }
+
+    /// Without what is written already.
+    fn without(self, prefix: &str) -> Self {
+        let rest = |text: String| text.strip_prefix(prefix).map(str::to_owned).unwrap_or(text);
+        Self { label: rest(self.label), insert: rest(self.insert), ..self }
     }
 
     pub(super) fn rank(self, rank: u8) -> Self {
@@ -200,13 +206,8 @@ impl Asked<'_> {
             return found.unwrap_or_default().into_iter().map(statements::param).collect();
         }
         let space = format!("{before}.");
-        let own = builtins::names().filter_map(|name| name.strip_prefix(&space));
-        let mut out: Vec<Item> = own
-            .map(|name| {
-                let usage = builtins::usage(&format!("{space}{name}")).unwrap_or_default();
-                Item::new(name, ItemKind::Function).detail(usage).insert(format!("{name}($0)"))
-            })
-            .collect();
+        let own = statements::functions(|name| name.starts_with(&space));
+        let mut out: Vec<Item> = own.into_iter().map(|item| item.without(&space)).collect();
         if let Some(file) = self.here.document.import(&before)
             && let Some(module) = self.project.document(&beside(self.path, &file))
         {
@@ -369,8 +370,8 @@ impl Asked<'_> {
             Item::new(format!("{name} = "), ItemKind::Param).detail(format!("of {callee}")).rank(2)
         };
         let own = self.here.document.arguments(callee);
-        let builtin = builtins::arguments(callee).unwrap_or_default();
-        own.iter().map(|name| item(name)).chain(builtin.iter().map(|name| item(name))).collect()
+        let builtin = manual::function(callee).map_or(vec![], |function| function.arguments);
+        own.iter().map(|name| item(name)).chain(builtin.into_iter().map(item)).collect()
     }
 
     fn in_text(&self, range: &Range<usize>) -> Completion {

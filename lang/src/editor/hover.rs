@@ -12,7 +12,8 @@ use super::define::{Place, Project, definition};
 use super::document::Document;
 use super::schema;
 use super::statements::page_of;
-use crate::eval::{builtins, types};
+use crate::eval::types;
+use crate::manual;
 use crate::syntax::TokenKind;
 
 /// What is told of a place.
@@ -65,8 +66,9 @@ pub fn hover(project: &dyn Project, path: &Path, at: usize, registry: &Registry)
     let (before, _) = dotted(&here.before[..here.before.len().saturating_sub(1)]);
     let dotted =
         if here.text_back(1) == "." { format!("{before}.{word}") } else { word.to_owned() };
-    let usage = builtins::usage(&dotted)?;
-    Some(told(usage, "A function that every scene has.".to_owned()))
+    let function = manual::function(&dotted)?;
+    let text = function.text();
+    Some(told(function.usage, text))
 }
 
 /// The end of the word at a byte.

@@ -9,8 +9,8 @@ use super::complete::{Item, ItemKind};
 use super::document::Document;
 use super::schema::Given;
 use super::symbols::{Role, Sort};
-use crate::eval::{builtins, types};
-use crate::manual;
+use crate::eval::types;
+use crate::manual::{self, Function};
 use crate::syntax::StmtNode;
 
 /// Words that begin statements, with what is written after them and what they mean.
@@ -128,18 +128,18 @@ pub(super) fn names(document: &Document, before: usize) -> Vec<Item> {
 
 /// Functions and constants that every scene has.
 pub(super) fn functions(of: impl Fn(&str) -> bool) -> Vec<Item> {
-    let one = |name: &'static str| {
-        let item = Item::new(name, ItemKind::Function).rank(5);
-        match builtins::usage(name) {
-            Some(usage) => {
-                let texts = ["metal", "glass", "illuminant", "spectrum.file"].contains(&name);
-                let insert = if texts { format!("{name}(\"$0\")") } else { format!("{name}($0)") };
-                item.detail(usage).insert(insert)
-            }
-            None => item.detail("a constant"),
+    let one = |function: Function| {
+        let name = function.name;
+        let item = Item::new(name, ItemKind::Function).doc(function.text());
+        if function.arguments.is_empty() {
+            return item.detail("a constant");
         }
+        let texts = ["metal", "glass", "illuminant", "spectrum.file"].contains(&name);
+        let insert = if texts { format!("{name}(\"$0\")") } else { format!("{name}($0)") };
+        item.detail(function.usage).insert(insert)
     };
-    builtins::names().filter(|name| of(name) && *name != "rgb").map(one).collect()
+    // `rgb` alone is a mistake.
+    manual::functions().filter(|it| of(it.name) && it.name != "rgb").map(one).collect()
 }
 
 /// Whether a function makes a colour or spectrum.

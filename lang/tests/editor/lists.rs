@@ -98,6 +98,16 @@ fn an_item_says_type_unit_and_default_and_writes_what_is_required() {
     let radius = items.iter().find(|item| item.label == "radius").unwrap();
     assert_eq!(radius.detail, "number, in m, more than 0, required");
     assert_eq!((radius.doc.as_str(), radius.insert.as_str()), ("Its radius.", "radius = $0"));
+    let items = completed(&[("a", "scene 1\nlet q = spectrum.|")]).items;
+    let file = items.iter().find(|item| item.label == "file").unwrap();
+    assert_eq!(
+        (file.detail.as_str(), file.insert.as_str()),
+        ("spectrum.file(path, column)", "file(\"$0\")")
+    );
+    assert!(file.doc.contains("wavelength in nm"), "{}", file.doc);
+    let items = completed(&[("a", "scene 1\nlet q = |")]).items;
+    let pi = items.iter().find(|item| item.label == "pi").unwrap();
+    assert!(pi.detail == "a constant" && pi.doc.contains("3.14159"), "{pi:?}");
     let items = completed(&[("a", "scene 1\nshape |")]).items;
     assert_eq!(sphere_of(&items), ("A ball.", "sphere { radius = $0 }"));
 }
@@ -126,8 +136,9 @@ fn hover_tells_manual_definition_and_unit() {
     check("shape |sphere {}", "shape sphere", "A ball.");
     check("/// Wide.\nlet w = 3 m\nlet q = w| + 1 m", "let w = 3 m", "Wide.");
     check("fn f(x: float) = x\nlet q = |f(1)", "fn f(x: float) = x", "");
-    check("let q = clam|p(1, 2, 3)", "clamp(x, low, high)", "every scene");
-    check("let q = rgb.s|rgb(1, 2, 3)", "rgb.srgb(r, g, b)", "every scene");
+    check("let q = clam|p(1, 2, 3)", "clamp(x, low, high)", "else the nearer");
+    check("let q = rgb.s|rgb(1, 2, 3)", "rgb.srgb(r, g, b)", "```scene\nrgb.srgb(1, 0.5, 0)");
+    check("let q = 2 * p|i", "pi", "without a unit");
     check("let q = 5 c|m", "cm", "a length");
     check("gr|oup \"g\" {}", "group", "frame of their own");
     check("let q = \"te|xt\"", "", "");

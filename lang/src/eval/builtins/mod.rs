@@ -5,9 +5,11 @@ mod math;
 mod motion;
 mod spectrum_file;
 mod sun;
+mod table;
+#[cfg(test)]
+mod tests;
 mod transform;
 
-use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Span, near};
@@ -27,6 +29,10 @@ pub(crate) struct Builtin {
     /// The names of its arguments; a `?` after one says that it may be left out.
     args: &'static [&'static str],
     run: Run,
+    /// What it gives, with units and ranges.
+    doc: &'static str,
+    /// An expression that calls it, without a mistake.
+    example: &'static str,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,82 +58,94 @@ struct Argument {
     span: Span,
 }
 
-const fn builtin(name: &'static str, args: &'static [&'static str], run: Run) -> Builtin {
-    Builtin { name, args, run }
+/// A number that every scene has.
+#[derive(Debug)]
+struct Constant {
+    name: &'static str,
+    value: f64,
+    doc: &'static str,
+    example: &'static str,
 }
 
-static BUILTINS: [Builtin; 45] = {
-    use color::Make as C;
-    use math::Math as M;
-    use transform::Transform as T;
-    [
-        builtin("sin", &["x"], Run::Math(M::Sin)),
-        builtin("cos", &["x"], Run::Math(M::Cos)),
-        builtin("tan", &["x"], Run::Math(M::Tan)),
-        builtin("asin", &["x"], Run::Math(M::Asin)),
-        builtin("acos", &["x"], Run::Math(M::Acos)),
-        builtin("atan", &["x"], Run::Math(M::Atan)),
-        builtin("atan2", &["y", "x"], Run::Math(M::Atan2)),
-        builtin("sqrt", &["x"], Run::Math(M::Sqrt)),
-        builtin("abs", &["x"], Run::Math(M::Abs)),
-        builtin("min", &["a", "b"], Run::Math(M::Min)),
-        builtin("max", &["a", "b"], Run::Math(M::Max)),
-        builtin("clamp", &["x", "low", "high"], Run::Math(M::Clamp)),
-        builtin("floor", &["x"], Run::Math(M::Floor)),
-        builtin("ceil", &["x"], Run::Math(M::Ceil)),
-        builtin("round", &["x"], Run::Math(M::Round)),
-        builtin("pow", &["x", "exponent"], Run::Math(M::Pow)),
-        builtin("exp", &["x"], Run::Math(M::Exp)),
-        builtin("log", &["x"], Run::Math(M::Log)),
-        builtin("hash01", &["seed", "i"], Run::Math(M::Hash01)),
-        builtin("len", &["list"], Run::Math(M::Len)),
-        builtin("length", &["v"], Run::Math(M::Length)),
-        builtin("normalize", &["v"], Run::Math(M::Normalize)),
-        builtin("dot", &["a", "b"], Run::Math(M::Dot)),
-        builtin("cross", &["a", "b"], Run::Math(M::Cross)),
-        builtin("rotate", &["axis", "angle"], Run::Transform(T::Rotate)),
-        builtin("move", &["by"], Run::Transform(T::Move)),
-        builtin("scale", &["by"], Run::Transform(T::Scale)),
-        builtin("matrix", &["rows"], Run::Transform(T::Matrix)),
-        builtin("motion", &["keys"], Run::Transform(T::Motion)),
-        builtin("spin", &["axis", "rate"], Run::Transform(T::Spin)),
-        builtin("look_at", &["from", "to", "up"], Run::Transform(T::LookAt)),
-        builtin("rgb", &["r?", "g?", "b?"], Run::Color(C::Bare)),
-        builtin("rgb.linear_srgb", &["r", "g", "b"], Run::Color(C::LinearSrgb)),
-        builtin("rgb.srgb", &["r", "g", "b"], Run::Color(C::Srgb)),
-        builtin("rgb.acescg", &["r", "g", "b"], Run::Color(C::AcesCg)),
-        builtin("rgb.rec2020", &["r", "g", "b"], Run::Color(C::Rec2020)),
-        builtin("xyz", &["x", "y", "z"], Run::Color(C::Xyz)),
-        builtin("blackbody", &["temperature"], Run::Color(C::Blackbody)),
-        builtin("spectrum", &["points"], Run::Color(C::Spectrum)),
-        builtin("spectrum.file", &["path", "column?"], Run::Color(C::File)),
-        builtin("spectrum.constant", &["x"], Run::Color(C::Constant)),
-        builtin("illuminant", &["name"], Run::Color(C::Illuminant)),
-        builtin("metal", &["name"], Run::Color(C::Metal)),
-        builtin("glass", &["name"], Run::Color(C::Glass)),
-        builtin("sun_position", &["latitude", "longitude", "time"], Run::Sun),
-    ]
-};
+/// Every function, by what it is about.
+static SUBJECTS: [(&str, &[Builtin]); 5] = [
+    ("Numbers", &table::NUMBERS),
+    ("Vectors and lists", &table::VECTORS),
+    ("Transforms, motion and views", &table::TRANSFORMS),
+    ("Colours and spectra", &table::COLOURS),
+    ("Light", &table::LIGHT),
+];
+
+/// A function or constant that every scene has, as its manual tells it.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// The name in a scene, dots included.
+    pub name: &'static str,
+    /// How it is written: `clamp(x, low, high)`; of a constant its name.
+    pub usage: String,
+    /// The names of its arguments; of a constant there are none.
+    pub arguments: Vec<&'static str>,
+    /// What it is about: the heading that it stands under.
+    pub subject: &'static str,
+    /// What it gives, with units and ranges.
+    pub doc: &'static str,
+    /// An expression that has it.
+    pub example: &'static str,
+}
+
+impl Function {
+    /// What it gives, and the example as code.
+    pub fn text(&self) -> String {
+        format!("{}\n\n```scene\n{}\n```", self.doc, self.example)
+    }
+}
+
+fn all() -> impl Iterator<Item = &'static Builtin> {
+    SUBJECTS.iter().flat_map(|(_, of_subject)| of_subject.iter())
+}
+
+fn find(name: &str) -> Option<&'static Builtin> {
+    all().find(|builtin| builtin.name == name)
+}
+
+/// Every function and constant, those of a subject together.
+pub fn functions() -> impl Iterator<Item = Function> {
+    let constants = table::CONSTANTS.iter().map(|constant| Function {
+        name: constant.name,
+        usage: constant.name.to_owned(),
+        arguments: vec![],
+        subject: SUBJECTS[0].0,
+        doc: constant.doc,
+        example: constant.example,
+    });
+    let functions = SUBJECTS.iter().flat_map(|(subject, of_subject)| {
+        of_subject.iter().map(|builtin| Function {
+            name: builtin.name,
+            usage: builtin.usage(),
+            arguments: builtin.arguments().collect(),
+            subject,
+            doc: builtin.doc,
+            example: builtin.example,
+        })
+    });
+    constants.chain(functions)
+}
 
 /// The value of a name that every scene has.
 pub(crate) fn value(name: &str) -> Option<Value> {
-    match name {
-        "pi" => return Some(Value::plain(PI)),
-        "tau" => return Some(Value::plain(TAU)),
-        _ => {}
-    }
-    BUILTINS.iter().find(|b| b.name == name).map(Value::Builtin)
+    let constant = table::CONSTANTS.iter().find(|constant| constant.name == name);
+    let constant = constant.map(|constant| Value::plain(constant.value));
+    constant.or_else(|| find(name).map(Value::Builtin))
 }
 
 /// Whether a function that every scene has takes an argument of this name.
 pub(crate) fn takes(function: &str, name: &str) -> bool {
-    let function = BUILTINS.iter().find(|builtin| builtin.name == function);
-    function.is_some_and(|builtin| builtin.args.iter().any(|arg| arg.trim_end_matches('?') == name))
+    find(function).is_some_and(|builtin| builtin.arguments().any(|arg| arg == name))
 }
 
 /// Every name that every scene has.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    BUILTINS.iter().map(|b| b.name).chain(["pi", "tau"])
+    all().map(|builtin| builtin.name).chain(table::CONSTANTS.iter().map(|constant| constant.name))
 }
 
 /// Whether a name that every scene has is this one or begins with it and a dot.
@@ -135,16 +153,10 @@ pub(crate) fn begins(name: &str) -> bool {
     names().any(|known| known.split('.').next() == Some(name))
 }
 
-/// The names of a function's arguments, if there is such a function.
-pub(crate) fn arguments(name: &str) -> Option<Vec<&'static str>> {
-    let found = BUILTINS.iter().find(|b| b.name == name)?;
-    Some(found.args.iter().map(|arg| arg.trim_end_matches('?')).collect())
-}
-
 /// What a function makes of three numbers as linear sRGB, if it makes a colour of them.
 pub(crate) fn linear_srgb(name: &str, c: [f64; 3]) -> Option<[f64; 3]> {
     use color::Make as C;
-    match BUILTINS.iter().find(|b| b.name == name)?.run {
+    match find(name)?.run {
         Run::Color(make @ (C::LinearSrgb | C::Srgb | C::AcesCg | C::Rec2020 | C::Xyz)) => {
             Some(color::linear_srgb(make, c))
         }
@@ -152,9 +164,16 @@ pub(crate) fn linear_srgb(name: &str, c: [f64; 3]) -> Option<[f64; 3]> {
     }
 }
 
-/// How a function is called: `clamp(x, low, high)`.
-pub(crate) fn usage(name: &str) -> Option<String> {
-    Some(format!("{name}({})", arguments(name)?.join(", ")))
+impl Builtin {
+    /// The names of its arguments.
+    fn arguments(&self) -> impl Iterator<Item = &'static str> {
+        self.args.iter().map(|arg| arg.trim_end_matches('?'))
+    }
+
+    /// How it is called: `clamp(x, low, high)`.
+    fn usage(&self) -> String {
+        format!("{}({})", self.name, self.arguments().collect::<Vec<_>>().join(", "))
+    }
 }
 
 impl Evaluator<'_> {
@@ -194,31 +213,29 @@ impl Evaluator<'_> {
         span: Span,
     ) -> Option<Vec<Option<Argument>>> {
         let mut out = vec![None; builtin.args.len()];
-        let bare = |arg: &'static str| arg.trim_end_matches('?');
         for (i, given) in given.into_iter().enumerate() {
             let place = match &given.name {
-                Some(name) => builtin.args.iter().position(|arg| bare(arg) == &*name.text),
+                Some(name) => builtin.arguments().position(|arg| arg == &*name.text),
                 None => Some(i).filter(|i| *i < out.len()),
             };
             let Some(place) = place else {
                 let at = given.name.as_ref().map_or(given.span, |name| name.span);
-                let args: Vec<&str> = builtin.args.iter().map(|arg| bare(arg)).collect();
                 let mut found = if let Some(name) = &given.name {
                     let message = format!("`{}` has no parameter `{}`", builtin.name, name.text);
                     Diagnostic::error("E0402", at, message)
                 } else {
-                    let count = args.len();
+                    let count = builtin.args.len();
                     let message = format!("`{}` takes {count} arguments", builtin.name);
                     Diagnostic::error("E0402", at, message)
                 };
                 found =
-                    found.meant(at, given.name.and_then(|n| near(&n.text, args.iter().copied())));
-                let usage = format!("it is called as `{}({})`", builtin.name, args.join(", "));
-                self.tell(found.help(usage));
+                    found.meant(at, given.name.and_then(|n| near(&n.text, builtin.arguments())));
+                self.tell(found.help(format!("it is called as `{}`", builtin.usage())));
                 return None;
             };
             if out[place].is_some() {
-                let message = format!("`{}` is given twice", bare(builtin.args[place]));
+                let message =
+                    format!("`{}` is given twice", builtin.args[place].trim_end_matches('?'));
                 self.poison("E0404", given.span, message);
                 return None;
             }
@@ -226,9 +243,8 @@ impl Evaluator<'_> {
         }
         for (arg, value) in builtin.args.iter().zip(&out) {
             if value.is_none() && !arg.ends_with('?') {
-                let args: Vec<&str> = builtin.args.iter().map(|arg| bare(arg)).collect();
                 let message = format!("`{}` wants `{arg}`", builtin.name);
-                let usage = format!("it is called as `{}({})`", builtin.name, args.join(", "));
+                let usage = format!("it is called as `{}`", builtin.usage());
                 self.tell(Diagnostic::error("E0403", span, message).help(usage));
                 return None;
             }

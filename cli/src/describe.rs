@@ -1,28 +1,29 @@
-//! `luxel describe`: the manual page of one plugin.
+//! `luxel describe`: the manual page of one plugin, word or function.
 
 use luxel_core::registry::{Entry, Registry, common_params};
-use luxel_lang::manual::{default, facts, what};
+use luxel_lang::manual::{Function, default, facts, function, functions, what};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Param;
 use serde_json::{Value, json};
 
 use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
-use crate::list::{kind, unknown};
+use crate::list::{kinds, unknown};
 use crate::report::{Form, Stream};
 use crate::{load, report, words};
 
-/// Show the manual page of a plugin: what it is, and each parameter
+/// Show the manual page of a plugin: what it is, and each parameter; or of a function
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:
   luxel describe shape sphere
   luxel describe group
+  luxel describe look_at
   luxel describe material diffuse --json")]
 pub(crate) struct Args {
-    /// Its kind, as `luxel list` shows it
+    /// Its kind, as `luxel list` shows it; or a function that every scene has
     kind: String,
-    /// Its name; none for the language's own words, such as `group`
+    /// Its name; none for the language's own words, such as `group`, and for functions
     name: Option<String>,
     /// A JSON object
     #[arg(long)]
@@ -34,12 +35,12 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let plugins = load::registry(&args.plugins)?;
     plugins.notes.tell(Form::Text, Stream::Error)?;
-    let page = match (words::find(&args.kind), &args.name) {
-        (Some(word), None) if args.json => format!("{}\n", words::object(word)),
-        (Some(word), None) => words::page(word),
-        (Some(word), Some(name)) => {
-            let message = format!("a `{}` has no kinds: there is no `{name}`", word.name);
-            let help = format!("luxel describe {}", word.name);
+    let page = match (of_language(&args.kind), &args.name) {
+        (Some((_, object)), None) if args.json => format!("{object}\n"),
+        (Some((page, _)), None) => page,
+        (Some(_), Some(name)) => {
+            let message = format!("`{}` has no kinds: there is no `{name}`", args.kind);
+            let help = format!("luxel describe {}", args.kind);
             return Err(Failure::new(Exit::Input, message).help(help));
         }
         (None, name) => {
@@ -49,6 +50,65 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     report::out(&page)?;
     Ok(Exit::Fine)
+}
+
+/// The manual page of what belongs to the language, as text and for programs.
+fn of_language(name: &str) -> Option<(String, Value)> {
+    let word = words::find(name).map(|word| (words::page(word), words::object(word)));
+    word.or_else(|| function(name).map(|it| (page_of(&it), object_of(&it))))
+}
+
+fn page_of(function: &Function) -> String {
+    let Function { usage, subject, doc, example, .. } = function;
+    let subject = subject.to_lowercase();
+    format!("{usage} (language: {subject})\n\n{}\n\n{example}\n", wrapped(doc))
+}
+
+/// Characters of a line of text.
+const WIDTH: usize = 100;
+
+/// A paragraph in lines.
+fn wrapped(paragraph: &str) -> String {
+    let (mut out, mut column) = (String::new(), 0);
+    for word in paragraph.split_whitespace() {
+        let length = word.chars().count();
+        let fits = column == 0 || column + 1 + length <= WIDTH;
+        let before = if column == 0 {
+            ""
+        } else if fits {
+            " "
+        } else {
+            "\n"
+        };
+        column = if fits { column + before.len() + length } else { length };
+        out.extend([before, word]);
+    }
+    out
+}
+
+fn object_of(function: &Function) -> Value {
+    let parameters = function.arguments.iter().map(|name| json!({ "name": name }));
+    json!({
+        "kind": function.name,
+        "name": "",
+        "origin": "language",
+        "subject": function.subject,
+        "usage": function.usage,
+        "doc": function.doc,
+        "example": function.example,
+        "parameters": parameters.collect::<Vec<_>>(),
+    })
+}
+
+/// The kind of a word that is no function either.
+///
+/// # Errors
+/// An unknown word, with the nearest or the known ones.
+fn kind(word: &str) -> Result<Kind, Failure> {
+    Kind::of_word(word).ok_or_else(|| {
+        let known: Vec<_> = kinds().into_iter().chain(functions().map(|it| it.name)).collect();
+        unknown("kind or function", word, &known)
+    })
 }
 
 fn entry<'r>(registry: &'r Registry, kind: Kind, name: Option<&str>) -> Result<&'r Entry, Failure> {
@@ -157,6 +217,27 @@ mod tests {
                 assert_ne!(parameter["doc"], "", "{:?} {parameter}", entry.class);
             }
         }
+    }
+
+    #[test]
+    fn a_function_has_a_page_with_its_use_its_manual_and_its_example() {
+        let (page, object) = of_language("rotate").unwrap();
+        assert!(page.starts_with("rotate(axis, angle) (language: transforms"), "{page}");
+        assert!(page.lines().all(|line| line.chars().count() <= WIDTH), "{page}");
+        assert!(page.lines().nth(2).unwrap().len() > 80, "{page}");
+        assert!(page.contains("counter-clockwise") && page.ends_with("30 deg)\n"), "{page}");
+        assert_eq!(object["usage"], "rotate(axis, angle)");
+        assert_eq!(object["parameters"][1]["name"], "angle");
+        assert_eq!(of_language("tau").unwrap().1["parameters"], json!([]));
+        assert!(of_language("group").is_some() && of_language("shape").is_none());
+    }
+
+    #[test]
+    fn an_unknown_word_names_the_nearest_kind_or_function_or_all() {
+        let help = |word| kind(word).unwrap_err().help.unwrap();
+        assert_eq!(help("rgb.sgrb"), "did you mean `rgb.srgb`?");
+        assert_eq!(help("materail"), "did you mean `material`?");
+        assert!(help("xyzzy-plugh").contains("place, pi, tau, sin"));
     }
 
     #[test]

@@ -83,11 +83,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 /// # Errors
 /// An unknown word, with the nearest and the known ones.
 pub(crate) fn kind(word: &str) -> Result<Kind, Failure> {
-    Kind::of_word(word).ok_or_else(|| {
-        let own = WORDS.iter().map(|word| word.name);
-        let words: Vec<_> = Kind::ALL.iter().map(|(_, word)| *word).chain(own).collect();
-        unknown("kind", word, &words)
-    })
+    Kind::of_word(word).ok_or_else(|| unknown("kind", word, &kinds()))
+}
+
+/// The words of all kinds, and those of the language that are used as one.
+pub(crate) fn kinds() -> Vec<&'static str> {
+    let own = WORDS.iter().map(|word| word.name);
+    Kind::ALL.iter().map(|(_, word)| *word).chain(own).collect()
 }
 
 /// The failure of a name that nobody knows.

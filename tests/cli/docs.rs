@@ -1,4 +1,4 @@
-//! `luxel docs` as a person meets it.
+//! `luxel docs` and `luxel describe` as a person meets them.
 
 use super::program::Folder;
 
@@ -21,5 +21,27 @@ fn the_reference_has_a_page_for_each_class_and_every_link_leads_somewhere() {
         let [kind, name] = ["kind", "name"].map(|field| class[field].as_str().unwrap_or_default());
         let file = if name.is_empty() { kind.to_owned() } else { format!("{kind}-{name}") };
         assert!(index.contains(&format!("href=\"{file}.html\"")), "{file}");
+    }
+}
+
+#[test]
+fn a_function_is_described_and_has_no_kinds() {
+    let folder = Folder::new("describe");
+    let done = folder.luxel(&["describe", "look_at"]);
+    assert_eq!((done.code, &*done.err), (0, ""), "{done:?}");
+    assert!(done.out.starts_with("look_at(from, to, up) (language: "), "{}", done.out);
+    let done = folder.luxel(&["describe", "spectrum.file", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    assert_eq!(told["example"], "spectrum.file(\"leaf.csv\", column = \"upper\")");
+    for (word, near) in [("glas", "glass"), ("shap", "shape")] {
+        let done = folder.luxel(&["describe", word]);
+        assert!(done.err.contains(&format!("did you mean `{near}`?")), "{done:?}");
+        assert_eq!(done.code, 1);
+    }
+    for word in ["sin", "group"] {
+        let done = folder.luxel(&["describe", word, "big"]);
+        let message = format!("`{word}` has no kinds: there is no `big`");
+        assert!(done.code == 1 && done.err.contains(&message), "{done:?}");
+        assert!(done.err.contains(&format!("luxel describe {word}")), "{done:?}");
     }
 }

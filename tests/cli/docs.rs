@@ -14,6 +14,15 @@ fn the_reference_has_a_page_for_each_class_and_every_link_leads_somewhere() {
     assert!(sphere.contains("<h1>shape sphere</h1>") && sphere.contains("<tr id=\"radius\">"));
     assert!(page("language.html").contains("<h2 id=\"objects\">"));
     assert!(page("search.js").contains("\"title\":\"material conductor\""));
+    let search = page("search.js");
+    for text in [page("functions.html"), page("index.html")] {
+        assert!(text.contains("href=\"functions.html\""));
+    }
+    for function in luxel_lang::manual::functions() {
+        let name = function.name;
+        assert!(page("functions.html").contains(&format!("<h3 id=\"{name}\">")), "{name}");
+        assert!(search.contains(&format!("\"page\":\"functions.html#{name}\"")), "{name}");
+    }
     let listed = folder.luxel(&["list", "--json"]).out;
     let listed: serde_json::Value = serde_json::from_str(&listed).unwrap();
     let index = page("index.html");

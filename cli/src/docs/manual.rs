@@ -69,6 +69,7 @@ pub(super) fn messages() -> Page {
     let part = |(code, title): &(&str, &str)| Part {
         anchor: (*code).to_owned(),
         title: format!("{code} {title}"),
+        words: String::new(),
     };
     let sections: String = CATALOGUE.iter().map(|(code, title)| message(code, title)).collect();
     Page {

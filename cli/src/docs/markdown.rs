@@ -4,10 +4,12 @@ use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html as render
 
 use super::DOCUMENTS;
 
-/// A heading of a page.
+/// What stands under a heading of a page.
 pub(super) struct Part {
     pub(super) anchor: String,
     pub(super) title: String,
+    /// Words that it is found by, beside its title.
+    pub(super) words: String,
 }
 
 /// The HTML of a text: headings can be linked to, links lead to pages of this reference or are left out,
@@ -57,7 +59,7 @@ pub(super) fn inline(text: &str) -> String {
 /// The headings of a text.
 pub(super) fn headings(text: &str) -> Vec<Part> {
     let events: Vec<Event<'_>> = Parser::new(text).collect();
-    let part = |title: String| Part { anchor: anchor(&title), title };
+    let part = |title: String| Part { anchor: anchor(&title), title, words: String::new() };
     let starts =
         (0..events.len()).filter(|i| matches!(events[*i], Event::Start(Tag::Heading { .. })));
     starts.map(|i| part(heading(&events[i + 1..]))).collect()

@@ -1,5 +1,6 @@
 //! `luxel docs`: the reference of the language and of every plugin as a folder of web pages.
 
+mod functions;
 mod link;
 mod manual;
 mod markdown;
@@ -28,7 +29,7 @@ use crate::{load, words};
 ///
 /// A folder that needs no server and nothing from elsewhere: open index.html. A page for each class of
 /// the registry, of libraries too, with its manual, its parameters and a picture of the scene that its
-/// manual shows; the language; every message. All of it is searched by typing, and its links are
+/// manual shows; the language; every function; every message. All of it is searched by typing, and its links are
 /// checked (exit code 1 if one leads nowhere).
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
@@ -70,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let has_picture = |file: &str| pictures.iter().any(|picture| picture.name == file);
     let entries = run.plugins.registry.all();
     let mut pages: Vec<Page> = DOCUMENTS.map(|(name, text)| page::document(name, text)).into();
-    pages.push(manual::messages());
+    pages.extend([functions::page(), manual::messages()]);
     pages.extend(entries.map(|entry| manual::class(entry, has_picture(&picture_of(entry)))));
     pages.extend(words::WORDS.iter().map(manual::word));
     let n_pictures = pictures.len();

@@ -139,12 +139,12 @@ fn search(pages: &[Page]) -> String {
         })
     });
     let parts = pages.iter().flat_map(|page| page.parts.iter().map(move |part| (page, part)));
-    let parts = parts.map(|(page, Part { anchor, title })| {
+    let parts = parts.map(|(page, Part { anchor, title, words })| {
         json!({
             "page": format!("{}.html#{anchor}", page.name),
             "title": title,
             "summary": page.title,
-            "words": "",
+            "words": words,
         })
     });
     let entries: serde_json::Value = whole.chain(parts).collect();

@@ -20,6 +20,13 @@ pub struct Word {
     pub fields: &'static [Field],
 }
 
+impl Word {
+    /// What it is, and an example.
+    pub fn parts(&self) -> (&'static str, &'static str) {
+        self.doc.trim().split_once("\n\n").unwrap_or((self.doc, ""))
+    }
+}
+
 const TRANSFORM: Field = (
     "transform",
     "list of rotate, move, scale and matrix, optional",

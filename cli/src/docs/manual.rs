@@ -7,23 +7,21 @@ use luxel_sdk::params::Param;
 
 use super::markdown::{self, Part, escaped};
 use super::page::{GUIDE, Page};
+use super::thumb::Shown;
 use crate::describe::COMMON;
 use crate::list::summary;
 use crate::words::{self, Word};
 
-/// The manual of a class, with its parameters and perhaps a picture.
-pub(super) fn class(entry: &Entry, has_picture: bool) -> Page {
+/// The manual of a class, with its parameters and the picture of what it shows, if there is one.
+pub(super) fn class(entry: &Entry, drawn: Option<&Shown<'_>>) -> Page {
     let class = &entry.class;
     let (kind, name) = (class.kind.word(), class.name);
     let title = format!("{kind} {name}");
     let file = format!("{kind}-{name}");
-    let picture = has_picture.then(|| format!("{file}.png"));
-    let shown = picture.as_ref().map_or(String::new(), |picture| {
-        format!("<figure><img src=\"{picture}\" alt=\"What the scene below shows\"></figure>\n")
-    });
     let body = format!(
-        "<h1>{title}</h1>\n<p class=\"origin\">{}</p>\n{shown}{}{}{}{}",
+        "<h1>{title}</h1>\n<p class=\"origin\">{}</p>\n{}{}{}{}{}",
         escaped(&entry.origin),
+        drawn.map_or(String::new(), figure),
         markdown::html(class.doc.trim()),
         table("Parameters", &rows(class.params)),
         table(COMMON, &rows(common_params(class.kind))),
@@ -37,17 +35,34 @@ pub(super) fn class(entry: &Entry, has_picture: bool) -> Page {
         name: file,
         title,
         body,
-        picture,
+        picture: drawn.map(Shown::file),
         parts: vec![],
     }
 }
 
+/// The picture of what a manual shows, and for which files others stand in it.
+fn figure(drawn: &Shown<'_>) -> String {
+    let stand_ins = drawn.stand_ins();
+    let told = stand_ins.iter().map(|name| {
+        format!(
+            "<figcaption>In the picture, a file that this program made stands for <code>{}</code>.</figcaption>\n",
+            escaped(name)
+        )
+    });
+    format!(
+        "<figure><img src=\"{}\" alt=\"What the scene below shows\">\n{}</figure>\n",
+        drawn.file(),
+        told.collect::<String>(),
+    )
+}
+
 /// The manual of a word of the language that names no class.
-pub(super) fn word(word: &Word) -> Page {
-    let (text, example) = word.doc.trim().split_once("\n\n").unwrap_or((word.doc, ""));
+pub(super) fn word(word: &Word, drawn: Option<&Shown<'_>>) -> Page {
+    let (text, example) = word.parts();
     let body = format!(
-        "<h1>{}</h1>\n<p class=\"origin\">language</p>\n{}<pre><code>{}</code></pre>\n{}",
+        "<h1>{}</h1>\n<p class=\"origin\">language</p>\n{}{}<pre><code>{}</code></pre>\n{}",
         word.name,
+        drawn.map_or(String::new(), figure),
         markdown::html(text),
         escaped(example),
         table("Fields", &fields(word.fields)),
@@ -59,7 +74,7 @@ pub(super) fn word(word: &Word) -> Page {
         summary: summary(word.doc),
         words: text.to_owned(),
         body,
-        picture: None,
+        picture: drawn.map(Shown::file),
         parts: vec![],
     }
 }

@@ -6,24 +6,26 @@ mod manual;
 mod markdown;
 mod page;
 mod scene;
+mod stand_in;
 mod thumb;
 
 use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use luxel_core::registry::Entry;
 use luxel_core::render::Options;
 use serde_json::json;
 
 use self::page::{File, Page};
+use self::thumb::Shown;
 use crate::args::{self, PluginArgs};
 use crate::exit::{Exit, Failure};
+use crate::load;
 use crate::output::{Draft, unwritable};
 use crate::progress::Steps;
 use crate::report::{self, Form, Stream};
 use crate::verify::Run;
-use crate::{load, words};
+use crate::words::WORDS;
 
 /// Write the reference of the language and of every plugin as web pages
 ///
@@ -68,12 +70,17 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let options = Options { threads: args.threads, ..Options::default() };
     let run = Run::new(plugins, options)?.silent();
     let pictures = if args.no_pictures { vec![] } else { pictures(&run)? };
-    let has_picture = |file: &str| pictures.iter().any(|picture| picture.name == file);
-    let entries = run.plugins.registry.all();
+    let is_drawn = |shown: &Shown<'_>| pictures.iter().any(|file| file.name == shown.file());
     let mut pages: Vec<Page> = DOCUMENTS.map(|(name, text)| page::document(name, text)).into();
     pages.extend([functions::page(), manual::messages()]);
-    pages.extend(entries.map(|entry| manual::class(entry, has_picture(&picture_of(entry)))));
-    pages.extend(words::WORDS.iter().map(manual::word));
+    pages.extend(run.plugins.registry.all().map(|entry| {
+        let drawn = Shown::of_class(entry).filter(is_drawn);
+        manual::class(entry, drawn.as_ref())
+    }));
+    pages.extend(WORDS.iter().map(|word| {
+        let drawn = Some(Shown::of_word(word)).filter(is_drawn);
+        manual::word(word, drawn.as_ref())
+    }));
     let n_pictures = pictures.len();
     let mut files = page::site(&pages);
     let broken = link::broken(&files, &pictures);
@@ -85,22 +92,18 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if broken.is_empty() { Exit::Fine } else { Exit::Input })
 }
 
-/// A picture of what each manual shows, where it can be drawn without files.
+/// A picture of what each manual shows, where it can be drawn.
 fn pictures(run: &Run) -> Result<Vec<File>, Failure> {
-    let entries: Vec<&Entry> = run.plugins.registry.all().collect();
+    let of_classes = run.plugins.registry.all().filter_map(Shown::of_class);
+    let all: Vec<_> = of_classes.chain(WORDS.iter().map(Shown::of_word)).collect();
     let steps = Steps::new();
     let mut drawn = vec![];
-    for (done, entry) in entries.iter().enumerate() {
-        steps.next(done, entries.len(), &format!("{} {}", entry.class.kind, entry.class.name));
-        let bytes = thumb::png(entry, run)?;
-        drawn.extend(bytes.map(|bytes| File { name: picture_of(entry), bytes }));
+    for (done, shown) in all.iter().enumerate() {
+        steps.next(done, all.len(), &shown.of);
+        let bytes = thumb::png(shown, run)?;
+        drawn.extend(bytes.map(|bytes| File { name: shown.file(), bytes }));
     }
     Ok(drawn)
-}
-
-/// The picture's place in the folder.
-fn picture_of(entry: &Entry) -> String {
-    format!("{}-{}.png", entry.class.kind, entry.class.name)
 }
 
 fn write(folder: &Path, file: &File) -> Result<(), Failure> {

@@ -9,6 +9,13 @@ shape sphere { center = (-0.45, 0.6, 0) m, radius = 60 cm, material = material d
 shape box { size = (60, 60, 60) cm, transform = [rotate((0, 1, 0), 30 deg), move((0.75, 0.3, 0.3) m)], material = material diffuse { reflectance = 0.7 } }
 shape sphere { center = (0.2, 0.2, 1) m, radius = 20 cm, material = material conductor { eta = metal(\"Au\"), roughness = 0.2 } }
 ";
+/// What a snippet places that names no tree of its own.
+const TREE: &str = "
+let tree = group {
+  shape cone { base = (0, 0.6, 0) m, axis = (0, 1, 0), height = 2 m, radius = 70 cm, material = material diffuse { reflectance = rgb.linear_srgb(0.05, 0.2, 0.07) } }
+  shape cylinder { base = (0, 0, 0) m, axis = (0, 1, 0), height = 80 cm, radius = 12 cm, material = material diffuse { reflectance = rgb.linear_srgb(0.22, 0.13, 0.07) } }
+}
+";
 /// Where they are seen from.
 const AT_THINGS: &str =
     "look_at(from = (1.2, 1.7, 4.2) m, to = (0.1, 0.5, 0) m, up = (0, 1, 0)), fov = 36 deg";
@@ -47,7 +54,8 @@ pub(super) fn around(kind: Kind, snippet: &str, camera: &str) -> String {
     let has = |word: &str| {
         snippet.lines().any(|line| line.strip_prefix(word).is_some_and(|it| it.starts_with(' ')))
     };
-    let mut scene = format!("scene 1\n{snippet}\n");
+    let tree = if has("place tree") && !has("let tree") { TREE } else { "" };
+    let mut scene = format!("scene 1\n{tree}{snippet}\n");
     if !has("integrator") {
         scene += "integrator path { max_depth = 24 }\n";
     }
@@ -66,7 +74,9 @@ pub(super) fn around(kind: Kind, snippet: &str, camera: &str) -> String {
         }
         Kind::Light => scene.extend([THINGS, &seen]),
         Kind::Camera => scene.extend([THINGS, SKY]),
-        Kind::Shape | Kind::Material | Kind::Texture => scene.extend([SKY, camera]),
+        Kind::Shape | Kind::Material | Kind::Texture | Kind::Importer => {
+            scene.extend([SKY, camera]);
+        }
         _ => scene.extend([THINGS, SKY, &seen]),
     }
     scene

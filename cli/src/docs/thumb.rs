@@ -4,15 +4,16 @@ use std::path::Path;
 
 use glam::{DVec3, UVec2};
 use luxel_core::diag::Diagnostic;
-use luxel_core::files::MemoryFiles;
 use luxel_core::film::Film;
 use luxel_core::registry::{Display, Entry, Registry};
 use luxel_core::render::Options;
 use luxel_core::stage::{self, Stage};
+use luxel_lang::manual::Word;
 use luxel_sdk::color::RgbSpace;
 use luxel_sdk::kind::Kind;
 
 use super::scene::around;
+use super::stand_in;
 use crate::exit::{Exit, Failure, blaming};
 use crate::picture::{show, write_signal};
 use crate::verify::Run;
@@ -26,36 +27,68 @@ const FROM: DVec3 = DVec3::new(0.45, 0.35, 0.82);
 /// Share of the pixels that may be brighter than white, where the light is the manual's own.
 const BRIGHTEST: f64 = 0.03;
 
-/// A PNG of the first snippet of a manual; `None` where it needs files or shows nothing.
+/// What a manual shows first.
+pub(super) struct Shown<'m> {
+    /// Whose manual it is of: `shape sphere`.
+    pub(super) of: String,
+    kind: Kind,
+    snippet: &'m str,
+}
+
+impl<'m> Shown<'m> {
+    /// `None` where the manual shows nothing.
+    pub(super) fn of_class(entry: &'m Entry) -> Option<Self> {
+        let snippet = entry.class.doc.split("```scene").nth(1)?.split("```").next()?.trim();
+        let of = format!("{} {}", entry.class.kind, entry.class.name);
+        Some(Self { of, kind: entry.class.kind, snippet })
+    }
+
+    /// What the language's own words show are shapes in their places.
+    pub(super) fn of_word(word: &'m Word) -> Self {
+        Self { of: word.name.to_owned(), kind: Kind::Shape, snippet: word.parts().1 }
+    }
+
+    /// The picture's place in the folder.
+    pub(super) fn file(&self) -> String {
+        format!("{}.png", self.of.replace(' ', "-"))
+    }
+
+    /// The files that it names and that another stands for in the picture.
+    pub(super) fn stand_ins(&self) -> Vec<&'static str> {
+        stand_in::names(self.snippet).collect()
+    }
+}
+
+/// A PNG of what a manual shows first; `None` where it needs files that nothing stands for, or shows
+/// nothing.
 ///
 /// # Errors
-/// Ctrl-C; a panic below, with the class's name.
-pub(super) fn png(entry: &Entry, run: &Run) -> Result<Option<Vec<u8>>, Failure> {
-    let name = format!("the manual of {} {}", entry.class.kind, entry.class.name);
-    let stage = blaming(&name, || of_manual(entry, &run.plugins.registry))?;
+/// Ctrl-C; a panic below, with the name of what the manual is of.
+pub(super) fn png(shown: &Shown<'_>, run: &Run) -> Result<Option<Vec<u8>>, Failure> {
+    let name = format!("the manual of {}", shown.of);
+    let stage = blaming(&name, || of_manual(shown, &run.plugins.registry))?;
     let Some(stage) = stage else { return Ok(None) };
     let options = Options { spp: Some(SPP), ..run.options.clone() };
     match run.film((Path::new(&name), &stage), &options) {
-        Ok(film) => Ok(drawn(&film, entry.class.kind)),
+        Ok(film) => Ok(drawn(&film, shown.kind)),
         Err(failure) if failure.exit == Exit::Incomplete => Err(failure),
         Err(_) => Ok(None),
     }
 }
 
 /// The stage of what a manual shows first.
-fn of_manual(entry: &Entry, registry: &Registry) -> Option<Stage> {
-    let snippet = entry.class.doc.split("```scene").nth(1)?.split("```").next()?.trim();
-    let staged = |camera: &str| stage_of(&around(entry.class.kind, snippet, camera), registry);
+fn of_manual(shown: &Shown<'_>, registry: &Registry) -> Option<Stage> {
+    let staged = |camera: &str| stage_of(&around(shown.kind, shown.snippet, camera), registry);
     // Once to see where its shapes are, and once more to look at them.
     let (centre, radius) = staged(&camera((DVec3::ZERO, 1.0)))?.sphere;
     let is_somewhere = centre.is_finite() && radius.is_finite() && radius > 0.0;
     staged(&camera(if is_somewhere { (centre, radius) } else { (DVec3::ZERO, 2.0) }))
 }
 
-/// The stage of a text that needs no files; names that it does not make are brown materials.
+/// The stage of a text that needs no files but those that something stands for; names that it does not make are brown materials.
 fn stage_of(text: &str, registry: &Registry) -> Option<Stage> {
     let load = |text: &str| {
-        let files = MemoryFiles::default().with("manual.scene", text.as_bytes());
+        let files = stand_in::files(text).with("manual.scene", text.as_bytes());
         let settings = luxel_lang::Settings::default();
         luxel_lang::load(Path::new("manual.scene"), &files, registry, &settings)
     };
@@ -72,7 +105,7 @@ fn stage_of(text: &str, registry: &Registry) -> Option<Stage> {
     let whole = text.replacen("scene 1\n", &format!("scene 1\n{}", lets.concat()), 1);
     let mut scene = load(&whole).scene?;
     scene.set_resolution(SIZE);
-    let built = stage::build(&scene, registry, &MemoryFiles::default(), None);
+    let built = stage::build(&scene, registry, &stand_in::files(text), None);
     built.ok().map(|built| built.stage)
 }
 
@@ -107,18 +140,37 @@ fn drawn(film: &Film, kind: Kind) -> Option<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
+    use luxel_lang::manual::WORDS;
+
     use super::*;
 
-    #[test]
-    fn every_built_in_whose_manual_needs_no_file_can_be_drawn() {
+    fn registry() -> Registry {
         let mut registry = Registry::new();
         for classes in luxel_builtin::CLASSES {
             registry.add("builtin", classes).unwrap();
         }
+        registry
+    }
+
+    #[test]
+    fn what_every_built_in_and_every_word_shows_can_be_drawn() {
+        let registry = registry();
         for entry in registry.all() {
-            let needs_file = entry.class.doc.contains("file =");
-            let is_drawn = of_manual(entry, &registry).is_some();
-            assert!(is_drawn != needs_file, "{:?}", entry.class);
+            let shown = Shown::of_class(entry).unwrap();
+            assert!(of_manual(&shown, &registry).is_some(), "{}", shown.of);
         }
+        for word in &WORDS {
+            assert!(of_manual(&Shown::of_word(word), &registry).is_some(), "{}", word.name);
+        }
+    }
+
+    #[test]
+    fn what_needs_another_file_is_not_drawn() {
+        let snippet = "shape mesh { file = \"assets/other.obj\", unit = 1 m }";
+        let shown = Shown { of: "shape mesh".to_owned(), kind: Kind::Shape, snippet };
+        assert!(shown.stand_ins().is_empty());
+        assert!(of_manual(&shown, &registry()).is_none());
+        let snippet = "shape mesh { file = \"assets/spot.obj\", unit = 1 m }";
+        assert_eq!(Shown { snippet, ..shown }.stand_ins(), ["assets/spot.obj"]);
     }
 }

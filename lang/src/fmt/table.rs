@@ -75,8 +75,33 @@ pub(super) fn is_long(text: &str) -> bool {
     rows.is_some_and(has_several) || text.contains("//")
 }
 
-/// Puts a table; `after` columns stand behind it.
+/// Whether a comment in a table goes over several lines.
+fn has_long_comment(text: &str) -> bool {
+    let mut rest = text;
+    while let Some(at) = rest.find('/') {
+        rest = &rest[at + 1..];
+        let length = match rest.as_bytes().first() {
+            Some(b'/') => rest.find('\n'),
+            Some(b'*') => {
+                let end = rest[1..].find("*/").map_or(rest.len(), |end| end + 3);
+                if rest[..end].contains('\n') {
+                    return true;
+                }
+                Some(end)
+            }
+            _ => Some(0),
+        };
+        rest = &rest[length.unwrap_or(rest.len())..];
+    }
+    false
+}
+
+/// Puts a table; `after` columns stand behind it. One with a comment of several lines is kept to the
+/// letter.
 pub(super) fn put(text: &str, out: &mut Out, after: usize) {
+    if has_long_comment(text) {
+        return out.comment(text);
+    }
     if is_long(text) {
         return rows(body(text), out);
     }

@@ -32,6 +32,8 @@ fn evaluated() -> Vec<Attack> {
         attack("nested loops", "for i in 0..1000000 { for j in 0..1000000 { let x = i * j } }"),
         attack("empty loops", "for i in 0..1000000 { for j in 0..1000000 { } }"),
         attack("list of lists", "let a = [for i in 0..10000000 => [for j in 0..10000000 => i]]"),
+        attack("list of spectra", "let a = [for i in 0..3000000 => blackbody(3000 K)]"),
+        attack("list of metals", "let a = [for i in 0..3000000 => metal(\"Au\")]"),
         attack("list of texts", "let a = [for i in 0..10000000 => \"a\"]"),
         attack(
             "many lists",

@@ -45,13 +45,12 @@ impl Evaluator<'_> {
             Make::Constant => self.number_arg(call, 0, Dimension::NONE).map(Color::Constant),
             Make::Illuminant => {
                 let names = catalogue::illuminant_names();
-                let known = |name: &str| catalogue::illuminant(name).is_some();
-                self.named(call, "illuminant", names, known).map(Color::Illuminant)
+                self.named(call, "illuminant", names, catalogue::is_illuminant)
+                    .map(Color::Illuminant)
             }
-            Make::Metal => {
-                let known = |name: &str| catalogue::metal(name).is_some();
-                self.named(call, "metal", catalogue::metal_names(), known).map(Color::Metal)
-            }
+            Make::Metal => self
+                .named(call, "metal", catalogue::metal_names(), catalogue::is_metal)
+                .map(Color::Metal),
             Make::Glass => {
                 let names = catalogue::GLASSES.iter().flat_map(|glass| {
                     std::iter::once(glass.name).chain(glass.aliases.iter().copied())
@@ -90,7 +89,7 @@ impl Evaluator<'_> {
 
     fn blackbody(&mut self, call: &Call<'_>) -> Option<Color> {
         let kelvin = self.number_arg(call, 0, Dimension::TEMPERATURE)?;
-        if catalogue::blackbody(kelvin).is_some() {
+        if catalogue::is_blackbody(kelvin) {
             return Some(Color::Blackbody(kelvin));
         }
         let span = call.arg(0).map_or(call.span, |arg| arg.span);

@@ -33,6 +33,11 @@ pub fn illuminant_names() -> impl Iterator<Item = &'static str> {
     ["A", "E"].into_iter().chain(TABLES.iter().map(|t| t.0))
 }
 
+/// Whether there is an illuminant of that name, without making its spectrum.
+pub fn is_illuminant(name: &str) -> bool {
+    illuminant_names().any(|known| same_name(name, known))
+}
+
 /// The CIE illuminant of that name, scaled to Y = 1, or `None`; case and separators do not matter.
 ///
 /// Tabulated ones end at 780 nm and are zero beyond.
@@ -101,11 +106,16 @@ pub fn planck(nm: f64, kelvin: f64) -> f64 {
     C1_L / m.powi(5) / (C2_NM / nm / kelvin).exp_m1() * 1e-9
 }
 
+/// Whether a blackbody of that temperature, in kelvin, has a spectrum: 1 ≤ `kelvin` < ∞.
+pub fn is_blackbody(kelvin: f64) -> bool {
+    (1.0..f64::INFINITY).contains(&kelvin)
+}
+
 /// The blackbody's spectrum at `kelvin`, scaled to Y = 1; `None` unless 1 ≤ `kelvin` < ∞.
 ///
 /// Works in logarithms, so that a body too cold to be seen still has its true shape.
 pub fn blackbody(kelvin: f64) -> Option<Curve> {
-    if !(1.0..f64::INFINITY).contains(&kelvin) {
+    if !is_blackbody(kelvin) {
         return None;
     }
     // ln B less a constant; ln(eˣ − 1) = x + ln(1 − e⁻ˣ).

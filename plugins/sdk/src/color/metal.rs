@@ -35,13 +35,21 @@ pub fn metal_names() -> impl Iterator<Item = &'static str> {
         .flat_map(|(symbol, names, _)| std::iter::once(*symbol).chain(names.iter().copied()))
 }
 
+/// Whether there is a metal of that symbol or name, without making its spectra.
+pub fn is_metal(name: &str) -> bool {
+    entry(name).is_some()
+}
+
+fn entry(name: &str) -> Option<&'static Entry> {
+    METALS.iter().find(|e| same_name(name, e.0) || e.1.iter().any(|n| same_name(name, n)))
+}
+
 /// The metal of that symbol or name, or `None`; case and separators do not matter.
 ///
 /// # Source
 /// refractiveindex.info: Johnson and Christy 1972 and 1974, Rakić 1995 (Al), Weaver et al. 1975 (W).
 pub fn metal(name: &str) -> Option<Metal> {
-    let known = |e: &&Entry| same_name(name, e.0) || e.1.iter().any(|n| same_name(name, n));
-    let (_, _, rows) = METALS.iter().find(known)?;
+    let (_, _, rows) = entry(name)?;
     let column = |c: usize| {
         let points: Vec<_> = rows.iter().map(|r| (f64::from(r[0]), f64::from(r[c]))).collect();
         Curve::from_table(&points, Outside::Constant)

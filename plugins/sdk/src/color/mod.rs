@@ -21,9 +21,10 @@ pub use convert::{emission_rgb, ior_rgb, reflectance_rgb};
 pub use curve::{Curve, CurveError, Outside};
 pub use glass::{GLASSES, Glass, glass};
 pub use illuminant::{
-    blackbody, blackbody_radiance, daylight, illuminant, illuminant_names, planck,
+    blackbody, blackbody_radiance, daylight, illuminant, illuminant_names, is_blackbody,
+    is_illuminant, planck,
 };
-pub use metal::{Metal, metal, metal_names};
+pub use metal::{Metal, is_metal, metal, metal_names};
 pub use observer::{K_CD, Observer, luminance_cd_m2, to_xyz};
 pub use palette::Palette;
 pub use rgb::{RgbSpace, bradford, srgb_decode, srgb_encode, xy_to_xyz, xyz_to_xy};

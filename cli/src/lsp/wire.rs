@@ -11,6 +11,9 @@ use crate::report;
 /// Bytes of one message, at most: a whole scene file with every character escaped.
 const MAX_BYTES: u64 = 512 << 20;
 
+/// Bytes from which on a length is a mistake, and not what is to be passed over.
+const NEVER: u64 = 16 << 30;
+
 /// The protocol's codes of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Code {
@@ -92,6 +95,9 @@ fn message(input: &mut impl BufRead) -> io::Result<Option<Result<Vec<u8>, String
         let why = wrong.unwrap_or_else(|| "the header has no `Content-Length`".to_owned());
         return Ok(Some(Err(why)));
     };
+    if length > NEVER {
+        return Ok(Some(Err(format!("nobody sends a message of {length} bytes"))));
+    }
     if length > MAX_BYTES {
         io::copy(&mut input.by_ref().take(length), &mut io::sink())?;
         return Ok(Some(Err(format!("a message of {length} bytes; the limit is {MAX_BYTES}"))));
@@ -177,6 +183,7 @@ mod tests {
         };
         check(&framed("{"), "the message is not JSON");
         check("Content-Length: x\r\n\r\n", "`Content-Length` wants a number");
+        check("Content-Length: 99999999999999\r\n\r\n", "nobody sends a message");
         check("Content-Type: x\r\n\r\n", "the header has no `Content-Length`");
         check("hello\r\n\r\n", "a header has the form `Name: value`");
         let found = heard(&format!("{{\"method\":\"lost\"}}{good}{good}"));

@@ -75,7 +75,7 @@ pub(super) fn is_long(text: &str) -> bool {
     rows.is_some_and(has_several) || text.contains("//")
 }
 
-/// Whether a comment in a table goes over several lines.
+/// Whether a comment in a table goes over several lines, or up to its bracket.
 fn has_long_comment(text: &str) -> bool {
     let mut rest = text;
     while let Some(at) = rest.find('/') {
@@ -83,11 +83,11 @@ fn has_long_comment(text: &str) -> bool {
         let length = match rest.as_bytes().first() {
             Some(b'/') => rest.find('\n'),
             Some(b'*') => {
-                let end = rest[1..].find("*/").map_or(rest.len(), |end| end + 3);
-                if rest[..end].contains('\n') {
+                let end = rest[1..].find("*/").map(|end| end + 3);
+                if end.is_none_or(|end| rest[..end].contains('\n')) {
                     return true;
                 }
-                Some(end)
+                end
             }
             _ => Some(0),
         };
@@ -96,8 +96,7 @@ fn has_long_comment(text: &str) -> bool {
     false
 }
 
-/// Puts a table; `after` columns stand behind it. One with a comment of several lines is kept to the
-/// letter.
+/// Puts a table; `after` columns stand behind it. One with such a comment is kept to the letter.
 pub(super) fn put(text: &str, out: &mut Out, after: usize) {
     if has_long_comment(text) {
         return out.comment(text);

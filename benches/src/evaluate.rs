@@ -74,7 +74,7 @@ const CASES: [Case; 7] = [
     },
     Case {
         name: "changes, written out",
-        n: 1_000_000,
+        n: 450_000,
         text: |n| {
             let ball = "shape sphere \"ball\" { radius = 1 m }\n".to_owned();
             ball + &"set ball.radius = 2 m\n".repeat(n)

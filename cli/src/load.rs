@@ -197,7 +197,7 @@ pub(crate) fn build(
                 Some(built.stage)
             }
             Some(Err(Unbuilt::Faulty(found))) => {
-                diagnostics.extend(found);
+                diagnostics.extend(shortened(found));
                 None
             }
             Some(Err(Unbuilt::Cancelled)) | None => None,
@@ -211,6 +211,19 @@ pub(crate) fn build(
     Ok(loaded)
 }
 
+/// As many as nobody reads to the end are told in part, mistakes first, and counted.
+fn shortened(mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let most = luxel_lang::Budgets::default().diagnostics;
+    let n_more = found.len().saturating_sub(most);
+    if n_more > 0 {
+        found.sort_by_key(|found| !found.is_error());
+        found.truncate(most);
+        let message = format!("{n_more} more mistakes and warnings are not shown");
+        found.push(Diagnostic::unplaced("E0508", message));
+    }
+    found
+}
+
 fn go_on(watch: &Watch) -> Result<(), Failure> {
     if watch.is_cancelled() { Err(Failure::new(Exit::Incomplete, CANCELLED)) } else { Ok(()) }
 }
@@ -219,6 +232,26 @@ fn go_on(watch: &Watch) -> Result<(), Failure> {
 mod tests {
     use super::*;
     use crate::testing::Folder;
+
+    #[test]
+    fn mistakes_of_a_thousand_objects_are_counted() {
+        let folder = Folder::new("thousand");
+        let mesh = "shape mesh { file = \"none.ply\", unit = 1 m, transform = move((i, 0, 0) m) }";
+        let light = "light constant { scale = 1 }";
+        let camera = "camera perspective { fov = 40 deg, look = look_at(from = (0, 0, 9) m, \
+                      to = (0, 0, 0) m, up = (0, 1, 0)) }";
+        let text = format!("scene 1\n{camera}\n{light}\nfor i in 0..1000 {{ {mesh} }}\n");
+        folder.write("a.scene", text.as_bytes());
+        let (path, plugins) = (folder.path("a.scene"), registry(&PluginArgs::default()).unwrap());
+        let loaded = load(&path, &LoadArgs::default(), None, &plugins, &Course::default()).unwrap();
+        let told = &loaded.diagnostics;
+        assert!(loaded.stage.is_none() && told.len() == 101, "{}", told.len());
+        assert!(
+            told[100].message == "900 more mistakes and warnings are not shown",
+            "{}",
+            told[100]
+        );
+    }
 
     #[test]
     fn what_is_not_wanted_any_more_is_neither_read_nor_built() {

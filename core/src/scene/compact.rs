@@ -135,14 +135,15 @@ fn arrange<T>(items: &mut Vec<T>, mut numbers: Vec<u32>, n_kept: u32) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use luxel_sdk::kind::Kind;
 
     use super::*;
     use crate::diag::{SourceId, Span};
     use crate::scene::{Argument, Group, Node, Placed, Pose};
 
-    fn node(at: usize, child: Option<u32>) -> Node {
+    /// A node that stands at a byte and may refer to another.
+    pub(in crate::scene) fn node(at: usize, child: Option<u32>) -> Node {
         let span = Span::new(SourceId(0), at, at + 1);
         let value = |id| Argument { name: "base", value: Value::Node(NodeId(id)), span };
         Node {

@@ -172,25 +172,10 @@ impl Put<'_> {
 
 #[cfg(test)]
 mod tests {
-    use luxel_sdk::kind::Kind;
-
     use super::*;
     use crate::diag::SourceId;
     use crate::scene::Pose;
-
-    fn node(at: usize, child: Option<u32>) -> Node {
-        let span = Span::new(SourceId(0), at, at + 1);
-        let value = |id| Argument { name: "base", value: Value::Node(NodeId(id)), span };
-        Node {
-            kind: Kind::Shape,
-            class: "any".into(),
-            label: None,
-            params: child.map(value).into_iter().collect(),
-            overrides: vec![],
-            span,
-            hash: [0; 32],
-        }
-    }
+    use crate::scene::compact::tests::node;
 
     fn placed(target: Target, at: usize) -> Placed {
         let span = Span::new(SourceId(0), at, at);

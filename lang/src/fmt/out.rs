@@ -9,7 +9,19 @@ struct Remark {
     line: usize,
     column: usize,
     indent: usize,
+    /// Columns of its first line.
+    width: usize,
 }
+
+impl Remark {
+    /// Whether it ends in time behind so many columns.
+    fn fits(&self, column: usize) -> bool {
+        column + GAP + self.width <= WIDTH
+    }
+}
+
+/// Columns between a line and the comment at its end.
+const GAP: usize = 2;
 
 /// Text with its last line's state.
 #[derive(Default)]
@@ -88,14 +100,16 @@ impl Out {
     pub(super) fn remark(&mut self, text: &str) {
         let Self { line, column, indent, .. } = *self;
         if !self.fresh {
-            self.remarks.push(Remark { at: self.text.len(), line, column, indent });
-            self.blanks(2);
+            let width = text.lines().next().unwrap_or("").chars().count();
+            self.remarks.push(Remark { at: self.text.len(), line, column, indent, width });
+            self.blanks(GAP);
         }
         self.comment(text);
         self.ends = true;
     }
 
-    /// The text, remarks of lines that follow each other below each other.
+    /// The text, remarks of lines that follow each other below each other, unless one would pass the
+    /// margin for it.
     pub(super) fn finish(mut self) -> String {
         if !self.text.is_empty() {
             self.text.push('\n');
@@ -109,9 +123,11 @@ impl Out {
         let mut from = 0;
         for run in remarks.chunk_by(follows) {
             let widest = run.iter().map(|it| it.column).filter(|column| *column <= WIDTH).max();
+            let widest = widest.unwrap_or(0);
+            let passes = run.iter().any(|it| it.fits(it.column) && !it.fits(widest));
             for remark in run {
                 out.push_str(&self.text[from..remark.at]);
-                let pad = widest.unwrap_or(0).saturating_sub(remark.column);
+                let pad = if passes { 0 } else { widest.saturating_sub(remark.column) };
                 out.extend(std::iter::repeat_n(' ', pad));
                 from = remark.at;
             }

@@ -55,7 +55,7 @@ impl Dimension {
 
     /// The word a person would use, or the base units: `length`, `angle`, `m^2/s`.
     pub fn name(self) -> String {
-        const WORDS: [(Dimension, &str); 8] = [
+        const WORDS: [(Dimension, &str); 16] = [
             (Dimension::NONE, "a plain number"),
             (Dimension::LENGTH, "a length"),
             (Dimension::TIME, "a time"),
@@ -63,6 +63,14 @@ impl Dimension {
             (Dimension::ANGLE, "an angle"),
             (Dimension::SOLID_ANGLE, "a solid angle"),
             (Dimension::POWER, "a power"),
+            (Dimension::MASS, "a mass"),
+            (Dimension::ENERGY, "an energy"),
+            (Dimension([2, 0, 0, 0, 0, 0, 0]), "an area"),
+            (Dimension([3, 0, 0, 0, 0, 0, 0]), "a volume"),
+            (Dimension::LUMINOUS, "a luminous intensity, as in cd"),
+            (Dimension([0, 0, 0, 0, 1, 0, 1]), "a luminous flux, as in lm"),
+            (Dimension([-2, 0, 0, 0, 1, 0, 1]), "an illuminance, as in lx"),
+            (Dimension([-2, 0, 0, 0, 1, 0, 0]), "a luminance, as in nit"),
             (Dimension::ANGULAR_SPEED, "an angular speed, as `90 deg/s`"),
         ];
         match WORDS.iter().find(|(dimension, _)| *dimension == self) {

@@ -69,11 +69,16 @@ impl<'a> Tables<'a> {
         let colors = groups::<3>("colors", mesh.colors.get(), &mut faults);
         let (indices, sides) = (mesh.indices.get(), mesh.sides.get());
         let starts = starts(indices.len(), sides, &mut faults);
-        let lists = [("normals", normals.len()), ("uvs", uvs.len()), ("colors", colors.len())];
+        // What is begun counts as one, lest a number too few be told of all.
+        let n_points = mesh.points.get().len().div_ceil(3);
+        let lists = [
+            ("normals", mesh.normals.get().len().div_ceil(3)),
+            ("uvs", mesh.uvs.get().len().div_ceil(2)),
+            ("colors", mesh.colors.get().len().div_ceil(3)),
+        ];
         for (field, n) in lists {
-            if n != 0 && n != points.len() {
-                let message =
-                    format!("{n} {field} for {} points: there must be as many", points.len());
+            if n != 0 && n != n_points {
+                let message = format!("{n} {field} for {n_points} points: there must be as many");
                 faults.push(Fault::mesh(field, message));
             }
         }
@@ -83,7 +88,7 @@ impl<'a> Tables<'a> {
             faults.push(Fault::mesh("colors", message));
         }
         let what = if sides.is_empty() { "triangle" } else { "face" };
-        let corners = corners((indices, &starts), points.len(), what, context);
+        let corners = corners((indices, &starts), n_points, what, context);
         let corners = corners.map_err(|fault| faults.push(fault)).unwrap_or_default();
         go_on(context).map_err(stopped)?;
         let axes = Axes { turn: mesh.up.turn(), ..Axes::METRES };

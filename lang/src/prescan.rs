@@ -2,9 +2,11 @@
 //!
 //! No recursion and no allocation per token. Between statements it skips by table and by memchr.
 
+mod strings;
+
 use std::ops::Range;
 
-use memchr::{memchr, memchr3};
+use memchr::memchr;
 
 /// What is wrong with the brackets, strings or comments of a text; offsets are bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -124,6 +126,7 @@ pub fn scan_until(
         follower: None,
         first: depth == 0,
         doc: None,
+        stray: None,
         out: Scan::default(),
     };
     scanner.run();
@@ -147,13 +150,15 @@ struct Scanner<'a> {
     /// Whether what stands before could end an expression.
     operand: bool,
     newline: bool,
-    /// Between `for` and `in`, where a comma separates names and not statements.
+    /// Between `for` and `in`, or in an `assert`, where a comma separates no statements.
     in_for: bool,
     /// The word that continues the running statement on a new line.
     follower: Option<&'static [u8]>,
     /// Whether no statement has begun in this block.
     first: bool,
     doc: Option<usize>,
+    /// One past the last bracket that closed nothing.
+    stray: Option<usize>,
     out: Scan,
 }
 
@@ -224,13 +229,25 @@ impl Scanner<'_> {
                     self.in_for &= !begins;
                 }
                 self.operand = byte != b'@' && !PREFIX.contains(&name);
-                self.in_for = name == b"for" || (self.in_for && name != b"in");
+                self.in_for = matches!(name, b"for" | b"assert") || (self.in_for && name != b"in");
             }
             b'0'..=b'9' => {
                 while self.bytes.get(self.at).is_some_and(word) {
                     self.at += 1;
                 }
+                // `5.` is a mistake, but not one of the line after it.
+                let is_end = |b: &u8| !word(b) && *b != b'.';
+                if self.bytes.get(self.at) == Some(&b'.')
+                    && self.bytes.get(self.at + 1).is_none_or(is_end)
+                {
+                    self.at += 1;
+                }
                 (self.operand, self.newline) = (true, false);
+            }
+            // `#define x`: no mistake of the statement before.
+            b'#' if self.operand && self.newline && self.open.len() == self.depth => {
+                self.word(start);
+                (self.operand, self.in_for) = (false, false);
             }
             _ => (self.operand, self.newline) = (false, false),
         }
@@ -272,56 +289,6 @@ impl Scanner<'_> {
         self.doc = None;
         self.newline = false;
         begins
-    }
-
-    fn string(&mut self) {
-        let start = self.at;
-        self.at += 1;
-        loop {
-            let Some(found) = memchr3(b'"', b'\\', b'\n', &self.bytes[self.at..]) else {
-                self.at = self.bytes.len();
-                self.out.faults.push(Fault::String { at: start..self.at });
-                break;
-            };
-            self.at += found;
-            match self.bytes[self.at] {
-                b'"' => {
-                    self.at += 1;
-                    break;
-                }
-                b'\\' => self.escape(),
-                _ => {
-                    self.out.faults.push(Fault::String { at: start..self.at });
-                    break;
-                }
-            }
-        }
-        (self.operand, self.newline, self.doc) = (true, false, None);
-    }
-
-    fn escape(&mut self) {
-        let rest = &self.bytes[self.at + 1..];
-        let length = match rest.first() {
-            Some(b'"' | b'\\' | b'n' | b't') => Some(1),
-            Some(b'u') if rest.get(1) == Some(&b'{') => {
-                let digits = rest[2..].iter().take_while(|b| b.is_ascii_hexdigit()).count();
-                let closed = rest.get(2 + digits) == Some(&b'}');
-                ((1..=6).contains(&digits) && closed).then_some(digits + 3)
-            }
-            _ => None,
-        };
-        if let Some(length) = length {
-            self.at += 1 + length;
-            return;
-        }
-        // The whole character after the backslash, but never the end of the line.
-        let continues = |b: &&u8| (**b & 0xC0) == 0x80;
-        let length = match rest.first() {
-            None | Some(b'\n') => 0,
-            Some(_) => 1 + rest[1..].iter().take_while(continues).count(),
-        };
-        self.out.faults.push(Fault::Escape { at: self.at..self.at + 1 + length });
-        self.at += 1 + length;
     }
 
     fn line_comment(&mut self) {
@@ -390,9 +357,37 @@ impl Scanner<'_> {
         misfits
     }
 
+    /// A bracket that closes nothing: with others beside it, one mistake.
+    fn stray(&mut self) {
+        if self.stray != Some(self.at) {
+            self.out.faults.push(Fault::Stray { at: self.at });
+        }
+        self.stray = Some(self.at + 1);
+    }
+
+    /// Whether a bracket that does not fit the one that was just closed is one too many, rather than
+    /// another one than was meant: a block that began on a line before goes on, and so does the rest of
+    /// this line.
+    fn is_one_too_many(&self, open: usize, byte: u8) -> bool {
+        if byte == b'}'
+            || self.bytes[open] != b'{'
+            || self.open.iter().any(|o| closing(self.bytes[*o]) == byte)
+        {
+            return false;
+        }
+        let with: Vec<usize> = self.open.iter().copied().chain([open]).collect();
+        let (kept, closed) = (self.misfits(&with), self.misfits(&self.open));
+        let before = memchr(b'\n', &self.bytes[open..self.at]).is_some();
+        kept < closed || kept == closed && before
+    }
+
     fn close_bracket(&mut self, byte: u8) {
         match self.open.pop() {
-            None => self.out.faults.push(Fault::Stray { at: self.at }),
+            None => self.stray(),
+            Some(open) if self.is_one_too_many(open, byte) => {
+                self.open.push(open);
+                self.stray();
+            }
             Some(open) if closing(self.bytes[open]) != byte => {
                 self.out.faults.push(Fault::Mismatch { open, at: self.at });
                 // An outer bracket of this kind closes here too, if the line goes on better so; else

@@ -6,6 +6,9 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 
 use crate::prescan::Fault;
 
+/// Brackets that a message shows.
+const SHOWN: usize = 8;
+
 /// What is told of a bracket, text or comment that does not close; `limit` is how deep brackets may
 /// nest, and a block that never closes most likely does before `resume`.
 pub(super) fn told(
@@ -37,8 +40,13 @@ pub(super) fn told(
                 .label(span(*open..open + 1), "opened here")
         }
         Fault::Stray { at } => {
-            let message = format!("this `{}` closes nothing", byte(*at));
-            let place = span(*at..at + 1);
+            let rest = &text[*at..];
+            let n = rest.bytes().take_while(|b| b")]}".contains(b)).count();
+            let (this, closes) = if n == 1 { ("this", "closes") } else { ("these", "close") };
+            let more = if n > SHOWN { "…" } else { "" };
+            let shown = &rest[..n.min(SHOWN)];
+            let message = format!("{this} `{shown}{more}` {closes} nothing");
+            let place = span(*at..at + n);
             Diagnostic::error("E0010", place, message).guess(place, "")
         }
         Fault::String { at } => {

@@ -100,6 +100,8 @@ pub(crate) fn load(
 pub(crate) struct Text {
     /// The scene, if it has no error.
     pub(crate) scene: Option<Scene>,
+    /// What could be made if it has one.
+    pub(crate) rest: Option<Scene>,
     /// What was found.
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// The texts that were read.
@@ -158,8 +160,8 @@ pub(crate) fn read(
         if let Some(scene) = &mut scene {
             args.layers.iter().for_each(|layer| scene.add_layer(*layer));
         }
-        let luxel_lang::Loaded { diagnostics, sources, params, .. } = read;
-        Text { scene, diagnostics, sources, files, params, set: settings.set }
+        let luxel_lang::Loaded { rest, diagnostics, sources, params, .. } = read;
+        Text { scene, rest, diagnostics, sources, files, params, set: settings.set }
     })?;
     go_on(watch)?;
     text.scene.as_mut().map_or(Ok(()), |scene| args.change_features(scene))?;
@@ -179,7 +181,7 @@ pub(crate) fn build(
     Course { beat, watch, line: shown, .. }: &Course,
 ) -> Result<Loaded, Failure> {
     let loaded = blaming(&path.display().to_string(), || {
-        let Text { scene, mut diagnostics, sources, files, set, .. } = text;
+        let Text { scene, rest, mut diagnostics, sources, files, set, .. } = text;
         beat.building(watch);
         let build = |scene: &Scene| {
             // Of what is not wanted any more nothing is told.
@@ -189,6 +191,10 @@ pub(crate) fn build(
             progress::shown_while(told, *shown, build)
         };
         let built = scene.as_ref().map(build);
+        if let Some(rest) = &rest {
+            let found = stage::faults(rest, &plugins.registry, &files, before, watch);
+            diagnostics.extend(shortened(found));
+        }
         let mut anew = Anew::default();
         let stage = match built {
             Some(Ok(built)) => {

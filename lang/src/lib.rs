@@ -114,6 +114,9 @@ pub struct ParamLimits {
 pub struct Loaded {
     /// The scene; `None` if there is an error.
     pub scene: Option<Scene>,
+    /// If there is an error, what could be made all the same, for more mistakes to be found in its
+    /// objects: nothing is to be rendered of it. `None` of a very large scene too.
+    pub rest: Option<Scene>,
     /// Every mistake and warning, in the order in which they were found.
     pub diagnostics: Vec<Diagnostic>,
     /// The texts that the diagnostics point into; each `--set` is one.

@@ -187,7 +187,9 @@ fn judged(
                 Err(Unbuilt::Faulty(faults)) => faults,
                 Err(Unbuilt::Cancelled) => vec![],
             };
-        let built = whole.then(|| loaded.scene.as_ref().map(build).unwrap_or_default());
+        let look = |rest| stage::faults(rest, &plugins.registry, &files, None, watch);
+        let built = || loaded.scene.as_ref().map(build).or_else(|| loaded.rest.as_ref().map(look));
+        let built = whole.then(|| built().unwrap_or_default());
         of_sources(root, (loaded.diagnostics, built), &loaded.sources, &loaded.values)
     };
     blaming(&root.display().to_string(), run).unwrap_or_else(|failure| Judged {

@@ -146,9 +146,9 @@ mod tests {
         }
         let files = DiskFiles::new(path, &[]);
         let settings = luxel_lang::Settings { set: set.clone(), ..Default::default() };
-        let luxel_lang::Loaded { scene, diagnostics, sources, params, .. } =
+        let luxel_lang::Loaded { scene, rest, diagnostics, sources, params, .. } =
             luxel_lang::load(path, &files, &registry, &settings);
-        Text { scene, diagnostics, sources, files, params, set }
+        Text { scene, rest, diagnostics, sources, files, params, set }
     }
 
     fn scene(params: &str, from: &str) -> String {

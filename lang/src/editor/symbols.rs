@@ -175,7 +175,9 @@ impl Walk {
             StmtNode::Field(field) => self.expr(&field.value),
             StmtNode::Object(object) => self.object(object),
             StmtNode::Call(call) => self.expr(call),
-            StmtNode::Broken { defines: Some(name) } => self.define(name, Sort::Let),
+            StmtNode::Broken { defines } => {
+                defines.iter().for_each(|name| self.define(name, Sort::Let));
+            }
             _ => {}
         }
     }

@@ -8,7 +8,7 @@ use super::Evaluator;
 use super::builtins::Given;
 use super::env::Env;
 use super::value::{Function, Value};
-use crate::syntax::{Arg, Expr, FnBody};
+use crate::syntax::{Arg, Expr, FnBody, Stmt};
 
 impl Evaluator<'_> {
     /// A call as an expression.
@@ -21,6 +21,11 @@ impl Evaluator<'_> {
     pub(super) fn apply(&mut self, callee: &Value, args: &[Arg], span: Span, env: &Env) -> Value {
         match callee {
             Value::Function(function) => {
+                if let FnBody::Template(block) = &function.def.body
+                    && block.stmts.iter().any(Stmt::is_broken)
+                {
+                    return Value::Poison;
+                }
                 let FnBody::Value(body) = &function.def.body else {
                     let name = &function.def.name.text;
                     let message = format!("`{name}` emits nodes and gives no value");
@@ -62,6 +67,14 @@ impl Evaluator<'_> {
     ) -> Option<Env> {
         let def = &function.def;
         let mut values: Vec<Option<Value>> = vec![None; def.params.len()];
+        let mut unnamed = args.iter().filter(|arg| arg.name.is_none());
+        if let Some(extra) = unnamed.nth(def.params.len()) {
+            for arg in args {
+                self.eval(&arg.value, env);
+            }
+            self.unknown_argument(function, extra);
+            return None;
+        }
         let mut positional = 0;
         for arg in args {
             let value = self.eval(&arg.value, env);
@@ -110,9 +123,15 @@ impl Evaluator<'_> {
             Diagnostic::error("E0402", name.span, message)
                 .meant(name.span, near(&name.text, known()))
         } else {
-            let message = format!("`{}` takes {} arguments", def.name.text, def.params.len());
+            let message = takes_only(&def.name.text, def.params.len());
             Diagnostic::error("E0402", arg.value.span, message)
         };
         self.tell(diagnostic.label(def.name.span, "defined here"));
     }
+}
+
+/// How many arguments a function takes, of which more are given.
+pub(super) fn takes_only(function: &str, n: usize) -> String {
+    let s = if n == 1 { "" } else { "s" };
+    format!("`{function}` takes {n} argument{s}, and no more")
 }

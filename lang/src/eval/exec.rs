@@ -9,7 +9,7 @@ use luxel_sdk::abi::Class;
 use super::Evaluator;
 use super::env::Env;
 use super::value::{FieldValue, Function, Value};
-use crate::syntax::{Block, Expr, ExprNode, Name, Op, Stmt, StmtNode};
+use crate::syntax::{Block, Expr, ExprNode, Name, Op, Stmt, StmtNode, stray};
 
 /// What the statements of a block may say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +100,7 @@ impl Evaluator<'_> {
             StmtNode::Broken { defines } => {
                 self.damaged = true;
                 body.broken = true;
-                if let Some(name) = defines {
+                for name in defines {
                     env.define(&name.text, Value::Poison);
                 }
             }
@@ -154,11 +154,25 @@ impl Evaluator<'_> {
         let message = format!("`{}` stands in no object", name.text);
         let start = Span { end: name.span.start, ..name.span };
         let found = Diagnostic::error("E0113", name.span, message);
-        self.tell(if env.get(&name.text).is_some() {
-            found.help("a name keeps its value: give the new one a name of its own")
-        } else {
-            found.help("a name is defined with `let`").guess(start, "let ")
+        if env.get(&name.text).is_some() {
+            self.tell(found.help("a name keeps its value: give the new one a name of its own"));
+            return;
+        }
+        let names: Vec<Name> = stray(name).collect();
+        let found = found.help("a name is defined with `let`");
+        self.tell(match &names[..] {
+            // `letx = 3`
+            [all, rest] => {
+                let at = all.text.len() - rest.text.len();
+                let gap =
+                    Span::new(name.span.source, start.range().start + at, start.range().start + at);
+                found.guess(gap, " ")
+            }
+            _ => found.guess(start, "let "),
         });
+        for name in names {
+            env.define(&name.text, Value::Poison);
+        }
     }
 
     fn stray_object(&mut self, object: &crate::syntax::Object, body: &Body) {

@@ -1,29 +1,37 @@
 //! The end of a load: what the scene lacks.
 
 use luxel_core::diag::Diagnostic;
-use luxel_core::scene::{Node, NodeId, Value};
+use luxel_core::scene::{Node, NodeId, Placed, Pose, Scene, Target, Value};
 use luxel_sdk::kind::Kind;
 
 use super::Evaluator;
 use crate::Loaded;
+
+/// Nodes of a faulty scene that are kept to be looked at.
+const LOOKED_AT: usize = 100_000;
 
 impl Evaluator<'_> {
     /// The scene, if there is no error, with everything that was found.
     pub(super) fn finish(mut self) -> Loaded {
         self.lacks();
         let errors = self.sink.errors();
-        let scene = (errors == 0 && !self.damaged && !self.stopped).then(|| {
+        let is_good = errors == 0 && !self.damaged && !self.stopped;
+        let is_small = !self.stopped && self.scene.nodes.len() <= LOOKED_AT;
+        let made = (is_good || is_small).then(|| {
             self.scene.root = self.open_groups.pop().unwrap_or_default().group;
+            let orphans: Vec<_> = self.orphans.iter().map(|id| placed(&self.scene, *id)).collect();
+            self.scene.root.items.extend(orphans);
             self.scene.compact();
             self.scene
         });
+        let (scene, rest) = if is_good { (made, None) } else { (None, made) };
         let mut diagnostics = self.sink.finish();
         if scene.is_none() && errors == 0 {
             let message = "the scene could not be evaluated";
             diagnostics.push(Diagnostic::unplaced("E0023", message));
         }
         let values = self.values.unwrap_or_default();
-        Loaded { scene, diagnostics, sources: self.sources, params: self.params, values }
+        Loaded { scene, rest, diagnostics, sources: self.sources, params: self.params, values }
     }
 
     /// Tells what the scene lacks as a whole.
@@ -38,6 +46,11 @@ impl Evaluator<'_> {
         }
         self.expectations_fit();
     }
+}
+
+fn placed(scene: &Scene, id: NodeId) -> Placed {
+    let (pose, span) = (Pose::IDENTITY, scene.node(id).span);
+    Placed { target: Target::Node(id), pose, material: None, span }
 }
 
 /// The nodes that a node refers to.

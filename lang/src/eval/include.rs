@@ -102,7 +102,7 @@ impl Evaluator<'_> {
 
     /// What bare numbers count in a file.
     pub(super) fn units(&mut self, stmts: &[Stmt]) -> BTreeMap<Dimension, f64> {
-        let mut out = BTreeMap::new();
+        let mut out = self.units_meant(stmts);
         let blocks = stmts.iter().filter(|stmt| !stmt.is_off());
         let fields = blocks.filter_map(|stmt| match &stmt.node {
             StmtNode::Units(fields) => Some(fields),
@@ -117,6 +117,8 @@ impl Evaluator<'_> {
                     .meant(field.name.span, near(&field.name.text, known.iter().copied()))
                     .help(format!("known are {}", known.join(", ")));
                 self.tell(found);
+                // What it was to be the unit of is not known: numbers without one are no mistakes.
+                out.extend(super::types::measured().filter_map(super::types::dimension).map(one));
                 continue;
             };
             let unit = match &field.value.node {
@@ -131,13 +133,28 @@ impl Evaluator<'_> {
                     let message =
                         format!("{} is wanted, this is {}", wanted.name(), unit.dimension.name());
                     self.poison("E0202", field.value.span, message);
+                    out.extend([one(wanted)]);
                 }
                 None => {
                     self.poison("E0204", field.value.span, "a unit's name is wanted, as `mm`");
+                    out.extend([one(wanted)]);
                 }
             }
         }
         out
+    }
+
+    /// A unit for everything, if a statement that cannot be read was meant to say units.
+    fn units_meant(&self, stmts: &[Stmt]) -> BTreeMap<Dimension, f64> {
+        let is_meant = |stmt: &Stmt| {
+            let text = self.sources.text(stmt.span.source).get(stmt.span.range()).unwrap_or("");
+            matches!(stmt.node, StmtNode::Broken { .. } | StmtNode::Object(_))
+                && syntax::says_units(text)
+        };
+        if !stmts.iter().any(is_meant) {
+            return BTreeMap::new();
+        }
+        super::types::measured().filter_map(super::types::dimension).map(one).collect()
     }
 
     /// Evaluates a file that was read; gives its names.
@@ -298,9 +315,14 @@ pub(super) fn params(tree: &Tree) -> impl Iterator<Item = &Name> {
     })
 }
 
+/// The SI unit of a dimension.
+fn one(dimension: Dimension) -> (Dimension, f64) {
+    (dimension, 1.0)
+}
+
 /// Whether a statement could not be read: it may have declared anything.
 pub(super) fn is_damaged(tree: &Tree) -> bool {
-    tree.stmts.iter().any(|stmt| matches!(stmt.node, StmtNode::Broken { .. }))
+    tree.stmts.iter().any(Stmt::is_broken)
 }
 
 fn placed(code: &'static str, span: Option<Span>, message: String) -> Diagnostic {

@@ -27,6 +27,7 @@ mod params;
 mod require;
 mod resolve;
 mod turns;
+mod unknown;
 pub(crate) mod types;
 mod value;
 
@@ -38,7 +39,7 @@ use std::sync::Arc;
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_core::files::{FileError, Files};
 use luxel_core::registry::Registry;
-use luxel_core::scene::{Group, Scene};
+use luxel_core::scene::{Group, NodeId, Scene};
 use luxel_sdk::kind::Kind;
 
 #[cfg(test)]
@@ -120,6 +121,10 @@ struct Evaluator<'a> {
     has_asset: bool,
     /// Some statement could not be read: what is missing may stand there.
     damaged: bool,
+    /// Objects that are right by themselves and stand nowhere: their place or their material is not known.
+    orphans: Vec<NodeId>,
+    /// Plugins that the scene asks for and that are not there.
+    n_unmet: usize,
     params: Vec<ParamInfo>,
     /// Values for editors, if they are wanted.
     values: Option<BTreeMap<Span, String>>,
@@ -173,6 +178,8 @@ impl<'a> Evaluator<'a> {
             slots: vec![],
             has_asset: false,
             damaged: false,
+            orphans: vec![],
+            n_unmet: 0,
             params: vec![],
             values: settings.noting.then(BTreeMap::new),
             record: None,

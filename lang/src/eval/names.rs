@@ -9,7 +9,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 use super::mention::mention_stmts;
 use super::numbered::{Firsts, Tables};
 pub(crate) use super::numbered::{Known, Numbered};
-use super::resolve::{Resolver, Scope, defines, mentions};
+use super::resolve::{Resolver, Scope, defines, mentions, stray_names};
 use crate::sink::Sink;
 use crate::syntax::{Name, Stmt};
 
@@ -46,7 +46,7 @@ impl Facts {
         let mut labels: Vec<Name> =
             scope.labels.into_iter().map(|(text, span)| Name { text, span }).collect();
         labels.sort_by_key(|label| label.span);
-        let defines = on().filter_map(defines).cloned().collect();
+        let defines = on().flat_map(defines).cloned().chain(on().flat_map(stray_names)).collect();
         let mentions = on().filter_map(mentions).collect();
         Self { free, defines, labels, mentions, sound: sink.errors() == 0 }
     }

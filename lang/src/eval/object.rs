@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Span, near};
-use luxel_core::registry::Registry;
+use luxel_core::registry::{Registry, common_params};
 use luxel_core::scene::{Argument, GroupId, Node, NodeId, Pose, Value as Fitted};
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
@@ -19,6 +19,24 @@ use crate::syntax::{Name, Object};
 
 /// Libraries that a message lists, at most.
 const SHOWN: usize = 8;
+
+/// Bytes between two parameters of one object that are looked through.
+const BESIDE: usize = 1 << 12;
+
+/// What the fields of an object came to.
+struct Taken {
+    params: Vec<Argument>,
+    overrides: Vec<(Arc<str>, NodeId)>,
+    pose: Pose,
+    /// How deep objects stand in it.
+    depth: usize,
+    /// Of each name that is no parameter, the one that was probably meant.
+    meant: Vec<Option<&'static str>>,
+    /// Nothing is wrong with where it stands, its material and what fills it, nor with the rest.
+    is_placed: bool,
+    /// Something is wrong with what its class takes.
+    lacks_own: bool,
+}
 
 impl Evaluator<'_> {
     /// The object that an expression or statement describes.
@@ -47,7 +65,13 @@ impl Evaluator<'_> {
             let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
             let message = format!("there is no kind of object `{}`", category.text);
             let found = Diagnostic::error("E0401", category.span, message)
-                .meant(category.span, near(&category.text, words()));
+                .meant(category.span, near(&category.text, words().chain(["units"])));
+            let kinds = Kind::ALL.iter().filter(|(kind, _)| {
+                self.registry.class(*kind, &category.text).is_some() && object.kind.is_none()
+            });
+            let start = Span { end: category.span.start, ..category.span };
+            let found =
+                kinds.fold(found, |found, (_, word)| found.guess(start, format!("{word} ")));
             let known: Vec<_> = words().collect();
             self.tell(found.help(format!("known are {}", known.join(", "))));
             return None;
@@ -71,6 +95,10 @@ impl Evaluator<'_> {
     /// Tells of a class that nobody has, and which libraries that are not loaded may have it.
     fn no_class(&mut self, kind: Kind, class: &Name, names: &[&str]) {
         let near = meant(&class.text, names);
+        // It may be of the plugin that is asked for and not there, which has been told.
+        if near.is_none() && self.n_unmet > 0 {
+            return;
+        }
         let namesake = self.unloaded.iter().any(|library| *library.stem == *class.text);
         let missing = namesake || (near.is_none() && !self.unloaded.is_empty());
         let code = if missing { "E0414" } else { "E0401" };
@@ -168,44 +196,15 @@ impl Evaluator<'_> {
         };
         let class = *class;
         let before = self.sink.errors();
-        let (mut params, mut overrides) = (Vec::with_capacity(fields.len()), vec![]);
-        let mut pose = Pose::IDENTITY;
-        let (mut poisoned, mut depth) = (false, 0);
-        let mut meant = vec![];
-        for (i, field) in fields.iter().enumerate() {
-            self.given_twice(&fields[..i], field);
-            let Some(param) = Registry::params(&class).find(|p| p.name == &*field.name.text) else {
-                match &*field.name.text {
-                    "transform" if stands_somewhere(class.kind) => {
-                        let found = self.transform(&field.value, field.span);
-                        poisoned |= found.is_none();
-                        pose = pose.then(&found.unwrap_or_default());
-                    }
-                    "materials" if class.kind == Kind::Importer => {
-                        overrides = self.materials(field, &mut poisoned);
-                    }
-                    _ => meant.extend(self.unknown_param(&class, field, &fields)),
-                }
-                continue;
-            };
-            self.deprecated(param, field, &fields);
-            if let Value::Object(inner) = &field.value {
-                depth = depth.max(inner.depth);
-                if param.ty != Type::Part {
-                    pose = self.lifted(&class, inner, field.span, pose);
-                }
-            }
-            match self.conform(param, field) {
-                Some(value) => params.push(self.in_its_place(value, param, field)),
-                None => poisoned = true,
-            }
-        }
-        self.complete(&class, head, &fields, &meant);
+        let taken = self.taken(&class, &fields);
+        self.complete(&class, head, &fields, &taken.meant);
+        let Taken { params, overrides, pose, depth, is_placed, lacks_own, .. } = taken;
         if depth >= self.budgets.nesting {
             let message = format!("objects stand in one another more than {depth} deep");
             return self.poison("E0507", head.span, message);
         }
-        if poisoned || self.sink.errors() > before || !self.count_node(head.span) {
+        let is_whole = !lacks_own && self.sink.errors() == before && self.count_node(head.span);
+        if !is_whole {
             return Value::Poison;
         }
         let node = Node {
@@ -217,10 +216,60 @@ impl Evaluator<'_> {
             span: head.span,
             hash: [0; 32],
         };
-        let what = What::Node(self.add(node), class.kind);
+        let id = self.add(node);
+        if !is_placed {
+            self.orphans.push(id);
+            return Value::Poison;
+        }
+        let what = What::Node(id, class.kind);
         let head = head.clone();
         let depth = depth + 1;
         Value::Object(Rc::new(ObjectValue { what, fields, pose, head, depth, instances: 1 }))
+    }
+
+    /// Fields of an object, as far as they fit its class.
+    fn taken(&mut self, class: &Class, fields: &[FieldValue]) -> Taken {
+        let mut out = Taken {
+            params: Vec::with_capacity(fields.len()),
+            overrides: vec![],
+            pose: Pose::IDENTITY,
+            depth: 0,
+            meant: vec![],
+            is_placed: true,
+            lacks_own: false,
+        };
+        for (i, field) in fields.iter().enumerate() {
+            self.given_twice(&fields[..i], field);
+            let Some(param) = Registry::params(class).find(|p| p.name == &*field.name.text) else {
+                match &*field.name.text {
+                    "transform" if stands_somewhere(class.kind) => {
+                        let found = self.transform(&field.value, field.span);
+                        out.is_placed &= found.is_some();
+                        out.pose = out.pose.then(&found.unwrap_or_default());
+                    }
+                    "materials" if class.kind == Kind::Importer => {
+                        out.overrides = self.materials(field, &mut out.is_placed);
+                    }
+                    _ => out.meant.push(self.unknown_param(class, field, fields)),
+                }
+                continue;
+            };
+            self.deprecated(param, field, fields);
+            if let Value::Object(inner) = &field.value {
+                out.depth = out.depth.max(inner.depth);
+                if param.ty != Type::Part {
+                    let pose = std::mem::replace(&mut out.pose, Pose::IDENTITY);
+                    out.pose = self.lifted(class, inner, field.span, pose);
+                }
+            }
+            if let Some(value) = self.conform(param, field) {
+                out.params.push(self.in_its_place(value, param, field));
+            } else {
+                out.is_placed = false;
+                out.lacks_own |= common_params(class.kind).iter().all(|it| it.name != param.name);
+            }
+        }
+        out
     }
 
     /// Keeps a node; its hash is computed when the scene is complete.
@@ -236,7 +285,7 @@ impl Evaluator<'_> {
     }
 
     /// `materials = { name = material, … }`: what takes the place of an asset's own.
-    fn materials(&mut self, field: &FieldValue, poisoned: &mut bool) -> Vec<(Arc<str>, NodeId)> {
+    fn materials(&mut self, field: &FieldValue, is_placed: &mut bool) -> Vec<(Arc<str>, NodeId)> {
         let Value::Record(record) = &field.value else {
             let message = "`materials` is a record: `{ name_in_the_file = material, … }`";
             self.poison("E0214", field.span, message);
@@ -246,7 +295,7 @@ impl Evaluator<'_> {
         for entry in record.iter() {
             match self.node_of(entry, Kind::Material) {
                 Some(id) => out.push((entry.name.text.clone(), id)),
-                None => *poisoned = true,
+                None => *is_placed = false,
             }
         }
         out
@@ -337,7 +386,11 @@ impl Evaluator<'_> {
         let name = &field.name;
         let message = format!("`{what}` has no parameter `{}`", name.text);
         let near = meant(&name.text, known);
-        let given = near.and_then(|near| all.iter().find(|other| *other.name.text == *near.name));
+        let is_given = |other: &&FieldValue| {
+            near.is_some_and(|near| *other.name.text == *near.name)
+                && self.is_beside(other.name.span, name.span)
+        };
+        let given = all.iter().find(is_given);
         let found = Diagnostic::error("E0402", name.span, message);
         let found = match given {
             Some(given) => found.label(given.name.span, "this one is given already"),
@@ -347,15 +400,40 @@ impl Evaluator<'_> {
         near.map(|near| near.name)
     }
 
+    /// Whether two names stand in the same braces, not one of them in a `set` or `with`.
+    fn is_beside(&self, one: Span, other: Span) -> bool {
+        let between = one.end.min(other.end) as usize..one.start.max(other.start) as usize;
+        let text = self.sources.text(one.source).get(between).unwrap_or("");
+        let mut depth = 0_usize;
+        let stays = |byte: u8| {
+            match byte {
+                b'{' => depth += 1,
+                b'}' if depth == 0 => return false,
+                b'}' => depth -= 1,
+                _ => {}
+            }
+            true
+        };
+        one.source == other.source && text.len() <= BESIDE && text.bytes().all(stays)
+    }
+
     /// Checks that what must be given is given, and groups exactly once. What is `meant` by a
-    /// misspelt name counts as given.
-    fn complete(&mut self, class: &Class, head: &Head, fields: &[FieldValue], meant: &[&str]) {
+    /// misspelt name counts as given, and a name that is not near to any may have been meant for any.
+    fn complete(
+        &mut self,
+        class: &Class,
+        head: &Head,
+        fields: &[FieldValue],
+        meant: &[Option<&str>],
+    ) {
         let given = |name: &str| fields.iter().find(|f| &*f.name.text == name);
+        let is_meant =
+            |name: &str| meant.iter().any(|meant| meant.is_none_or(|meant| meant == name));
         let missing = |params: &[&str]| params.join("`, `");
         let mut absent = vec![];
         let mut groups: Vec<&'static str> = vec![];
         for param in Registry::params(class) {
-            let is_given = given(param.name).is_some() || meant.contains(&param.name);
+            let is_given = given(param.name).is_some() || is_meant(param.name);
             if param.required && param.group.is_empty() && !is_given {
                 absent.push(param.name);
             }
@@ -393,7 +471,7 @@ impl Evaluator<'_> {
                 let message = format!("`{a}` and `{b}` are both given; only one can be");
                 let found = Diagnostic::error("E0406", second.span, message);
                 self.tell(found.label(first.span, "first given here"));
-            } else if chosen.is_empty() && !members.iter().any(|member| meant.contains(member)) {
+            } else if chosen.is_empty() && !members.iter().any(|member| is_meant(member)) {
                 let message = format!("one of `{}` is wanted", missing(&members));
                 let found = Diagnostic::error("E0403", head.class.span, message);
                 self.tell(if members.contains(&"scale") {

@@ -229,7 +229,8 @@ impl Evaluator<'_> {
                 return;
             }
             let Some(objects) = self.labels.objects.get(&set.label.text).cloned() else {
-                if !self.damaged {
+                let text = format!("\"{}\"", set.label.text);
+                if !self.damaged || !self.sink.is_full() && !self.is_written(&text) {
                     self.no_label(&set.label);
                 }
                 continue;
@@ -283,6 +284,13 @@ impl Evaluator<'_> {
             }
         }
         false
+    }
+
+    /// Whether some text is written anywhere: what could not be read may have it.
+    fn is_written(&self, text: &str) -> bool {
+        self.sources
+            .texts()
+            .any(|source| memchr::memmem::find(source.as_bytes(), text.as_bytes()).is_some())
     }
 
     fn no_label(&mut self, label: &Name) {

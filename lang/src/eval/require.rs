@@ -34,6 +34,7 @@ impl Evaluator<'_> {
         if loaded.any(|(found, version)| *found == *name.text && fits(version)) {
             return;
         }
+        self.n_unmet += 1;
         self.unmet(name, version);
     }
 

@@ -3,9 +3,11 @@
 //! After this, an unknown name is poison that says nothing more.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::slice;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
+use luxel_core::diag::{Diagnostic, Span, near};
+use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Unit;
 
 use super::by_name::ByName;
@@ -14,12 +16,8 @@ use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
     Arg, COMPARES, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Op, RESERVED,
-    Stmt, StmtNode, Tree, Ty, children,
+    Stmt, StmtNode, Tree, Ty, children, says_units, stray,
 };
-
-/// Known names among which near ones are looked for: more than `near` looks at, names that are known
-/// twice counted.
-const LOOKED_AT: usize = 30_000;
 
 /// Tells every name that is unknown, used too early or defined twice.
 pub(crate) fn resolve(tree: &Tree, text: &str, sink: &mut Sink) {
@@ -48,12 +46,12 @@ pub(super) struct Scope {
 }
 
 pub(super) struct Resolver<'a> {
-    sink: &'a mut Sink,
+    pub(super) sink: &'a mut Sink,
     pub(super) scopes: Vec<Scope>,
     /// The functions whose bodies are being read.
-    functions: Vec<Name>,
+    pub(super) functions: Vec<Name>,
     /// The file.
-    text: &'a str,
+    pub(super) text: &'a str,
     /// In the body of an object that holds no others.
     in_object: bool,
     /// Where names that nothing defines are kept instead of being told.
@@ -70,15 +68,24 @@ pub(super) fn mentions(stmt: &Stmt) -> Option<(Arc<str>, BTreeSet<Arc<str>>)> {
     Some((def.name.text.clone(), mentions))
 }
 
-/// The name that a statement defines.
-pub(super) fn defines(stmt: &Stmt) -> Option<&Name> {
+/// The names that a statement defines.
+pub(super) fn defines(stmt: &Stmt) -> &[Name] {
     match &stmt.node {
-        StmtNode::Let { name, .. } | StmtNode::Import { name, .. } => Some(name),
-        StmtNode::Param(def) => Some(&def.name),
-        StmtNode::Fn(def) => Some(&def.name),
-        StmtNode::Broken { defines } => defines.as_ref(),
-        _ => None,
+        StmtNode::Let { name, .. } | StmtNode::Import { name, .. } => slice::from_ref(name),
+        StmtNode::Param(def) => slice::from_ref(&def.name),
+        StmtNode::Fn(def) => slice::from_ref(&def.name),
+        StmtNode::Broken { defines } => defines,
+        _ => &[],
     }
+}
+
+/// The names that a statement of a file may be meant to define, if it is a field.
+pub(super) fn stray_names(stmt: &Stmt) -> impl Iterator<Item = Name> {
+    let name = match &stmt.node {
+        StmtNode::Field(field) => Some(&field.name),
+        _ => None,
+    };
+    name.into_iter().flat_map(stray)
 }
 
 impl<'a> Resolver<'a> {
@@ -91,8 +98,11 @@ impl<'a> Resolver<'a> {
     fn block(&mut self, stmts: &[Stmt], names: &[&Name]) {
         let mut scope = Scope::default();
         for stmt in stmts.iter().filter(|stmt| !stmt.is_off()) {
-            if let Some(name) = defines(stmt) {
+            for name in defines(stmt) {
                 scope.later.entry(name.text.clone()).or_insert(name.span);
+            }
+            for name in stray_names(stmt).filter(|_| self.scopes.is_empty()) {
+                scope.later.entry(name.text).or_insert(name.span);
             }
             scope.mentions.extend(mentions(stmt));
         }
@@ -180,17 +190,27 @@ impl<'a> Resolver<'a> {
             StmtNode::Assert { cond, .. } => self.expr(cond),
             StmtNode::Expect(said) => self.expectation(said),
             StmtNode::Units(_) | StmtNode::Use { .. } => {}
-            StmtNode::Field(field) => self.expr(&field.value),
+            StmtNode::Field(field) => {
+                self.expr(&field.value);
+                // That it stands in no object is told when it is evaluated.
+                if self.scopes.len() == 1 {
+                    self.perhaps(stray_names(stmt));
+                }
+            }
             StmtNode::Object(object) => {
                 self.label(stmt, object.label.as_ref());
                 self.object(object);
             }
             StmtNode::Call(call) => self.call(call),
-            StmtNode::Broken { defines } => {
-                if let (Some(name), Some(scope)) = (defines, self.scopes.last_mut()) {
-                    scope.names.entry(name.text.clone()).or_insert(name.span);
-                }
-            }
+            StmtNode::Broken { defines } => self.perhaps(defines.iter().cloned()),
+        }
+    }
+
+    /// Names that a statement which is wrong may be meant to define.
+    fn perhaps(&mut self, names: impl Iterator<Item = Name>) {
+        let Some(scope) = self.scopes.last_mut() else { return };
+        for name in names {
+            scope.names.entry(name.text).or_insert(name.span);
         }
     }
 
@@ -255,9 +275,33 @@ impl<'a> Resolver<'a> {
     }
 
     fn object(&mut self, object: &Object) {
+        // Units of numbers are no names.
+        if Kind::of_word(&object.category.text).is_none() && says_units(&object.category.text) {
+            return;
+        }
+        self.apart(&object.body.stmts);
         let outer = std::mem::replace(&mut self.in_object, &*object.category.text != "group");
         self.block(&object.body.stmts, &[]);
         self.in_object = outer;
+    }
+
+    /// Parameters on one line have a comma between them.
+    fn apart(&mut self, stmts: &[Stmt]) {
+        for pair in stmts.windows(2) {
+            let (StmtNode::Field(one), StmtNode::Field(next)) = (&pair[0].node, &pair[1].node)
+            else {
+                continue;
+            };
+            let end = one.value.span.end;
+            let between = self.text.get(end as usize..next.name.span.start as usize);
+            if between.is_none_or(|between| between.contains([',', ';', '\n'])) {
+                continue;
+            }
+            let gap = Span { start: end, end, ..next.name.span };
+            let message = format!("a comma is missing before `{}`", next.name.text);
+            let found = Diagnostic::error("E0014", next.name.span, message);
+            self.sink.push(found.fix(gap, ","));
+        }
     }
 
     /// A call as a statement. In an object, where none can stand, `center (0, 1, 0)` is a parameter
@@ -269,7 +313,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    fn is_unknown(&self, name: &Name) -> bool {
+    pub(super) fn is_unknown(&self, name: &Name) -> bool {
         let name = &name.text;
         let known = |s: &Scope| s.names.contains_key(name) || s.later.contains_key(name);
         !self.scopes.iter().any(known) && builtins::value(name).is_none()
@@ -286,6 +330,7 @@ impl<'a> Resolver<'a> {
             match name.filter(|_| arg.name.is_none()) {
                 Some(name) => self.no_equals(&arg.value, name),
                 None if self.is_compared(&function, &arg.value) => {}
+                None if self.is_unquoted(&function, &arg.value) => {}
                 None => self.expr(&arg.value),
             }
         }
@@ -395,67 +440,6 @@ impl<'a> Resolver<'a> {
         };
         self.sink.push(diagnostic);
     }
-
-    /// A name that is defined later in a block around the place.
-    fn later(&self, name: &Name) -> Option<Diagnostic> {
-        let scope = self.scopes.iter().rev().find(|s| s.later.contains_key(&name.text))?;
-        let place = scope.later.get(&name.text)?;
-        if let Some(cycle) = self.functions.iter().find_map(|f| circle(scope, f, name)) {
-            let message = format!("a function may not call itself: {}", cycle.join(" → "));
-            let found = Diagnostic::error("E0105", name.span, message);
-            return Some(
-                found
-                    .label(*place, "defined here")
-                    .help("use a loop over a range; a function sees only what stands before it"),
-            );
-        }
-        let message = format!("`{}` is used before it is defined", name.text);
-        let found = Diagnostic::error("E0102", name.span, message);
-        Some(found.label(*place, "defined here"))
-    }
-
-    fn unknown(&self, name: &Name, joined: &str, span: Span) -> Diagnostic {
-        if let Some(label) = self.scopes.iter().rev().find_map(|s| s.labels.get(&name.text)) {
-            let text = &name.text;
-            let message = format!("`{text}` is a label, and labels name nothing but for `set`");
-            return Diagnostic::error("E0101", name.span, message).label(*label, "the label").help(
-                format!(
-                    "give the object a name, `let {text} = …`, and put it where it stood, and \
-                     anywhere else, with `place {text}`"
-                ),
-            );
-        }
-        let dotted = builtins::names()
-            .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
-        let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };
-        let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
-        let mut known: Vec<&str> = builtins::names().collect();
-        known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
-        known.extend(self.before.into_iter().flat_map(|before| before()));
-        // Which are looked at must not depend on the order in which a table holds them.
-        if known.len() > LOOKED_AT {
-            known.select_nth_unstable(LOOKED_AT);
-            known.truncate(LOOKED_AT);
-        }
-        known.sort_unstable();
-        // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
-        let ending = builtins::names()
-            .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
-        let ending = ending.map(|name| Near { name, grade: Grade::Sure });
-        if Unit::named(shown).is_some() {
-            found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
-        } else if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
-            found = found.meant(place, Some(near));
-        } else if shown == "range" {
-            found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
-        } else {
-            found = found.help(
-                "names come from `let`, `param`, `fn`, `for` and `import`; text is written in \
-                 quotes: \"…\"",
-            );
-        }
-        found
-    }
 }
 
 /// The single name that is called, if an expression is such a call.
@@ -467,28 +451,4 @@ fn called(call: &Expr) -> Option<&Name> {
         },
         _ => None,
     }
-}
-
-/// The chain of functions from `from` over `name` back to `from`, if there is one.
-fn circle(scope: &Scope, from: &Name, name: &Name) -> Option<Vec<String>> {
-    let mut seen = BTreeSet::new();
-    let mut open = vec![vec![name.text.clone()]];
-    while let Some(chain) = open.pop() {
-        let last = chain.last()?;
-        if *last == from.text {
-            let start = format!("`{}`", from.text);
-            return Some(
-                std::iter::once(start).chain(chain.iter().map(|n| format!("`{n}`"))).collect(),
-            );
-        }
-        if seen.insert(last.clone()) {
-            let next = scope.mentions.get(last).into_iter().flatten();
-            open.extend(next.filter(|n| scope.mentions.contains_key(*n)).map(|n| {
-                let mut longer = chain.clone();
-                longer.push(n.clone());
-                longer
-            }));
-        }
-    }
-    None
 }

@@ -34,14 +34,17 @@ impl Evaluator<'_> {
         let from = from?;
         let pieces = syntax::cut_whole(text, from, &self.budgets);
         let mut out = Tree::default();
-        for piece in pieces.iter().filter(|piece| !piece.faulty) {
+        for piece in &pieces {
             let part = &text[piece.range.clone()];
-            if !part.contains("units") && !part.contains("param") {
+            if !part.contains("units") && !part.contains("param") && !syntax::says_units(part) {
                 continue;
             }
-            let stmts = syntax::read_at(text, piece.range.clone(), source, &self.budgets);
-            let declares =
-                |stmt: &Stmt| matches!(stmt.node, StmtNode::Units(_) | StmtNode::Param(_));
+            let stmts = syntax::read_at(text, piece, source, &self.budgets);
+            // What cannot be read may have been meant to say units.
+            let declares = |stmt: &Stmt| match &stmt.node {
+                StmtNode::Units(_) | StmtNode::Param(_) => true,
+                _ => syntax::says_units(part),
+            };
             out.stmts.extend(stmts.into_iter().filter(declares));
         }
         // What is set and not declared here may stand where nothing can be read.

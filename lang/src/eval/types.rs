@@ -8,56 +8,8 @@ use luxel_sdk::params::Dimension;
 use super::Evaluator;
 use super::env::Env;
 use super::value::Value;
+pub(crate) use crate::syntax::type_names::{dimension, measured, names};
 use crate::syntax::{Form, ListTy, Ty};
-
-/// Types of numbers with what they measure.
-const NUMBERS: [(&str, Dimension); 14] = [
-    ("float", Dimension::NONE),
-    ("number", Dimension::NONE),
-    ("int", Dimension::NONE),
-    ("length", Dimension::LENGTH),
-    ("angle", Dimension::ANGLE),
-    ("time", Dimension::TIME),
-    ("temperature", Dimension::TEMPERATURE),
-    ("power", Dimension::POWER),
-    ("energy", Dimension::ENERGY),
-    ("mass", Dimension::MASS),
-    ("solid_angle", Dimension::SOLID_ANGLE),
-    ("area", Dimension([2, 0, 0, 0, 0, 0, 0])),
-    ("volume", Dimension([3, 0, 0, 0, 0, 0, 0])),
-    ("intensity", Dimension::LUMINOUS),
-];
-
-const OTHERS: [&str; 12] = [
-    "bool",
-    "string",
-    "vec2",
-    "vec3",
-    "color",
-    "spectrum",
-    "transform",
-    "view",
-    "record",
-    "group",
-    "object",
-    "any",
-];
-
-/// Every type's name.
-pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    let kinds = Kind::ALL.iter().map(|(_, word)| *word);
-    NUMBERS.iter().map(|(name, _)| *name).chain(OTHERS).chain(kinds)
-}
-
-/// The types of numbers that have a unit.
-pub(super) fn measured() -> impl Iterator<Item = &'static str> {
-    NUMBERS.iter().filter(|(_, dimension)| !dimension.is_none()).map(|(name, _)| *name)
-}
-
-/// What a type of numbers measures.
-pub(crate) fn dimension(name: &str) -> Option<Dimension> {
-    NUMBERS.iter().find(|(known, _)| *known == name).map(|(_, dimension)| *dimension)
-}
 
 impl Evaluator<'_> {
     /// The value if it fits the type; a bare number takes the file's unit. Else poison, and told.

@@ -7,6 +7,7 @@ use luxel_sdk::params::{UNITS, Unit};
 use pest::iterators::Pair;
 
 use super::Rule;
+use super::gaps::Gaps;
 use super::make::{self, RESERVED};
 use super::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
@@ -21,6 +22,8 @@ pub(super) struct Builder<'a> {
     pub(super) base: usize,
     pub(super) sink: &'a mut Sink,
     pub(super) budgets: &'a Budgets,
+    /// What stands in the text for statements that cannot be read.
+    pub(super) gaps: Gaps,
 }
 
 fn is_keyword(rule: Rule) -> bool {
@@ -88,6 +91,9 @@ impl Builder<'_> {
     /// The statements of a file or block.
     pub(super) fn stmt(&mut self, pair: Pair<'_, Rule>) -> Stmt {
         let mut span = self.span(&pair);
+        if let Some(broken) = self.gaps.at(span.start as usize) {
+            return broken;
+        }
         let (mut docs, mut attrs) = (vec![], vec![]);
         for part in pair.into_inner() {
             let place = self.span(&part);
@@ -107,7 +113,7 @@ impl Builder<'_> {
                 }
             }
         }
-        let node = StmtNode::Broken { defines: None };
+        let node = StmtNode::Broken { defines: Box::default() };
         Stmt { span, docs: docs.into(), attrs: attrs.into(), node }
     }
 

@@ -6,6 +6,7 @@ use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, near};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category};
+use super::habits::habit;
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
 use super::make::{RESERVED, STATEMENTS};
@@ -106,6 +107,7 @@ pub(super) fn explain(
 impl<'a> Around<'a> {
     fn diagnose(&self) -> Diagnostic {
         self.number()
+            .or_else(|| habit(self))
             .or_else(|| head::head(self))
             .or_else(|| self.statement_head())
             .or_else(|| self.reserved())

@@ -9,13 +9,16 @@ use super::make::RESERVED;
 /// What is said of an object whose parameters do not stand in braces.
 const BRACES: &str = "an object has its parameters between `{` and `}`";
 
+/// Words with which other languages begin what `let`, `param` and `fn` begin here.
+const FOREIGN: [&str; 22] = [
+    "auto", "bool", "color", "const", "constant", "declare", "def", "define", "double", "float",
+    "func", "function", "fun", "int", "local", "number", "static", "string", "val", "var", "vec3",
+    "vector",
+];
+
 /// Why the first words of a statement or object near the place cannot be read.
 pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
-    foreign(around)
-        .or_else(|| misspelt(around))
-        .or_else(|| plugin(around))
-        .or_else(|| block(around))
-        .or_else(|| object(around))
+    misspelt(around).or_else(|| plugin(around)).or_else(|| block(around)).or_else(|| object(around))
 }
 
 /// `for i in 0..3` and `if x > 1` that go on without `{`.
@@ -73,26 +76,6 @@ pub(super) fn opens_block(word: &str) -> bool {
     matches!(word, "for" | "if")
 }
 
-/// `'a'` and `# comment`
-fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
-    let mark = around.current()?;
-    match mark.text {
-        "'" => {
-            let found = around.error("E0023", mark, "a string stands between `\"`");
-            let mut after = around.tokens[around.at + 1..].iter().take_while(|t| !t.first_on_line);
-            let Some(end) = after.find(|t| t.text == "'") else { return Some(found) };
-            let inside = &around.text[mark.end()..end.start];
-            let all = Span::new(around.source, mark.start, end.end());
-            Some(found.guess(all, format!("\"{inside}\"")))
-        }
-        "#" => {
-            let found = around.error("E0023", mark, "a comment begins with `//`");
-            Some(found.guess(around.span(mark), "//"))
-        }
-        _ => None,
-    }
-}
-
 /// `shape sphere { … } shape box { … }`: a statement on the line on which another one ends.
 pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
     let (current, before) = (around.current()?, around.before(1)?);
@@ -132,11 +115,11 @@ fn misspelt(around: &Around<'_>) -> Option<Diagnostic> {
         if !is_name || !around.begins(i) || is_category(word.text) {
             continue;
         }
-        let near = match word.text {
-            "const" | "var" if fits("let", around, i + 1) => {
-                Some(Near { name: "let", grade: Grade::Guess })
-            }
-            _ => near(word.text, RESERVED.into_iter().filter(|known| fits(known, around, i + 1))),
+        let fit = || RESERVED.into_iter().filter(|known| fits(known, around, i + 1));
+        let elsewhere = FOREIGN.contains(&word.text).then(|| fit().next()).flatten();
+        let near = match elsewhere {
+            Some(name) => Some(Near { name, grade: Grade::Guess }),
+            None => near(word.text, fit()),
         };
         if let Some(near) = near {
             return Some(begins_nothing(around, i, near));

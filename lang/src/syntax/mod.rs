@@ -7,10 +7,13 @@ mod build;
 #[cfg(any(test, feature = "fuzz"))]
 pub(crate) mod check;
 mod cut;
+mod defined;
 mod direct;
 mod explain;
 mod expr;
 mod fault;
+mod gaps;
+mod habits;
 mod head;
 mod lex;
 mod make;
@@ -20,12 +23,14 @@ mod parse;
 #[cfg(test)]
 mod tests;
 mod tree;
+pub(crate) mod type_names;
 mod unopened;
 mod walk;
 mod weigh;
 
 pub use agree::{Agreement, agree};
 pub(crate) use cut::{Cut, Cuts, RESUME_LIMIT};
+pub(crate) use defined::{says_units, stray};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use make::RESERVED;

@@ -3,18 +3,20 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, SourceId, Span, nearest};
+use luxel_core::diag::{Diagnostic, SourceId, Span};
 use pest::Parser;
 use pest::error::InputLocation;
 
 use super::around::Place;
 use super::build::Builder;
 use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
+use super::defined::perhaps_defined;
 use super::direct::{self, Words};
 use super::explain::explain;
 use super::fault;
+use super::gaps::Gaps;
 use super::lex::{Token, TokenKind, tokens};
-use super::tree::{Expr, ExprNode, Name, Stmt, StmtNode};
+use super::tree::{Expr, ExprNode, Stmt, StmtNode};
 use super::unopened::unopened;
 use super::weigh::too_large;
 use super::{Rule, SceneParser};
@@ -23,11 +25,11 @@ use crate::prescan::scan;
 use crate::shares;
 use crate::sink::Sink;
 
+/// Bytes of a statement up to which what is right in it is read although something is wrong.
+const REPAIRED: usize = 1 << 18;
+
 /// In how many enclosing blocks statements after a mistake are still looked at.
 const BLOCKS_LOOKED_AT: usize = 8;
-
-/// Words before a name that is being defined.
-const DEFINING: [&str; 3] = ["let", "param", "fn"];
 
 /// A file, read.
 #[derive(Debug, Default, PartialEq)]
@@ -140,16 +142,11 @@ pub(crate) fn read_piece(
     (reader.out.stmts, sink.finish())
 }
 
-/// Reads the statement at some bytes; what is wrong with it is not told.
-pub(crate) fn read_at(
-    text: &str,
-    piece: Range<usize>,
-    source: SourceId,
-    budgets: &Budgets,
-) -> Vec<Stmt> {
+/// Reads the statement of a piece; what is wrong with it is not told.
+pub(crate) fn read_at(text: &str, piece: &Cut, source: SourceId, budgets: &Budgets) -> Vec<Stmt> {
     let mut sink = Sink::new(budgets.diagnostics);
     let mut reader = Reader::new(text, source, budgets, &mut sink);
-    reader.chunk(piece, Place::File);
+    reader.pieces(std::slice::from_ref(piece));
     reader.out.stmts
 }
 
@@ -176,7 +173,7 @@ pub(super) fn parse_whole(
     sink: &mut Sink,
 ) -> Option<Tree> {
     let file = SceneParser::parse(Rule::file, text).ok()?.next()?;
-    let mut builder = Builder { source, base: 0, sink, budgets };
+    let mut builder = Builder { source, base: 0, sink, budgets, gaps: Gaps::default() };
     let stmts = file
         .into_inner()
         .filter(|part| part.as_rule() == Rule::stmt)
@@ -196,7 +193,7 @@ pub(crate) fn parse_expr(
     let faults = scan(text, start..text.len(), 0, budgets.brackets).faults;
     let pairs = SceneParser::parse(Rule::one_expr, &text[start..]).ok();
     let pair = pairs.filter(|_| faults.is_empty())?.next()?.into_inner().next()?;
-    let mut builder = Builder { source, base: start, sink, budgets };
+    let mut builder = Builder { source, base: start, sink, budgets, gaps: Gaps::default() };
     let expr = builder.expr(pair);
     (expr.node != ExprNode::Broken).then_some(expr)
 }
@@ -208,12 +205,15 @@ struct Reader<'a> {
     sink: &'a mut Sink,
     /// Words that were met, if statements are read straight from their bytes where that is possible.
     direct: Option<Words>,
+    /// Where the statement that is being read cannot be read: the innermost statements around mistakes.
+    wrong: Vec<Range<usize>>,
     out: Tree,
 }
 
 impl<'a> Reader<'a> {
     fn new(text: &'a str, source: SourceId, budgets: &'a Budgets, sink: &'a mut Sink) -> Self {
-        Self { text, source, budgets, sink, direct: Some(Words::default()), out: Tree::default() }
+        let (direct, out) = (Some(Words::default()), Tree::default());
+        Self { text, source, budgets, sink, direct, wrong: vec![], out }
     }
 }
 
@@ -280,8 +280,15 @@ impl Reader<'_> {
         // Blanks alone may stand before the version: no comment, no carriage return.
         let is_next =
             |t: &Token<'_>| self.text[first.end()..t.start].trim_matches([' ', '\t']).is_empty();
-        let version = tokens.next().filter(|t| t.kind == TokenKind::Number && is_next(t));
-        let Some(version) = version else {
+        let next = tokens.next().filter(is_next);
+        let Some(version) = next.filter(|t| t.kind == TokenKind::Number) else {
+            // `scene "v1"`
+            if let Some(text) = next.filter(|t| t.kind == TokenKind::Text) {
+                let span = self.span(text.start..text.end());
+                let message = "the version of the language is a number";
+                self.sink.push(Diagnostic::error("E0001", span, message).guess(span, "1"));
+                return Some(text.end());
+            }
             let message = "`scene` wants the version of the language";
             let end = self.span(first.end()..first.end());
             self.sink.push(Diagnostic::error("E0001", span, message).guess(end, " 1"));
@@ -395,28 +402,51 @@ impl Reader<'_> {
         }
         match SceneParser::parse(Rule::one_stmt, text) {
             Ok(pairs) => {
-                let mut builder = Builder {
-                    source: self.source,
-                    base: chunk.start,
-                    sink: self.sink,
-                    budgets: self.budgets,
-                };
+                let mut builder = self.builder(chunk.start);
+                let mut stmts = vec![];
                 for part in pairs.flat_map(pest::iterators::Pair::into_inner) {
                     match part.as_rule() {
-                        Rule::stmt if keep => self.out.stmts.push(builder.stmt(part)),
+                        Rule::stmt if keep => stmts.push(builder.stmt(part)),
                         Rule::stmt => {}
                         _ => builder.dangling(&part),
                     }
                 }
+                self.out.stmts.extend(stmts);
             }
             Err(error) => {
                 let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
-                if keep {
-                    self.broken(chunk.clone());
+                // What stands after it on its last line comes after it.
+                let after = keep.then_some(self.out.stmts.len());
+                self.recover(chunk.start + at, chunk.clone(), place);
+                if let Some(after) = after {
+                    let stmt = self.repaired(&chunk);
+                    self.out.stmts.insert(after, stmt);
                 }
-                self.recover(chunk.start + at, chunk, place);
             }
         }
+    }
+
+    fn builder(&mut self, base: usize) -> Builder<'_> {
+        let gaps = Gaps::default();
+        Builder { source: self.source, base, sink: self.sink, budgets: self.budgets, gaps }
+    }
+
+    /// A statement of the file without the inner statements that cannot be read: more mistakes may be
+    /// found in the rest.
+    fn repaired(&mut self, chunk: &Range<usize>) -> Stmt {
+        let wrong = std::mem::take(&mut self.wrong);
+        let gaps = Gaps::new(self.text, self.source, wrong);
+        let is_worth = chunk.len() <= REPAIRED && !self.sink.is_full();
+        let text = Some(chunk).filter(|_| is_worth).and_then(|chunk| gaps.filled(self.text, chunk));
+        let pairs = text.as_ref().and_then(|text| SceneParser::parse(Rule::one_stmt, text).ok());
+        let stmt = pairs.and_then(|pairs| {
+            let mut parts = pairs.flat_map(pest::iterators::Pair::into_inner);
+            let stmt = parts.find(|part| part.as_rule() == Rule::stmt)?;
+            let mut builder = Builder { gaps, ..self.builder(chunk.start) };
+            let stmt = builder.stmt(stmt);
+            builder.gaps.are_filled().then_some(stmt)
+        });
+        stmt.unwrap_or_else(|| self.broken_stmt(chunk.clone()))
     }
 
     /// Whether a statement would take too much to read, which is told.
@@ -442,9 +472,17 @@ impl Reader<'_> {
         blocks.reverse();
         blocks.truncate(BLOCKS_LOOKED_AT);
         let mut after = here;
+        let mut wrong = Some(chunk.clone());
         for (open, within) in blocks {
             let scan = scan(self.text, open..chunk.end, 1, self.budgets.brackets);
             let close = self.matching(open, chunk.end);
+            // The innermost block has the statement around the mistake.
+            if wrong.take().is_some() {
+                let next = scan.starts.partition_point(|start| *start <= here);
+                let end = scan.starts.get(next).copied().unwrap_or(close).min(close);
+                let start = next.checked_sub(1).map_or(chunk.start, |i| scan.starts[i]);
+                self.wrong.push(start..end);
+            }
             let inner: Vec<usize> =
                 scan.starts.into_iter().filter(|s| *s > after && *s < close).collect();
             let ends = inner.iter().skip(1).copied().chain([close]);
@@ -453,6 +491,7 @@ impl Reader<'_> {
             }
             after = after.max(close);
         }
+        self.wrong.extend(wrong);
         // A statement that was swallowed by an operator at the end of the line before.
         if let Some(start) = found.resume.filter(|start| *start > chunk.start) {
             let starts = scan(self.text, start..chunk.end, 0, self.budgets.brackets).starts;
@@ -479,18 +518,16 @@ impl Reader<'_> {
         end
     }
 
-    /// Keeps a statement that cannot be read, with the name that it would have defined.
+    /// Keeps a statement that cannot be read, with the names that it may define.
     fn broken(&mut self, chunk: Range<usize>) {
+        let stmt = self.broken_stmt(chunk);
+        self.out.stmts.push(stmt);
+    }
+
+    fn broken_stmt(&self, chunk: Range<usize>) -> Stmt {
         let span = self.span(chunk.clone());
-        let mut words = tokens(self.text, chunk).filter(|t| t.kind != TokenKind::Doc);
-        let first = words.next().map_or("", |t| t.text);
-        let name = words.next().filter(|t| t.kind == TokenKind::Word);
-        // `lte x = 5` was to define something too.
-        let mark = words.next().map_or("", |t| t.text);
-        let misspelt = matches!(mark, "=" | ":" | "(") && nearest(first, DEFINING).is_some();
-        let name = name.filter(|_| misspelt || DEFINING.contains(&first));
-        let defines = name.map(|t| Name { text: t.text.into(), span: self.span(t.start..t.end()) });
+        let defines = perhaps_defined(self.text, chunk, self.source);
         let node = StmtNode::Broken { defines };
-        self.out.stmts.push(Stmt { span, docs: Box::default(), attrs: Box::default(), node });
+        Stmt { span, docs: Box::default(), attrs: Box::default(), node }
     }
 }

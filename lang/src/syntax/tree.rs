@@ -44,6 +44,11 @@ impl Stmt {
     pub(crate) fn is_off(&self) -> bool {
         self.attrs.iter().any(|attr| &*attr.text == "off")
     }
+
+    /// Whether it could not be read.
+    pub(crate) fn is_broken(&self) -> bool {
+        matches!(self.node, StmtNode::Broken { .. })
+    }
 }
 
 /// What a statement is.
@@ -96,9 +101,9 @@ pub(crate) enum StmtNode {
     Field(Field),
     Object(Arc<Object>),
     Call(Expr),
-    /// It could not be read; the name that it would have defined, if any.
+    /// It could not be read; the names that it may have been meant to define.
     Broken {
-        defines: Option<Name>,
+        defines: Box<[Name]>,
     },
 }
 

@@ -16,10 +16,11 @@ const CAMERA: &str =
 
 /// Every case: its name and its text.
 pub(crate) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
-    const CASES: [&str; 7] = [
+    const CASES: [&str; 8] = [
         include_str!("../cases/catalogue.txt"),
         include_str!("../cases/syntax.txt"),
         include_str!("../cases/names.txt"),
+        include_str!("../cases/habits.txt"),
         include_str!("../cases/units.txt"),
         include_str!("../cases/schema.txt"),
         include_str!("../cases/plugins.txt"),

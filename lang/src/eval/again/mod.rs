@@ -184,6 +184,7 @@ impl State {
         let param = |param: &ParamInfo| ParamInfo { span: place(param.span), ..param.clone() };
         Some(Loaded {
             scene: Some(std::mem::take(&mut evaluator.scene)),
+            rest: None,
             diagnostics: vec![],
             sources: self.sources.clone(),
             params: self.params.iter().map(param).collect(),

@@ -14,7 +14,7 @@ use crate::eval::exec::{Body, Place};
 use crate::eval::resolve::defines;
 use crate::eval::value::Value;
 use crate::eval::{Evaluator, OpenGroup};
-use crate::syntax::{Tree, read_piece};
+use crate::syntax::{Name, Tree, read_piece};
 use crate::{Loaded, Settings};
 
 /// A number that nothing has.
@@ -77,8 +77,8 @@ impl State {
             let mark = evaluator.mark();
             evaluator.stmts(std::slice::from_ref(stmt), &env, &mut body);
             let made = evaluator.made_since(&mark);
-            let poisoned = defines(stmt).and_then(|name| env.get(&name.text));
-            let is_poisoned = poisoned.is_some_and(|value| matches!(value, Value::Poison));
+            let is_poison = |name: &Name| matches!(env.get(&name.text), Some(Value::Poison));
+            let is_poisoned = defines(stmt).iter().any(is_poison);
             if is_poisoned || *is_new && made.has_read() {
                 return None;
             }

@@ -16,6 +16,7 @@ use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::Dimension;
 
 use super::Evaluator;
+use super::call::takes_only;
 use super::env::Env;
 use super::ops::with_zeros;
 use super::value::Value;
@@ -224,8 +225,7 @@ impl Evaluator<'_> {
                     let message = format!("`{}` has no parameter `{}`", builtin.name, name.text);
                     Diagnostic::error("E0402", at, message)
                 } else {
-                    let count = builtin.args.len();
-                    let message = format!("`{}` takes {count} arguments", builtin.name);
+                    let message = takes_only(builtin.name, builtin.args.len());
                     Diagnostic::error("E0402", at, message)
                 };
                 found =

@@ -1,0 +1,131 @@
+//! Names that nothing defines, or that are used too early: what is said of them.
+
+use std::collections::BTreeSet;
+
+use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
+use luxel_sdk::params::Unit;
+
+use super::builtins;
+use super::resolve::{Resolver, Scope};
+use crate::syntax::{Expr, ExprNode, Name, Op};
+
+/// Known names among which near ones are looked for: more than `near` looks at, names that are known
+/// twice counted.
+const LOOKED_AT: usize = 30_000;
+
+/// Functions that take the name of something measured, as a text.
+const NAMED: [&str; 3] = ["metal", "glass", "illuminant"];
+
+impl Resolver<'_> {
+    /// Whether an argument is a text without its quotes, which is told: `metal(Au)`.
+    pub(super) fn is_unquoted(&mut self, function: &str, value: &Expr) -> bool {
+        let text = self.text.get(value.span.range()).unwrap_or("");
+        let is_name = |expr: &Expr| match &expr.node {
+            ExprNode::Path(path) => path.len() == 1 && self.is_unknown(&path[0]),
+            _ => false,
+        };
+        // `N-BK7`
+        let is_text = match &value.node {
+            ExprNode::Chain { first, rest } => {
+                is_name(first) && rest.iter().all(|(op, _, expr)| *op == Op::Sub && is_name(expr))
+            }
+            _ => is_name(value),
+        };
+        if !NAMED.contains(&function) || !is_text || self.free.is_some() {
+            return false;
+        }
+        let message = format!("there is no `{text}`");
+        let found = Diagnostic::error("E0101", value.span, message)
+            .help("text is written in quotes: \"…\"")
+            .guess(value.span, format!("\"{text}\""));
+        self.sink.push(found);
+        true
+    }
+
+    /// A name that is defined later in a block around the place.
+    pub(super) fn later(&self, name: &Name) -> Option<Diagnostic> {
+        let scope = self.scopes.iter().rev().find(|s| s.later.contains_key(&name.text))?;
+        let place = scope.later.get(&name.text)?;
+        if let Some(cycle) = self.functions.iter().find_map(|f| circle(scope, f, name)) {
+            let message = format!("a function may not call itself: {}", cycle.join(" → "));
+            let found = Diagnostic::error("E0105", name.span, message);
+            return Some(
+                found
+                    .label(*place, "defined here")
+                    .help("use a loop over a range; a function sees only what stands before it"),
+            );
+        }
+        let message = format!("`{}` is used before it is defined", name.text);
+        let found = Diagnostic::error("E0102", name.span, message);
+        Some(found.label(*place, "defined here"))
+    }
+
+    pub(super) fn unknown(&self, name: &Name, joined: &str, span: Span) -> Diagnostic {
+        if let Some(label) = self.scopes.iter().rev().find_map(|s| s.labels.get(&name.text)) {
+            let text = &name.text;
+            let message = format!("`{text}` is a label, and labels name nothing but for `set`");
+            return Diagnostic::error("E0101", name.span, message).label(*label, "the label").help(
+                format!(
+                    "give the object a name, `let {text} = …`, and put it where it stood, and \
+                     anywhere else, with `place {text}`"
+                ),
+            );
+        }
+        let dotted = builtins::names()
+            .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
+        let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };
+        let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
+        let mut known: Vec<&str> = builtins::names().chain(["true", "false"]).collect();
+        known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
+        known.extend(self.before.into_iter().flat_map(|before| before()));
+        // Which are looked at must not depend on the order in which a table holds them.
+        if known.len() > LOOKED_AT {
+            known.select_nth_unstable(LOOKED_AT);
+            known.truncate(LOOKED_AT);
+        }
+        known.sort_unstable();
+        // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
+        let ending = builtins::names()
+            .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
+        let ending = ending.map(|name| Near { name, grade: Grade::Sure });
+        if Unit::named(shown).is_some() {
+            found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
+        } else if shown == "not" {
+            found = found.help("`not` is written `!`").guess(place, "!");
+        } else if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
+            found = found.meant(place, Some(near));
+        } else if shown == "range" {
+            found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
+        } else {
+            found = found.help(
+                "names come from `let`, `param`, `fn`, `for` and `import`; text is written in \
+                 quotes: \"…\"",
+            );
+        }
+        found
+    }
+}
+
+/// The chain of functions from `from` over `name` back to `from`, if there is one.
+fn circle(scope: &Scope, from: &Name, name: &Name) -> Option<Vec<String>> {
+    let mut seen = BTreeSet::new();
+    let mut open = vec![vec![name.text.clone()]];
+    while let Some(chain) = open.pop() {
+        let last = chain.last()?;
+        if *last == from.text {
+            let start = format!("`{}`", from.text);
+            return Some(
+                std::iter::once(start).chain(chain.iter().map(|n| format!("`{n}`"))).collect(),
+            );
+        }
+        if seen.insert(last.clone()) {
+            let next = scope.mentions.get(last).into_iter().flatten();
+            open.extend(next.filter(|n| scope.mentions.contains_key(*n)).map(|n| {
+                let mut longer = chain.clone();
+                longer.push(n.clone());
+                longer
+            }));
+        }
+    }
+    None
+}

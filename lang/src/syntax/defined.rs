@@ -1,0 +1,97 @@
+//! The names that a statement which cannot be read may be meant to define: uses of them are no mistakes
+//! of their own.
+
+use std::ops::Range;
+
+use luxel_core::diag::{SourceId, Span, nearest};
+
+use super::around::is_category;
+use super::lex::{Token, TokenKind, tokens};
+use super::make::{RESERVED, STATEMENTS};
+use super::tree::Name;
+use super::type_names;
+
+/// Words before a name that is being defined.
+const DEFINING: [&str; 3] = ["let", "param", "fn"];
+
+/// Tokens that are looked at.
+const LOOKED_AT: usize = 6;
+
+/// Names that `text[piece]` may define.
+pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId) -> Box<[Name]> {
+    let mut after_line = false;
+    let words: Vec<Token<'_>> = tokens(text, piece)
+        .filter(|token| token.kind != TokenKind::Doc && token.text != "#")
+        .take_while(|token| !std::mem::replace(&mut after_line, true) || !token.first_on_line)
+        .take(LOOKED_AT)
+        .collect();
+    let name = |text: &str, first: &Token<'_>, last: &Token<'_>| Name {
+        text: text.into(),
+        span: Span::new(source, first.start, last.end()),
+    };
+    let word = |i: usize| words.get(i).filter(|t| t.kind == TokenKind::Word);
+    let mark = |i: usize| words.get(i).map_or("", |t| t.text);
+    let gives = |i: usize| matches!(mark(i), "=" | ":" | "(" | "==");
+    let Some(first) = word(0) else { return Box::default() };
+    if first.text == "import" {
+        return imported(&words).map(|(text, token)| name(text, token, token)).collect();
+    }
+    // `x := 3`, `letx: float = 3`
+    if gives(1) && mark(1) != "(" {
+        return glued(first.text).map(|text| name(text, first, first)).collect();
+    }
+    let begins = DEFINING.contains(&first.text);
+    // `lte x = 5`, `var x = 5` were to define something too.
+    let is_other = STATEMENTS.contains(&first.text) || is_category(first.text);
+    let may_begin = nearest(first.text, DEFINING).is_some() || !is_other;
+    let Some(second) = word(1).filter(|_| begins || may_begin) else { return Box::default() };
+    match word(2) {
+        // `let x int = 3`, `let go ld = 3`
+        Some(third) if begins || gives(3) => {
+            let all = [
+                second.text.to_owned(),
+                third.text.to_owned(),
+                format!("{}{}", second.text, third.text),
+                format!("{}_{}", second.text, third.text),
+            ];
+            let is_type = type_names::names().any(|known| known == third.text);
+            let n = if is_type { 1 } else { all.len() };
+            all[..n].iter().map(|text| name(text, second, third)).collect()
+        }
+        _ if begins || gives(2) => Box::new([name(second.text, second, second)]),
+        _ => Box::default(),
+    }
+}
+
+/// What `import "a.scene" …` may name: words that follow, or else as the file is called.
+fn imported<'t, 'a>(words: &'t [Token<'a>]) -> impl Iterator<Item = (&'a str, &'t Token<'a>)> {
+    let is_name = |t: &&Token<'_>| t.kind == TokenKind::Word && !RESERVED.contains(&t.text);
+    let named = words.iter().skip(1).filter(is_name).map(|t| (t.text, t));
+    let file = words.get(1).filter(|t| t.kind == TokenKind::Text && words.len() == 2);
+    named.chain(file.and_then(|file| Some((stem(file.text)?, file))))
+}
+
+/// The name of a file, if it can be a name of the language; its path stands in quotes.
+pub(super) fn stem(path: &str) -> Option<&str> {
+    let stem = path.trim_matches('"').rsplit('/').next()?.split('.').next()?;
+    let legal = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let begins = |c: char| c.is_ascii_alphabetic() || c == '_';
+    (stem.chars().all(legal) && stem.starts_with(begins)).then_some(stem)
+}
+
+/// Whether a statement begins as one that says what units bare numbers have, or nearly so.
+pub(crate) fn says_units(stmt: &str) -> bool {
+    let word = stmt.split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or("");
+    word.starts_with(['u', 'U']) && nearest(word, ["units"]).is_some()
+}
+
+/// The names that a field outside an object was meant to define.
+pub(crate) fn stray(field: &Name) -> impl Iterator<Item = Name> {
+    glued(&field.text).map(|text| Name { text: text.into(), span: field.span })
+}
+
+/// A word as a name, also without the word of the language that begins it: `letx`.
+fn glued(word: &str) -> impl Iterator<Item = &str> {
+    let rest = DEFINING.iter().filter_map(|known| word.strip_prefix(known));
+    [word].into_iter().chain(rest).filter(|name| !name.is_empty() && !RESERVED.contains(name))
+}

@@ -1,0 +1,331 @@
+//! What people write who think of another language, or whose editor sets type for them.
+
+use luxel_core::diag::{Diagnostic, Span};
+
+use super::around::{Around, Place, is_category};
+use super::defined::stem;
+use super::lex::{Token, TokenKind};
+use super::type_names;
+
+/// Signs that editors and other notations write, and what stands here for them.
+const SIGNS: [(&str, &str, &str); 16] = [
+    ("–", "-", "this dash is no minus sign"),
+    ("—", "-", "this dash is no minus sign"),
+    ("−", "-", "this minus sign is not the keyboard's"),
+    ("‐", "-", "this hyphen is no minus sign"),
+    ("×", "*", "a product is written with `*`"),
+    ("·", "*", "a product is written with `*`"),
+    ("⋅", "*", "a product is written with `*`"),
+    ("÷", "/", "a quotient is written with `/`"),
+    ("≤", "<=", "this comparison is written `<=`"),
+    ("≥", ">=", "this comparison is written `>=`"),
+    ("≠", "!=", "this comparison is written `!=`"),
+    ("…", "..", "a range is written with `..`"),
+    ("²", "^2", "a power is written with `^`"),
+    ("³", "^3", "a power is written with `^`"),
+    ("°", " deg", "degrees are written `deg`"),
+    ("π", "pi", "this number is called `pi`"),
+];
+
+/// Quotes beside the keyboard's two.
+const QUOTES: [&str; 9] = ["“", "”", "„", "‟", "«", "»", "‘", "’", "'"];
+
+/// Why the place cannot be read, if it looks like another language's way.
+pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
+    sign(around)
+        .or_else(|| quotes(around))
+        .or_else(|| lettered(around))
+        .or_else(|| hash(around))
+        .or_else(|| operator(around))
+        .or_else(|| word_operator(around))
+        .or_else(|| word(around))
+        .or_else(|| vector(around))
+        .or_else(|| share(around))
+        .or_else(|| decimal_comma(around))
+        .or_else(|| definition(around))
+        .or_else(|| object(around))
+}
+
+/// Tokens that stand side by side from `first` on, as one place, if their texts are these.
+fn joined(around: &Around<'_>, first: usize, texts: &[&str]) -> Option<Span> {
+    let tokens = around.tokens.get(first..first + texts.len())?;
+    let touch = tokens.windows(2).all(|pair| pair[0].end() == pair[1].start);
+    let same = tokens.iter().zip(texts).all(|(token, text)| token.text == *text);
+    (touch && same).then(|| around.span(&tokens[0]).to(around.span(&tokens[texts.len() - 1])))
+}
+
+fn told(span: Span, message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error("E0023", span, message)
+}
+
+/// A sign of typography, or a blank that is none to the grammar.
+fn sign(around: &Around<'_>) -> Option<Diagnostic> {
+    let mark = around.current()?;
+    let c = mark.text.chars().next()?;
+    if c.is_whitespace() || matches!(c, '\u{200B}'..='\u{200D}' | '\u{2060}') {
+        let message = format!("this blank (U+{:04X}) is none to the language", u32::from(c));
+        return Some(told(around.span(mark), message).fix(around.span(mark), " "));
+    }
+    let (_, here, message) = SIGNS.iter().find(|(sign, ..)| *sign == mark.text)?;
+    Some(told(around.span(mark), *message).fix(around.span(mark), *here))
+}
+
+/// `'a'`, `“a”`
+fn quotes(around: &Around<'_>) -> Option<Diagnostic> {
+    let mark = around.current().filter(|mark| QUOTES.contains(&mark.text))?;
+    let found = told(around.span(mark), "a string stands between `\"`");
+    let line = around.text[mark.end()..around.end].split('\n').next()?;
+    let end = QUOTES.iter().chain(&["\""]).filter_map(|quote| line.find(quote)).min();
+    let Some(length) = end else { return Some(found) };
+    let quote = line[length..].chars().next().map_or(0, char::len_utf8);
+    let all = Span::new(around.source, mark.start, mark.end() + length + quote);
+    Some(found.guess(all, format!("\"{}\"", &line[..length])))
+}
+
+/// `f"text"`
+fn lettered(around: &Around<'_>) -> Option<Diagnostic> {
+    let back = around.at.saturating_sub(1);
+    [back, around.at].into_iter().find_map(|i| {
+        let (letter, text) = (around.tokens.get(i)?, around.tokens.get(i + 1)?);
+        let touch = letter.end() == text.start && letter.text.len() <= 2;
+        if letter.kind != TokenKind::Word || text.kind != TokenKind::Text || !touch {
+            return None;
+        }
+        let span = around.span(letter);
+        Some(told(span, "no letter stands before a string").fix(span, ""))
+    })
+}
+
+/// `# comment` and `#ff8000`
+fn hash(around: &Around<'_>) -> Option<Diagnostic> {
+    let mark = around.current().filter(|mark| mark.text == "#")?;
+    let rest = &around.text[mark.end()..around.end];
+    let digits = rest.find(|c: char| !c.is_ascii_hexdigit()).unwrap_or(rest.len());
+    if let Some(found) = directive(around, mark) {
+        return Some(found);
+    }
+    if mark.first_on_line || !matches!(digits, 3 | 6) {
+        let found = told(around.span(mark), "a comment begins with `//`");
+        return Some(found.guess(around.span(mark), "//"));
+    }
+    let width = digits / 3;
+    let part = |i: usize| {
+        let digits = &rest[i * width..(i + 1) * width];
+        let most = if width == 1 { 15.0 } else { 255.0 };
+        u8::from_str_radix(digits, 16).map_or(0.0, |x| (f64::from(x) / most * 1e4).round() / 1e4)
+    };
+    let span = Span::new(around.source, mark.start, mark.end() + digits);
+    let color = format!("rgb.srgb({}, {}, {})", part(0), part(1), part(2));
+    let message = "a colour is given by numbers, and says in which space they are";
+    Some(told(span, message).guess(span, color))
+}
+
+/// `#declare x = 3`
+fn directive(around: &Around<'_>, mark: &Token<'_>) -> Option<Diagnostic> {
+    let word = around.tokens.get(around.at + 1).filter(|word| word.start == mark.end())?;
+    if !around.is_word(around.at + 2) || around.word(around.at + 3) != "=" {
+        return None;
+    }
+    let span = around.span(mark).to(around.span(word));
+    let found = told(span, format!("`#{}` begins no statement", word.text));
+    Some(found.help("did you mean `let`?").guess(span, "let"))
+}
+
+/// `x := 3`, `2 ** 3`, `x += 1`, `a ? b : c`, `fn f() -> float`, `(x) => x`
+fn operator(around: &Around<'_>) -> Option<Diagnostic> {
+    let current = around.current()?;
+    let (at, back) = (around.at, around.at.saturating_sub(1));
+    for first in [back, at] {
+        if let Some(span) = joined(around, first, &[":", "="]) {
+            return Some(told(span, "a value is given with `=`").fix(span, "="));
+        }
+        if let Some(span) = joined(around, first, &["*", "*"]) {
+            return Some(told(span, "a power is written with `^`").fix(span, "^"));
+        }
+        if let Some(span) = joined(around, first, &["-", ">"]) {
+            let found = told(span, "what a function gives is not declared");
+            let ty = around.tokens.get(first + 2).filter(|ty| ty.kind == TokenKind::Word);
+            let before =
+                around.tokens.get(first.wrapping_sub(1)).map_or(span.range().start, Token::end);
+            let end = ty.map_or(span.range().end, Token::end);
+            return Some(found.guess(Span::new(around.source, before, end), ""));
+        }
+        for op in ["+", "-", "*", "/"] {
+            if let Some(span) = joined(around, first, &[op, "="]) {
+                let message = format!("a name keeps its value: `{op}=` cannot change it");
+                return Some(told(span, message).help("give the new value a name with `let`"));
+            }
+        }
+    }
+    match current.text {
+        "?" => Some(
+            told(around.span(current), "a choice is no operator")
+                .help("it is written `if x > 1 { a } else { b }`"),
+        ),
+        "=>" => Some(nameless(around.span(current))),
+        _ => None,
+    }
+}
+
+fn nameless(span: Span) -> Diagnostic {
+    told(span, "a function has a name").help("it is written `fn f(x: float) = x + 1`")
+}
+
+/// `a and b`, `a or b`, `not a`
+fn word_operator(around: &Around<'_>) -> Option<Diagnostic> {
+    let back = around.at.saturating_sub(1);
+    [back, around.at].into_iter().find_map(|i| {
+        let word = around.tokens.get(i)?;
+        let next = around.tokens.get(i + 1).filter(|next| !next.first_on_line)?;
+        let before = i.checked_sub(1).and_then(|i| around.tokens.get(i))?;
+        if !next.begins_operand() || around.begins(i) {
+            return None;
+        }
+        let (span, message) =
+            (around.span(word), |op| format!("`{}` is written `{op}`", word.text));
+        match word.text {
+            "and" if before.ends_operand() => Some(told(span, message("&&")).fix(span, "&&")),
+            "or" if before.ends_operand() => Some(told(span, message("||")).fix(span, "||")),
+            "not" if !before.ends_operand() || before.text == "if" => {
+                let all = Span::new(around.source, word.start, next.start);
+                Some(told(span, message("!")).fix(all, "!"))
+            }
+            _ => None,
+        }
+    })
+}
+
+/// `elif`, `return`, `lambda`, `mut`
+fn word(around: &Around<'_>) -> Option<Diagnostic> {
+    let current = around.current()?;
+    let before = around.before(1)?;
+    let span = around.span(current);
+    if matches!(current.text, "elif" | "elsif" | "elseif") && before.text == "}" {
+        return Some(told(span, "a further branch is written `else if`").fix(span, "else if"));
+    }
+    match before.text {
+        "return" if !current.first_on_line => Some(
+            told(around.span(before), "what a function gives stands behind its `=`")
+                .help("it is written `fn f(x: float) = x + 1`"),
+        ),
+        "lambda" => Some(nameless(around.span(before))),
+        "mut" if around.before(2).is_some_and(|t| t.text == "let") => {
+            let all = Span::new(around.source, before.start, current.start);
+            Some(told(around.span(before), "a name keeps its value").fix(all, ""))
+        }
+        _ => None,
+    }
+}
+
+/// `<1, 2, 3>`
+fn vector(around: &Around<'_>) -> Option<Diagnostic> {
+    let open = around.current().filter(|open| open.text == "<")?;
+    let is_value =
+        around.before(1).is_some_and(|t| t.is_operator() || matches!(t.text, "(" | "," | "["));
+    let line = around.text[open.end()..around.end].split('\n').next().filter(|_| is_value)?;
+    let length = line.find('>')?;
+    let all = Span::new(around.source, open.start, open.end() + length + 1);
+    let found = told(around.span(open), "a vector stands between `(` and `)`");
+    Some(found.guess(all, format!("({})", &line[..length])))
+}
+
+/// `70%`
+fn share(around: &Around<'_>) -> Option<Diagnostic> {
+    let (sign, number) = (around.before(1)?, around.before(2)?);
+    let follows = around.current().is_some_and(|t| !t.first_on_line && t.begins_operand());
+    let is_share = sign.text == "%" && number.kind == TokenKind::Number;
+    let value: f64 = number.text.parse().ok().filter(|_| is_share && !follows)?;
+    let span = around.span(number).to(around.span(sign));
+    let found = told(span, "a share is written as a number: 1 is all");
+    Some(found.guess(span, format!("{}", value / 100.0)))
+}
+
+/// `0,2 m`
+fn decimal_comma(around: &Around<'_>) -> Option<Diagnostic> {
+    let (number, comma, rest) = (around.before(2)?, around.before(1)?, around.current()?);
+    let is_number = |t: &Token<'_>| t.kind == TokenKind::Number && !t.text.contains('.');
+    let is_list = around.open.last().is_some_and(|open| around.word(*open) != "{");
+    let touch = number.end() == comma.start && comma.end() == rest.start;
+    if comma.text != "," || !is_number(number) || !is_number(rest) || is_list || !touch {
+        return None;
+    }
+    let found = told(around.span(comma), "the decimal point is written `.`");
+    Some(found.guess(around.span(comma), "."))
+}
+
+/// `let x int = 3`, `let go ld = 3`, `param x = 3`, `import "a.scene"`
+fn definition(around: &Around<'_>) -> Option<Diagnostic> {
+    let (last, before) = (around.before(1)?, around.before(2));
+    let is_word = last.kind == TokenKind::Word;
+    match (before.map_or("", |t| t.text), around.current()) {
+        ("let" | "param", Some(second)) if is_word && second.kind == TokenKind::Word => {
+            if second.first_on_line {
+                return None;
+            }
+            let gap = Span::new(around.source, last.end(), second.start);
+            if type_names::names().any(|known| known == second.text) {
+                let found = told(around.span(second), "a type stands behind `:`");
+                return Some(found.fix(gap, ": "));
+            }
+            Some(
+                told(around.span(last).to(around.span(second)), "a name is one word")
+                    .guess(gap, "_"),
+            )
+        }
+        ("param", Some(equals)) if is_word && equals.text == "=" => {
+            let message = format!("the parameter `{}` needs a type", last.text);
+            let found = around.error("E0024", last, message);
+            let value = around.tokens.get(around.at + 1);
+            let gap = Span::new(around.source, last.end(), last.end());
+            let is_int = |t: &&Token<'_>| {
+                t.kind == TokenKind::Number && t.text.bytes().all(|b| b.is_ascii_digit())
+            };
+            let help = format!("write `{}: length`, `float`, `int`, `angle`, …", last.text);
+            let is_alone = !around.is_word(around.at + 2)
+                || around.tokens.get(around.at + 2).is_some_and(|t| t.first_on_line);
+            Some(match value.filter(is_int).filter(|_| is_alone) {
+                Some(_) => found.help(help).guess(gap, ": int").guess(gap, ": float"),
+                None => found.help(help),
+            })
+        }
+        (_, next) if last.kind == TokenKind::Text && next.is_none_or(|t| t.first_on_line) => {
+            import(around, last)
+        }
+        _ => None,
+    }
+}
+
+/// `import "a.scene"` without a name.
+fn import(around: &Around<'_>, path: &Token<'_>) -> Option<Diagnostic> {
+    let word = around.before(2).filter(|word| word.text == "import")?;
+    let name = stem(path.text).unwrap_or("lib");
+    let end = Span::new(around.source, path.end(), path.end());
+    let found = told(around.span(word).to(around.span(path)), "what is imported needs a name");
+    Some(found.guess(end, format!(" as {name}")))
+}
+
+/// `shape "sphere" "ball" { … }` and `material paint diffuse { … }`
+fn object(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(3);
+    let start =
+        (first..around.at).rev().find(|i| around.begins(*i) && is_category(around.word(*i)))?;
+    let (kind, label) = (around.tokens.get(start + 1)?, around.tokens.get(start + 2)?);
+    let opens = |i: usize| around.word(i) == "{" && around.inner() != Place::Fields;
+    let apart = |t: &Token<'_>| t.first_on_line;
+    if apart(kind) || apart(label) || !opens(start + 3) {
+        return None;
+    }
+    match (kind.kind, label.kind) {
+        (TokenKind::Text, TokenKind::Text) => {
+            let word = kind.text.trim_matches('"');
+            let found = told(around.span(kind), "the kind of an object is a word, not a text");
+            Some(found.fix(around.span(kind), word))
+        }
+        (TokenKind::Word, TokenKind::Word) => {
+            let both = around.span(kind).to(around.span(label));
+            let found = told(both, "an object has one kind, and its label is a text");
+            Some(found.guess(both, format!("{} \"{}\"", label.text, kind.text)))
+        }
+        _ => None,
+    }
+}

@@ -54,3 +54,20 @@ fn a_function_is_described_and_has_no_kinds() {
         assert!(done.err.contains(&format!("luxel describe {word}")), "{done:?}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn what_a_library_of_others_brings_has_its_page_and_is_found() {
+    let folder = Folder::new("docs-library");
+    super::faulty::build(&folder, super::faulty::NOTHING);
+    let docs = [&["docs", "-o", "out", "--no-pictures"][..], &super::faulty::OPEN].concat();
+    let done = folder.luxel(&docs);
+    assert_eq!(done.code, 0, "{done:?}");
+    let page = |name: &str| String::from_utf8(folder.read(&format!("out/{name}"))).unwrap();
+    let faulty = page("material-faulty.html");
+    for part in ["<h1>material faulty</h1>", "Goes wrong.", "<tr id=\"reflectance\">", "0.1.0"] {
+        assert!(faulty.contains(part), "{part} in {faulty}");
+    }
+    assert!(page("index.html").contains("href=\"material-faulty.html\""));
+    assert!(page("search.js").contains("\"title\":\"material faulty\""));
+}

@@ -162,5 +162,5 @@ fn intervals_hold_the_truth_after_an_error_was_asked_for() {
     }
     println!("{table}");
     assert!(wrong.is_empty(), "{wrong:?}\n{table}");
-    published::hold("coverage-asked", &table);
+    published::hold("accuracy.md", "coverage-asked", &table);
 }

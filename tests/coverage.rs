@@ -156,5 +156,5 @@ fn intervals_hold_the_truth_as_often_as_is_published() {
         // tell their spread to 2.2 %, four times which is allowed.
         assert!(row.is_skewed || row.said_over_true > 0.91, "{of}, {n} samples\n{table}");
     }
-    published::hold("coverage", &table);
+    published::hold("accuracy.md", "coverage", &table);
 }

@@ -105,7 +105,7 @@ fn two_seeds_of_one_scene_are_the_same() {
     let n = words.len();
     let told =
         format!("{same} of {n} pairs of seeds of one scene are `same`; {least} are asked for.");
-    published::hold("trials-same", &told);
+    published::hold("accuracy.md", "trials-same", &told);
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn a_bias_of_a_hundredth_in_one_material_is_found_with_the_stated_power() {
         "{found} of {TRIALS} are `different` where the ball's reflectance is 1 % higher in one, which is {bias} of the\n\
          mean, {seen} or less of which was stated to be found; {least} are asked for."
     );
-    published::hold("trials-different", &told);
+    published::hold("accuracy.md", "trials-different", &told);
 }
 
 #[test]

@@ -20,6 +20,7 @@ mod make;
 mod number;
 mod operators;
 mod parse;
+mod recover;
 #[cfg(test)]
 mod tests;
 mod tree;

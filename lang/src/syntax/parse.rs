@@ -10,13 +10,11 @@ use pest::error::InputLocation;
 use super::around::Place;
 use super::build::Builder;
 use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
-use super::defined::perhaps_defined;
 use super::direct::{self, Words};
-use super::explain::explain;
 use super::fault;
 use super::gaps::Gaps;
 use super::lex::{Token, TokenKind, tokens};
-use super::tree::{Expr, ExprNode, Stmt, StmtNode};
+use super::tree::{Expr, ExprNode, Stmt};
 use super::unopened::unopened;
 use super::weigh::too_large;
 use super::{Rule, SceneParser};
@@ -24,12 +22,6 @@ use crate::budgets::Budgets;
 use crate::prescan::scan;
 use crate::shares;
 use crate::sink::Sink;
-
-/// Bytes of a statement up to which what is right in it is read although something is wrong.
-const REPAIRED: usize = 1 << 18;
-
-/// In how many enclosing blocks statements after a mistake are still looked at.
-const BLOCKS_LOOKED_AT: usize = 8;
 
 /// A file, read.
 #[derive(Debug, Default, PartialEq)]
@@ -198,16 +190,16 @@ pub(crate) fn parse_expr(
     (expr.node != ExprNode::Broken).then_some(expr)
 }
 
-struct Reader<'a> {
-    text: &'a str,
-    source: SourceId,
-    budgets: &'a Budgets,
-    sink: &'a mut Sink,
+pub(super) struct Reader<'a> {
+    pub(super) text: &'a str,
+    pub(super) source: SourceId,
+    pub(super) budgets: &'a Budgets,
+    pub(super) sink: &'a mut Sink,
     /// Words that were met, if statements are read straight from their bytes where that is possible.
     direct: Option<Words>,
     /// Where the statement that is being read cannot be read: the innermost statements around mistakes.
-    wrong: Vec<Range<usize>>,
-    out: Tree,
+    pub(super) wrong: Vec<Range<usize>>,
+    pub(super) out: Tree,
 }
 
 impl<'a> Reader<'a> {
@@ -218,7 +210,7 @@ impl<'a> Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn span(&self, range: Range<usize>) -> Span {
+    pub(super) fn span(&self, range: Range<usize>) -> Span {
         Span::new(self.source, range.start, range.end)
     }
 
@@ -384,7 +376,7 @@ impl Reader<'_> {
     }
 
     /// Reads one statement. Only one of the file itself becomes part of the tree.
-    fn chunk(&mut self, chunk: Range<usize>, place: Place) {
+    pub(super) fn chunk(&mut self, chunk: Range<usize>, place: Place) {
         let keep = place == Place::File;
         let text = &self.text[chunk.clone()];
         if self.is_too_large(&chunk) {
@@ -426,27 +418,9 @@ impl Reader<'_> {
         }
     }
 
-    fn builder(&mut self, base: usize) -> Builder<'_> {
+    pub(super) fn builder(&mut self, base: usize) -> Builder<'_> {
         let gaps = Gaps::default();
         Builder { source: self.source, base, sink: self.sink, budgets: self.budgets, gaps }
-    }
-
-    /// A statement of the file without the inner statements that cannot be read: more mistakes may be
-    /// found in the rest.
-    fn repaired(&mut self, chunk: &Range<usize>) -> Stmt {
-        let wrong = std::mem::take(&mut self.wrong);
-        let gaps = Gaps::new(self.text, self.source, wrong);
-        let is_worth = chunk.len() <= REPAIRED && !self.sink.is_full();
-        let text = Some(chunk).filter(|_| is_worth).and_then(|chunk| gaps.filled(self.text, chunk));
-        let pairs = text.as_ref().and_then(|text| SceneParser::parse(Rule::one_stmt, text).ok());
-        let stmt = pairs.and_then(|pairs| {
-            let mut parts = pairs.flat_map(pest::iterators::Pair::into_inner);
-            let stmt = parts.find(|part| part.as_rule() == Rule::stmt)?;
-            let mut builder = Builder { gaps, ..self.builder(chunk.start) };
-            let stmt = builder.stmt(stmt);
-            builder.gaps.are_filled().then_some(stmt)
-        });
-        stmt.unwrap_or_else(|| self.broken_stmt(chunk.clone()))
     }
 
     /// Whether a statement would take too much to read, which is told.
@@ -457,77 +431,5 @@ impl Reader<'_> {
             self.sink.push(found);
         }
         is_found
-    }
-
-    /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those
-    /// around it.
-    fn recover(&mut self, at: usize, chunk: Range<usize>, place: Place) {
-        let found = explain(self.text, chunk.clone(), at, self.source, place);
-        let here = found.at;
-        self.sink.push(found.diagnostic);
-        if self.sink.is_full() {
-            return;
-        }
-        let mut blocks = found.blocks;
-        blocks.reverse();
-        blocks.truncate(BLOCKS_LOOKED_AT);
-        let mut after = here;
-        let mut wrong = Some(chunk.clone());
-        for (open, within) in blocks {
-            let scan = scan(self.text, open..chunk.end, 1, self.budgets.brackets);
-            let close = self.matching(open, chunk.end);
-            // The innermost block has the statement around the mistake.
-            if wrong.take().is_some() {
-                let next = scan.starts.partition_point(|start| *start <= here);
-                let end = scan.starts.get(next).copied().unwrap_or(close).min(close);
-                let start = next.checked_sub(1).map_or(chunk.start, |i| scan.starts[i]);
-                self.wrong.push(start..end);
-            }
-            let inner: Vec<usize> =
-                scan.starts.into_iter().filter(|s| *s > after && *s < close).collect();
-            let ends = inner.iter().skip(1).copied().chain([close]);
-            for (start, stop) in inner.iter().copied().zip(ends) {
-                self.chunk(start..stop, within);
-            }
-            after = after.max(close);
-        }
-        self.wrong.extend(wrong);
-        // A statement that was swallowed by an operator at the end of the line before.
-        if let Some(start) = found.resume.filter(|start| *start > chunk.start) {
-            let starts = scan(self.text, start..chunk.end, 0, self.budgets.brackets).starts;
-            let ends = starts.iter().skip(1).copied().chain([chunk.end]);
-            for (start, stop) in starts.iter().copied().zip(ends) {
-                self.chunk(start..stop, place);
-            }
-        }
-    }
-
-    /// The bracket that closes the one at `open`, or `end`.
-    fn matching(&self, open: usize, end: usize) -> usize {
-        let mut depth = 0_usize;
-        for token in tokens(self.text, open..end).filter(|t| t.kind == TokenKind::Mark) {
-            match token.text {
-                "(" | "[" | "{" => depth += 1,
-                ")" | "]" | "}" => depth = depth.saturating_sub(1),
-                _ => {}
-            }
-            if depth == 0 {
-                return token.start;
-            }
-        }
-        end
-    }
-
-    /// Keeps a statement that cannot be read, with the names that it may define.
-    fn broken(&mut self, chunk: Range<usize>) {
-        let stmt = self.broken_stmt(chunk);
-        self.out.stmts.push(stmt);
-    }
-
-    fn broken_stmt(&self, chunk: Range<usize>) -> Stmt {
-        let span = self.span(chunk.clone());
-        let defines = perhaps_defined(self.text, chunk, self.source);
-        let node = StmtNode::Broken { defines };
-        Stmt { span, docs: Box::default(), attrs: Box::default(), node }
     }
 }

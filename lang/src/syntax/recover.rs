@@ -1,0 +1,116 @@
+//! What is done about a statement that cannot be read.
+
+use std::ops::Range;
+
+use pest::Parser;
+
+use super::around::Place;
+use super::build::Builder;
+use super::defined::perhaps_defined;
+use super::explain::explain;
+use super::gaps::Gaps;
+use super::lex::{TokenKind, tokens};
+use super::parse::Reader;
+use super::tree::{Stmt, StmtNode};
+use super::{Rule, SceneParser};
+use crate::prescan::scan;
+
+/// Bytes of a statement up to which what is right in it is read although something is wrong.
+const REPAIRED: usize = 1 << 18;
+
+/// In how many enclosing blocks statements after a mistake are still looked at.
+const BLOCKS_LOOKED_AT: usize = 8;
+
+impl Reader<'_> {
+    /// A statement of the file without the inner statements that cannot be read: more mistakes may be
+    /// found in the rest.
+    pub(super) fn repaired(&mut self, chunk: &Range<usize>) -> Stmt {
+        let is_own =
+            |range: &mut Range<usize>| chunk.start <= range.start && range.end <= chunk.end;
+        let wrong = self.wrong.extract_if(.., is_own).collect();
+        let gaps = Gaps::new(self.text, self.source, wrong);
+        let is_worth = chunk.len() <= REPAIRED && !self.sink.is_full();
+        let text = Some(chunk).filter(|_| is_worth).and_then(|chunk| gaps.filled(self.text, chunk));
+        let pairs = text.as_ref().and_then(|text| SceneParser::parse(Rule::one_stmt, text).ok());
+        let stmt = pairs.and_then(|pairs| {
+            let mut parts = pairs.flat_map(pest::iterators::Pair::into_inner);
+            let stmt = parts.find(|part| part.as_rule() == Rule::stmt)?;
+            let mut builder = Builder { gaps, ..self.builder(chunk.start) };
+            let stmt = builder.stmt(stmt);
+            builder.gaps.are_filled().then_some(stmt)
+        });
+        stmt.unwrap_or_else(|| self.broken_stmt(chunk.clone()))
+    }
+
+    /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those
+    /// around it.
+    pub(super) fn recover(&mut self, at: usize, chunk: Range<usize>, place: Place) {
+        let found = explain(self.text, chunk.clone(), at, self.source, place);
+        let here = found.at;
+        self.sink.push(found.diagnostic);
+        if self.sink.is_full() {
+            return;
+        }
+        let mut blocks = found.blocks;
+        blocks.reverse();
+        blocks.truncate(BLOCKS_LOOKED_AT);
+        let mut after = here;
+        let mut wrong = Some(chunk.clone());
+        for (open, within) in blocks {
+            let scan = scan(self.text, open..chunk.end, 1, self.budgets.brackets);
+            let close = self.matching(open, chunk.end);
+            // The innermost block has the statement around the mistake.
+            if wrong.take().is_some() {
+                let next = scan.starts.partition_point(|start| *start <= here);
+                let end = scan.starts.get(next).copied().unwrap_or(close).min(close);
+                let start = next.checked_sub(1).map_or(chunk.start, |i| scan.starts[i]);
+                self.wrong.push(start..end);
+            }
+            let inner: Vec<usize> =
+                scan.starts.into_iter().filter(|s| *s > after && *s < close).collect();
+            let ends = inner.iter().skip(1).copied().chain([close]);
+            for (start, stop) in inner.iter().copied().zip(ends) {
+                self.chunk(start..stop, within);
+            }
+            after = after.max(close);
+        }
+        self.wrong.extend(wrong);
+        // A statement that was swallowed by an operator at the end of the line before.
+        if let Some(start) = found.resume.filter(|start| *start > chunk.start) {
+            let starts = scan(self.text, start..chunk.end, 0, self.budgets.brackets).starts;
+            let ends = starts.iter().skip(1).copied().chain([chunk.end]);
+            for (start, stop) in starts.iter().copied().zip(ends) {
+                self.chunk(start..stop, place);
+            }
+        }
+    }
+
+    /// The bracket that closes the one at `open`, or `end`.
+    fn matching(&self, open: usize, end: usize) -> usize {
+        let mut depth = 0_usize;
+        for token in tokens(self.text, open..end).filter(|t| t.kind == TokenKind::Mark) {
+            match token.text {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            if depth == 0 {
+                return token.start;
+            }
+        }
+        end
+    }
+
+    /// Keeps a statement that cannot be read, with the names that it may define.
+    pub(super) fn broken(&mut self, chunk: Range<usize>) {
+        let stmt = self.broken_stmt(chunk);
+        self.out.stmts.push(stmt);
+    }
+
+    fn broken_stmt(&self, chunk: Range<usize>) -> Stmt {
+        let span = self.span(chunk.clone());
+        let defines = perhaps_defined(self.text, chunk, self.source);
+        let node = StmtNode::Broken { defines };
+        Stmt { span, docs: Box::default(), attrs: Box::default(), node }
+    }
+}

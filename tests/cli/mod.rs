@@ -320,11 +320,11 @@ fn a_scene_does_not_write_over_what_it_reads() {
     assert!(done.code == 1 && done.err.contains("its own output"), "{done:?}");
 }
 
-/// Waits until `done`, at most ten seconds.
+/// Waits until `done`, at most a minute: a machine may have much else to do.
 fn until(what: &str, mut done: impl FnMut() -> bool) {
     let since = Instant::now();
     while !done() {
-        assert!(since.elapsed() < Duration::from_secs(10), "waited for {what}");
+        assert!(since.elapsed() < Duration::from_secs(60), "waited for {what}");
         std::thread::sleep(Duration::from_millis(10));
     }
 }

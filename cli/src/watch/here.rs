@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use luxel_core::accel::Watch;
 use luxel_core::film::Film;
 use luxel_core::render::{Control, Reached};
+use luxel_core::scene::Scene;
 use luxel_core::stage::Anew;
 use luxel_lang::Kept;
 use serde_json::json;
@@ -229,8 +230,9 @@ impl<'scope> Watching<'scope, '_> {
             Ended::Done(text) => text,
             Ended::Left(noticed) => return Ok(after(noticed)),
         };
-        if let Some(Shown { subject, .. }) = &mut self.shown
-            && subject.is_of(&text, self.changes.known())
+        let hashes = text.scene.as_ref().map(Scene::hashes);
+        if let (Some(Shown { subject, .. }), Some(hashes)) = (&mut self.shown, &hashes)
+            && subject.is_of(hashes, self.changes.known())
         {
             (self.is_good, self.impatient) = (true, true);
             subject.read_again(&text);
@@ -262,7 +264,7 @@ impl<'scope> Watching<'scope, '_> {
             self.has_told = loaded.stage.is_none();
         }
         let Loaded { scene, stage, files, sources, mut diagnostics, anew, origin } = loaded;
-        if let (Some(stage), Some(scene)) = (stage, scene) {
+        if let (Some(stage), Some(scene), Some(hashes)) = (stage, scene, hashes) {
             self.is_good = true;
             let before = self.shown.as_ref().map(|Shown { subject, .. }| subject);
             let changes = before.map_or(vec![], |before| {
@@ -274,7 +276,8 @@ impl<'scope> Watching<'scope, '_> {
             let (scene, stage) = (Arc::new(scene), Arc::new(stage));
             let read = Arc::new(Read { files, sources, origin });
             let warnings = diagnostics.split_off(n_told.min(diagnostics.len()));
-            self.turn_to(Subject { scene, stage, read, files: watched, texts, warnings }, edit);
+            let files = watched;
+            self.turn_to(Subject { scene, hashes, stage, read, files, texts, warnings }, edit);
         }
         Ok(Next::Wait)
     }

@@ -7,7 +7,7 @@ use std::thread::ScopedJoinHandle;
 
 use luxel_core::diag::Diagnostic;
 use luxel_core::render::{Control, Options, can_take_more};
-use luxel_core::scene::Scene;
+use luxel_core::scene::{Hashes, Scene};
 use luxel_core::stage::Stage;
 
 use super::round::{Read, Sitting};
@@ -19,6 +19,7 @@ use crate::load::Text;
 pub(super) struct Subject {
     /// As the text says, assets not expanded.
     pub(super) scene: Arc<Scene>,
+    pub(super) hashes: Hashes,
     pub(super) stage: Arc<Stage>,
     pub(super) read: Arc<Read>,
     /// Everything that it was made of, as it was then.
@@ -30,12 +31,12 @@ pub(super) struct Subject {
 }
 
 impl Subject {
-    /// Whether a text that was read shows the same scene, of files that have not changed.
-    pub(super) fn is_of(&self, text: &Text, known: &Known) -> bool {
+    /// Whether a scene that was read is the same, of files that have not changed.
+    pub(super) fn is_of(&self, hashes: &Hashes, known: &Known) -> bool {
         let same = |(path, seen): (&PathBuf, &Seen)| {
             self.texts.contains(path) || known.look(path) == *seen
         };
-        text.scene.as_ref().is_some_and(|scene| scene.hash() == self.scene.hash())
+        hashes.shown == self.hashes.shown
             && !self.stage.has_failed()
             && self.files.iter().all(same)
     }
@@ -43,7 +44,7 @@ impl Subject {
     /// Whether what is measured for another subject is right for this one too: it is only shown in
     /// another way, or written to another place.
     pub(super) fn is_measured_by(&self, other: &Self) -> bool {
-        self.scene.measured_hash() == other.scene.measured_hash()
+        self.hashes.measured == other.hashes.measured
             && !other.stage.has_failed()
             && self.other_files() == other.other_files()
     }
@@ -51,7 +52,7 @@ impl Subject {
     /// Whether what is measured for another subject is the beginning of what this one needs: more
     /// samples of the same.
     pub(super) fn goes_on_from(&self, other: &Self, options: &Options) -> bool {
-        self.scene.sampled_hash() == other.scene.sampled_hash()
+        self.hashes.sampled == other.hashes.sampled
             && options.samples(&self.stage) > options.samples(&other.stage)
             && !other.stage.has_failed()
             && can_take_more(&self.stage)

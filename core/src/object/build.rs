@@ -1,6 +1,6 @@
 //! From a node of the scene graph to an object: its template and what varies.
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use luxel_sdk::abi::Class;
@@ -92,7 +92,7 @@ pub struct Builder<'a> {
     /// What this build made or kept.
     pub objects: Objects,
     /// Nodes with which something is wrong, which has been said.
-    refused: BTreeSet<(NodeId, ColorMode)>,
+    refused: HashSet<(NodeId, ColorMode)>,
     /// What was found wrong.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -118,7 +118,7 @@ impl<'a> Builder<'a> {
             mesh_parts: None,
             watch: None,
             objects,
-            refused: BTreeSet::new(),
+            refused: HashSet::new(),
             diagnostics: vec![],
         }
     }

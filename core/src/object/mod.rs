@@ -40,7 +40,7 @@ pub use colour::white;
 pub use context::{Embedded, Reader, Reads};
 pub use part::MeshParts;
 pub use resolve::{Resolved, Scratch, Site};
-pub use shelf::{Kept, Shelf};
+pub use shelf::{ByContent, Kept, Shelf};
 
 /// The most objects that one may be made of: a mixture of mixtures of the same two doubles them with
 /// every step.

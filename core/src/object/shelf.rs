@@ -1,7 +1,9 @@
 //! What builds leave for the next: what the last one used, and for a while what it did not, so that
 //! going back to how a scene was a moment ago makes nothing anew.
 
-use std::collections::BTreeMap;
+use std::hash::Hash;
+
+use indexmap::IndexMap;
 
 /// So many builds may go by without a thing before it goes too.
 const PATIENCE: u32 = 2;
@@ -15,11 +17,14 @@ pub trait Kept: Clone {
     fn bytes(&self) -> usize;
 }
 
+/// Things by content, in the order in which they were put there.
+pub type ByContent<K, V> = IndexMap<K, V, foldhash::fast::RandomState>;
+
 /// Things by content, those of the last build and of a few before it.
 #[derive(Debug)]
 pub struct Shelf<K, V> {
     /// What the build in hand, or the last one, has used.
-    now: BTreeMap<K, V>,
+    now: ByContent<K, V>,
     /// What builds before used and later ones did not, the latest first.
     past: Vec<Past<K, V>>,
 }
@@ -34,13 +39,13 @@ struct Past<K, V> {
 
 impl<K, V> Default for Shelf<K, V> {
     fn default() -> Self {
-        Self { now: BTreeMap::new(), past: vec![] }
+        Self { now: ByContent::default(), past: vec![] }
     }
 }
 
-impl<K: Ord + Copy, V: Kept> Shelf<K, V> {
+impl<K: Eq + Hash + Copy, V: Kept> Shelf<K, V> {
     /// What this build has used.
-    pub fn now(&self) -> &BTreeMap<K, V> {
+    pub fn now(&self) -> &ByContent<K, V> {
         &self.now
     }
 

@@ -121,6 +121,18 @@ pub struct Group {
     pub items: Vec<Placed>,
 }
 
+/// Hashes of a whole scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hashes {
+    /// Of everything that it shows: `Scene::hash`.
+    pub shown: Hash,
+    /// Equal where the measurement is: `Scene::measured_hash`.
+    pub measured: Hash,
+    /// The same without the number of samples: equal where one is measured by the first samples of the
+    /// other, if its sampler gives the same ones.
+    pub sampled: Hash,
+}
+
 /// A whole scene.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Scene {
@@ -211,20 +223,26 @@ impl Scene {
     /// Hash of everything that the scene shows: what stands where, and its settings. Labels, places
     /// in files and nodes that nothing uses do not count; nor do the contents of files by path.
     pub fn hash(&self) -> Hash {
-        value::hash_scene(self, self.without(self.film, &[]), self.without(self.sampler, &[]))
+        self.hashes().shown
     }
 
     /// The same without what decides only how a picture is shown and where it goes: equal where the
     /// measurement is.
     pub fn measured_hash(&self) -> Hash {
-        value::hash_scene(self, self.without(self.film, &SHOWN), self.without(self.sampler, &[]))
+        self.hashes().measured
     }
 
-    /// The same without the number of samples: equal where one is measured by the first samples of the
-    /// other, if its sampler gives the same ones.
-    pub fn sampled_hash(&self) -> Hash {
-        let sampler = self.without(self.sampler, &["samples"]);
-        value::hash_scene(self, self.without(self.film, &SHOWN), sampler)
+    /// Hashes of the scene: what stands in it, which takes nearly all of the time, is hashed once.
+    pub fn hashes(&self) -> Hashes {
+        let content = value::hash_content(self);
+        let film = |left_out| self.without(self.film, left_out);
+        let sampler = |left_out| self.without(self.sampler, left_out);
+        let hash = |film, sampler| value::hash_scene(self, &content, film, sampler);
+        Hashes {
+            shown: hash(film(&[]), sampler(&[])),
+            measured: hash(film(&SHOWN), sampler(&[])),
+            sampled: hash(film(&SHOWN), sampler(&["samples"])),
+        }
     }
 
     /// The hash of a setting without some of its parameters.

@@ -69,11 +69,21 @@ pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
     *hasher.finalize().as_bytes()
 }
 
-/// The hash of a scene: of what stands in its places, and of its settings, among them the film as it
-/// is given here.
-pub(super) fn hash_scene(scene: &Scene, film: Option<Hash>, sampler: Option<Hash>) -> Hash {
+/// The hash of what stands in the places of a scene.
+pub(super) fn hash_content(scene: &Scene) -> Hash {
+    hash_group(scene, &scene.root, &group_hashes(scene))
+}
+
+/// The hash of a scene: of what stands in its places, and of its settings, among them the film and the
+/// sampler as they are given here.
+pub(super) fn hash_scene(
+    scene: &Scene,
+    content: &Hash,
+    film: Option<Hash>,
+    sampler: Option<Hash>,
+) -> Hash {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(&hash_group(scene, &scene.root, &group_hashes(scene)));
+    hasher.update(content);
     hash_pose(&mut hasher, &scene.camera_pose);
     let Scene { camera, integrator, filter, medium, .. } = scene;
     let of = |id: &Option<NodeId>| id.map(|id| scene.node(id).hash);

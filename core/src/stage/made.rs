@@ -1,6 +1,6 @@
 //! What a build has gathered, and the stage that it becomes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -31,7 +31,7 @@ pub(super) struct Settings {
 pub(super) struct Made {
     pub(super) assets: Assets,
     pub(super) geometries: Vec<Arc<Geometry>>,
-    pub(super) geometry_of: BTreeMap<NodeId, u32>,
+    pub(super) geometry_of: HashMap<NodeId, u32, foldhash::fast::RandomState>,
     pub(super) shapes: Shelf<Hash, Shaped>,
     /// How many of them had to be made ready.
     pub(super) new_shapes: usize,

@@ -24,6 +24,7 @@ mod numbered;
 mod object;
 mod ops;
 mod params;
+pub(crate) mod readable;
 mod require;
 mod resolve;
 mod turns;

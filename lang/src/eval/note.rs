@@ -7,6 +7,7 @@ use luxel_sdk::color::{
 };
 
 use super::Evaluator;
+use super::readable::{number, readable};
 use super::value::Value;
 use crate::syntax::Name;
 
@@ -31,7 +32,7 @@ impl Evaluator<'_> {
         }
         values.entry(name.span).or_insert_with(|| match value {
             Value::Color(color, dimension) if dimension.is_none() => shown(color),
-            other => other.show(),
+            other => readable(other),
         });
     }
 }
@@ -40,8 +41,8 @@ impl Evaluator<'_> {
 fn shown(color: &Color) -> String {
     match color {
         Color::Rgb(rgb) => hex(*rgb),
-        Color::Constant(x) => format!("{x} at every wavelength"),
-        Color::Waves(length) => format!("{length} m, in waves of each wavelength"),
+        Color::Constant(x) => format!("{} at every wavelength", number(*x)),
+        Color::Waves(length) => format!("{} m, in waves of each wavelength", number(*length)),
         Color::Curve(points) => match Curve::from_points(points, Outside::Constant) {
             Ok(curve) => spectrum(&curve, reflectance_rgb(&curve)),
             Err(_) => "a spectrum".to_owned(),
@@ -59,7 +60,7 @@ fn shown(color: &Color) -> String {
         Color::Glass(name) => glass(name).map_or_else(String::new, |glass| {
             format!("n_d = {:.4}, Abbe number {:.1}", glass.eta_d(), glass.abbe())
         }),
-        Color::Scaled(color, factor) => format!("{factor} × {}", shown(color)),
+        Color::Scaled(color, factor) => format!("{} × {}", number(*factor), shown(color)),
     }
 }
 

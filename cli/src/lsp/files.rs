@@ -57,6 +57,13 @@ impl Opened {
         self.round += 1;
     }
 
+    /// What each of the open files may read, and what scenes of the workspace may.
+    fn readers(&self) -> impl Iterator<Item = DiskFiles> {
+        let scenes = self.open.keys().cloned();
+        let scenes = scenes.chain(self.folders.iter().map(|folder| folder.join("x")));
+        scenes.map(|scene| DiskFiles::new(&scene, &self.allow))
+    }
+
     /// A file on disk that one of the open files may read.
     fn on_disk(&self, path: &Path) -> Option<Arc<Document>> {
         if let Some(known) = self.known.borrow().get(path).filter(|k| k.round == self.round) {
@@ -64,10 +71,8 @@ impl Opened {
         }
         let limit = Budgets::default().file_bytes;
         let small = fs::metadata(path).is_ok_and(|about| about.len() <= limit as u64);
-        let readers = self.open.keys().cloned();
-        let readers = readers.chain(self.folders.iter().map(|folder| folder.join("x")));
-        let read = |reader: PathBuf| DiskFiles::new(&reader, &self.allow).read(path).ok();
-        let bytes = readers.filter(|_| small).find_map(read)?;
+        let read = |files: DiskFiles| files.read(path).ok();
+        let bytes = self.readers().filter(|_| small).find_map(read)?;
         let hash = blake3::hash(&bytes);
         let mut known = self.known.borrow_mut();
         if let Some(known) = known.get_mut(path).filter(|known| known.hash == hash) {
@@ -116,7 +121,8 @@ pub(super) fn names_beside(path: &Path, written: &str, ends: &[&str]) -> Vec<Str
         .filter_map(|entry| {
             let name = entry.file_name().into_string().ok()?;
             let is_folder = entry.path().is_dir();
-            let fits = ends.is_empty() || ends.iter().any(|end| name.ends_with(end));
+            let lower = name.to_ascii_lowercase();
+            let fits = ends.is_empty() || ends.iter().any(|end| lower.ends_with(end));
             let shown = !name.starts_with('.') && (is_folder || fits);
             shown.then(|| if is_folder { format!("{name}/") } else { name })
         })

@@ -2,21 +2,31 @@
 
 use std::path::PathBuf;
 
-use luxel_lang::editor::{Item, ItemKind, complete, hover};
+use luxel_lang::editor::{Item, ItemKind, OnDisk, complete, hover};
 use serde_json::{Value, json};
 
 use super::answer::At;
 use super::files::names_beside;
 use super::server::Server;
+use crate::libraries::{Found, State};
 
 impl Server {
     pub(super) fn completion(&self, at: &At) -> Value {
         let mut found = complete(&self.files, &at.path, at.byte, &self.plugins.registry);
         let mut range = found.range.clone();
-        if let Some((written, ends)) = &found.files {
-            let names = names_beside(&at.path, written, ends);
-            range.start += written.rfind('/').map_or(0, |at| at + 1);
-            found.items = names.into_iter().map(Item::file).collect();
+        match &found.on_disk {
+            Some(OnDisk::Files { written, ends }) => {
+                let names = names_beside(&at.path, written, ends);
+                range.start += written.rfind('/').map_or(0, |at| at + 1);
+                found.items = names.into_iter().map(Item::file).collect();
+            }
+            Some(OnDisk::Libraries) => {
+                let unloaded = self.plugins.libraries.iter();
+                let unloaded = unloaded.filter(|found| !matches!(found.state, State::Loaded(_)));
+                let item = |library: &Found| Item::library(&library.stem, library.state.words().0);
+                found.items.extend(unloaded.map(item));
+            }
+            None => {}
         }
         let range = self.encoding.range(&at.document, &range);
         let items = found.items.iter().map(|item| self.item(item, &range));

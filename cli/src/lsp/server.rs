@@ -91,7 +91,7 @@ impl Server {
         json!({
             "positionEncoding": self.encoding.word(),
             "textDocumentSync": { "openClose": true, "change": 2, "save": { "includeText": false } },
-            "completionProvider": { "triggerCharacters": [".", "\"", "=", " ", "(", "/", "{", ":"] },
+            "completionProvider": { "triggerCharacters": [".", "\"", "=", " ", "(", "/", "{", ":", "@"] },
             "hoverProvider": true,
             "definitionProvider": true,
             "referencesProvider": true,

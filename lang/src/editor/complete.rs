@@ -1,20 +1,21 @@
 //! What may be written at a place.
 
+mod quoted;
+mod units;
+mod values;
+
 use std::ops::Range;
 use std::path::Path;
 
 use luxel_core::registry::Registry;
-use luxel_sdk::color;
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::{Param, Type, UNITS};
 
 use super::context::{Context, Head, Inside, dotted};
 use super::define::{Project, beside};
-use super::document::Document;
+use super::named::{Around, ObjectSort};
 use super::schema::{self, Given};
 use super::statements;
 use crate::eval::types;
-use crate::manual;
 use crate::syntax::TokenKind;
 
 /// What an item of a list is.
@@ -70,6 +71,11 @@ impl Item {
         Self::new(name, ItemKind::File)
     }
 
+    /// A plugin library that is not loaded, and why not.
+    pub fn library(name: &str, why: &str) -> Self {
+        Self::new(name, ItemKind::Value).detail(why)
+    }
+
     pub(super) fn detail(self, detail: impl Into<String>) -> Self {
         Self { detail: detail.into(), ..self }
     }
@@ -100,29 +106,42 @@ pub struct Completion {
     pub range: Range<usize>,
     /// The items.
     pub items: Vec<Item>,
-    /// The folder whose files may be written too, as far as it is written; only those that end so.
-    pub files: Option<(String, Vec<&'static str>)>,
+    /// What may be written too, and only the disk knows.
+    pub on_disk: Option<OnDisk>,
+}
+
+/// What the disk has to tell.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OnDisk {
+    /// The files of a folder.
+    Files {
+        /// The path as far as it is written.
+        written: String,
+        /// How names of files end, in whatever case; if there are none, any file will do.
+        ends: Vec<&'static str>,
+    },
+    /// Plugin libraries that are not loaded.
+    Libraries,
 }
 
 /// What may be written at a byte of a file.
 pub fn complete(project: &dyn Project, path: &Path, at: usize, registry: &Registry) -> Completion {
     let Some(document) = project.document(path) else { return Completion::default() };
     let here = Context::at(&document, at);
-    let asked = Asked { project, path, registry, here: &here };
+    let around = Around { project, path, document: &document, registry };
+    let asked = Asked { around, here: &here };
     match &here.inside {
         Inside::Comment => Completion::default(),
         Inside::Text(range) => asked.in_text(range),
         Inside::Code => {
-            let items = asked.in_code();
-            Completion { range: here.word.clone(), items, files: None }
+            let items = asked.in_code().into_iter().map(|item| asked.fitted(item)).collect();
+            Completion { range: here.word.clone(), items, on_disk: None }
         }
     }
 }
 
 struct Asked<'a> {
-    project: &'a dyn Project,
-    path: &'a Path,
-    registry: &'a Registry,
+    around: Around<'a>,
     here: &'a Context<'a>,
 }
 
@@ -134,11 +153,14 @@ impl Asked<'_> {
         if last == "." {
             return self.members();
         }
+        if last == "@" {
+            return statements::attributes();
+        }
         if last == ":" {
             return types::names().map(|name| Item::new(name, ItemKind::Type)).collect();
         }
-        if on_line && self.follows_number() {
-            return self.units();
+        if let Some(units) = self.units() {
+            return units;
         }
         if here.begins() {
             return self.beginning();
@@ -154,6 +176,7 @@ impl Asked<'_> {
             }
             "expect" if on_line => return statements::expectations(),
             "use" if on_line => return vec![Item::new("plugin", ItemKind::Keyword)],
+            "=" if here.head() == Some(&Head::Units) => return self.units_of_type(),
             _ => {}
         }
         let wants = here.back(1).is_none_or(|token| {
@@ -161,57 +184,40 @@ impl Asked<'_> {
                 || matches!(token.text, "(" | "[" | ",")
                 || matches!(token.text, "in" | "if" | "assert")
         });
-        if wants { self.values() } else { vec![Item::new("with", ItemKind::Keyword)] }
-    }
-
-    /// Whether a unit may follow what stands before: a number, or a bracket that closes.
-    fn follows_number(&self) -> bool {
-        self.here.back(1).is_some_and(|last| {
-            last.kind == TokenKind::Number || last.kind == TokenKind::Table || {
-                let inside = self.here.text_back(2).starts_with(|c: char| c.is_ascii_digit());
-                matches!(last.text, ")" | "]") && inside
-            }
-        })
-    }
-
-    /// Units; those that are wanted stand first.
-    fn units(&self) -> Vec<Item> {
-        let equals = self.here.before.iter().rposition(|token| token.text == "=");
-        let name = equals.and_then(|i| i.checked_sub(1)).map(|i| self.here.before[i].text);
-        let frame = self.here.frames.iter().rev().map(|frame| &frame.what);
-        let mut objects = frame.filter(|head| matches!(head, Head::Object { .. } | Head::Amend(_)));
-        let given = objects.next().and_then(|head| {
-            let givens = schema::givens(self.registry, self.here.document, head);
-            givens.into_iter().find(|given| Some(given.name()) == name)
-        });
-        let (mut wanted, mut first) = (None, vec![]);
-        if let Some(Given::Param(param)) = given {
-            wanted = schema::dimension(param);
-            let whole = param.unit.split('|').filter(|unit| unit.contains(['/', '^']));
-            first = whole.map(|unit| Item::new(unit, ItemKind::Unit).rank(0)).collect();
+        if wants {
+            return self.values();
         }
-        first.extend(UNITS.iter().map(|(name, unit)| {
-            let fits = wanted == Some(unit.dimension);
-            let rank = if fits { 1 } else { 6 };
-            Item::new(*name, ItemKind::Unit).detail(unit.dimension.name()).rank(rank)
-        }));
-        first
+        let word = match here.text_back(2) {
+            "plugin" => "version",
+            "import" => "as",
+            _ => "with",
+        };
+        vec![Item::new(word, ItemKind::Keyword)]
+    }
+
+    /// An item for what stands behind the place: brackets that stand there are not written again.
+    fn fitted(&self, item: Item) -> Item {
+        let is_called = self.here.after().is_some_and(|next| next.text == "(");
+        if is_called && item.kind == ItemKind::Function { item.insert("") } else { item }
     }
 
     /// What may stand after `name.`.
     fn members(&self) -> Vec<Item> {
         let (before, rest) = dotted(&self.here.before[..self.here.before.len() - 1]);
         if rest.last().is_some_and(|token| token.text == "set") {
-            let found = schema::givens_of_label(self.registry, self.project, self.path, &before);
+            let found = schema::givens_of_label(self.around, &before);
             return found.unwrap_or_default().into_iter().map(statements::param).collect();
         }
         let space = format!("{before}.");
         let own = statements::functions(|name| name.starts_with(&space));
         let mut out: Vec<Item> = own.into_iter().map(|item| item.without(&space)).collect();
-        if let Some(file) = self.here.document.import(&before)
-            && let Some(module) = self.project.document(&beside(self.path, &file))
-        {
-            out.extend(statements::names(&module, usize::MAX));
+        if let Some((path, document)) = self.around.module(&before) {
+            let there = Around { path: &path, document: &document, ..self.around };
+            let names = statements::names(&document, usize::MAX);
+            out.extend(names.into_iter().map(|item| match there.object_named(&item.label) {
+                Some(object) => item.detail(words(&object)),
+                None => item,
+            }));
         }
         out
     }
@@ -228,12 +234,12 @@ impl Asked<'_> {
             Some(Head::Units) => statements::dimensions(),
             Some(Head::Where) => statements::params_of(here.document),
             Some(Head::IncludeWith(file)) => {
-                let file = self.project.document(&beside(self.path, file));
+                let file = self.around.project.document(&beside(self.around.path, file));
                 file.map_or(vec![], |file| statements::params_of(&file))
             }
             Some(head @ (Head::Object { .. } | Head::Amend(_) | Head::Place)) => {
                 let is_group = matches!(head, Head::Object { category, .. } if category == "group");
-                let mut out = params(schema::givens(self.registry, here.document, head));
+                let mut out = params(schema::givens(self.around, head));
                 match head {
                     Head::Amend(_) => {}
                     _ if is_group => out.extend(statements::all()),
@@ -278,7 +284,7 @@ impl Asked<'_> {
                 .doc(class.doc.trim())
                 .insert(insert)
         };
-        self.registry.of_kind(kind).map(one).collect()
+        self.around.registry.of_kind(kind).map(one).collect()
     }
 
     fn labels(&self) -> Vec<Item> {
@@ -292,117 +298,17 @@ impl Asked<'_> {
         let locals = here.locals().into_iter().map(|name| Item::new(name, ItemKind::Name).rank(1));
         let top =
             statements::names(here.document, here.word.start).into_iter().filter_map(|item| {
-                let object = schema::object_named(here.document, &item.label, 8);
+                let object = self.around.object_named(&item.label);
                 match object {
-                    Some((word, kind)) if kinds.is_empty() || kinds.contains(&&*word) => {
-                        let detail = format!("{word} {}", kind.unwrap_or_default());
-                        Some(item.detail(detail.trim()).rank(if kinds.is_empty() { 3 } else { 1 }))
+                    Some(object) if kinds.is_empty() || kinds.contains(&&*object.0) => {
+                        let rank = if kinds.is_empty() { 3 } else { 1 };
+                        Some(item.detail(words(&object)).rank(rank))
                     }
                     Some(_) => None,
                     None => Some(item.rank(3)),
                 }
             });
         locals.chain(top).collect()
-    }
-
-    /// What may be a value at the place.
-    fn values(&self) -> Vec<Item> {
-        let given = schema::given_to(self.registry, self.here);
-        if let Some(Given::Param(param)) = given {
-            return self.values_of(param);
-        }
-        let mut out = self.names(&[]);
-        if let Some(Head::Call(callee)) = self.here.head() {
-            out.extend(self.arguments(callee));
-        }
-        out.extend(statements::functions(|_| true));
-        out.extend(statements::categories());
-        out.extend(["true", "false", "if"].map(|word| Item::new(word, ItemKind::Keyword).rank(7)));
-        out
-    }
-
-    fn values_of(&self, param: &Param) -> Vec<Item> {
-        let quoted = |word: &str| Item::new(format!("\"{word}\""), ItemKind::Value).rank(0);
-        match param.ty {
-            Type::Bool => ["true", "false"].map(|word| Item::new(word, ItemKind::Value)).to_vec(),
-            Type::Choice => param.words().map(quoted).collect(),
-            Type::Text | Type::File => vec![Item::new("\"\"", ItemKind::Value).insert("\"$0\"")],
-            Type::Look => statements::functions(|name| name == "look_at"),
-            Type::Object(kind) => self.objects(kind.word()),
-            Type::Part => self.objects("shape"),
-            Type::ComplexIor => {
-                let mut out = statements::functions(|name| name == "metal");
-                out.extend(self.names(&["-"]));
-                out
-            }
-            Type::Spectrum | Type::Emission => {
-                let mut out = statements::functions(statements::is_colour);
-                if param.textured {
-                    out.extend(self.objects("texture"));
-                } else {
-                    out.extend(self.names(&["-"]));
-                }
-                out
-            }
-            _ => {
-                let textured = if param.textured { "texture" } else { "-" };
-                let mut out = self.names(&[textured]);
-                out.extend(
-                    manual::default(param)
-                        .map(|text| Item::new(text, ItemKind::Value).detail("the default").rank(0)),
-                );
-                out.extend(statements::functions(|name| !statements::is_colour(name)));
-                out
-            }
-        }
-    }
-
-    /// Names of a kind of object, and a new one.
-    fn objects(&self, word: &str) -> Vec<Item> {
-        let mut out = self.names(&[word]);
-        out.push(Item::new(word, ItemKind::Category).insert(format!("{word} $0")).rank(2));
-        out
-    }
-
-    /// Names of a function's arguments.
-    fn arguments(&self, callee: &str) -> Vec<Item> {
-        let item = |name: &str| {
-            Item::new(format!("{name} = "), ItemKind::Param).detail(format!("of {callee}")).rank(2)
-        };
-        let own = self.here.document.arguments(callee);
-        let builtin = manual::function(callee).map_or(vec![], |function| function.arguments);
-        own.iter().map(|name| item(name)).chain(builtin.into_iter().map(item)).collect()
-    }
-
-    fn in_text(&self, range: &Range<usize>) -> Completion {
-        let here = self.here;
-        let text = here.document.text();
-        let mut out = Completion { range: range.clone(), ..Completion::default() };
-        let items = |names: &mut dyn Iterator<Item = &str>| -> Vec<Item> {
-            names.map(|name| Item::new(name, ItemKind::Value)).collect()
-        };
-        let written = || text[range.clone()].to_owned();
-        let last = here.text_back(1);
-        match here.head() {
-            Some(Head::Call(callee)) if matches!(last, "(" | "=") => match callee.as_str() {
-                "metal" => out.items = items(&mut color::metal_names()),
-                "glass" => out.items = items(&mut color::GLASSES.iter().map(|glass| glass.name)),
-                "illuminant" => out.items = items(&mut color::illuminant_names()),
-                "spectrum.file" => out.files = Some((written(), vec![])),
-                _ => {}
-            },
-            _ if matches!(last, "include" | "import" | "same_as") => {
-                out.files = Some((written(), vec![".scene"]));
-            }
-            _ => match schema::given_to(self.registry, here) {
-                Some(Given::Param(param)) if param.ty == Type::File => {
-                    out.files = Some((written(), vec![]));
-                }
-                Some(Given::Param(param)) => out.items = items(&mut param.words()),
-                _ => {}
-            },
-        }
-        out
     }
 }
 
@@ -411,14 +317,8 @@ fn is_old(given: Given) -> bool {
     matches!(given, Given::Param(param) if !param.deprecated.is_empty())
 }
 
-impl Document {
-    /// The file that a name imports.
-    fn import(&self, name: &str) -> Option<String> {
-        use super::symbols::{Role, Sort};
-        let piece = self.piece_at(self.top(name)?.start)?;
-        piece.symbols().iter().find_map(|symbol| match &symbol.role {
-            Role::Definition(Sort::Import(file)) if *symbol.text == *name => Some(file.to_string()),
-            _ => None,
-        })
-    }
+/// Category and kind of an object.
+fn words((category, kind): &ObjectSort) -> String {
+    let words = [Some(category), kind.as_ref()];
+    words.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ")
 }

@@ -134,7 +134,8 @@ impl<'d> Context<'d> {
                 block
                     && (matches!(last.text, "{" | "," | ";")
                         || self.is_fresh && last.ends_operand()
-                        || last.kind == TokenKind::Doc)
+                        || last.kind == TokenKind::Doc
+                        || self.text_back(2) == "@")
             }
         }
     }
@@ -145,7 +146,23 @@ impl<'d> Context<'d> {
         found.filter(|token| !token.first_on_line)
     }
 
-    /// The names that the innermost braces give values to.
+    /// How many arguments without names stand before the place in the innermost brackets.
+    pub(super) fn n_unnamed(&self) -> usize {
+        let Some(frame) = self.frames.last() else { return 0 };
+        let (mut depth, mut named, mut out) = (0_usize, false, 0);
+        for token in &self.before[frame.first..] {
+            match token.text {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.saturating_sub(1),
+                "=" if depth == 0 => named = true,
+                "," if depth == 0 => out += usize::from(!std::mem::take(&mut named)),
+                _ => {}
+            }
+        }
+        out
+    }
+
+    /// The names that the innermost brackets give values to.
     pub(super) fn given(&self) -> Vec<&'d str> {
         let Some(frame) = self.frames.last() else { return vec![] };
         let rest = tokens(self.document.text(), self.word.end..self.end);
@@ -165,27 +182,58 @@ impl<'d> Context<'d> {
 
     /// Names that the statement itself defines before the place, as far as its brackets are open.
     pub(super) fn locals(&self) -> Vec<&'d str> {
-        let mut scopes: Vec<Vec<&'d str>> = vec![vec![]];
+        let mut scopes = vec![Scope::default()];
         for (i, token) in self.before.iter().enumerate() {
             let back = |back: usize| i.checked_sub(back).map_or("", |i| self.before[i].text);
+            if let Some(scope) = scopes.last_mut()
+                && (token.first_on_line || matches!(token.text, "," | ";"))
+            {
+                scope.end();
+            }
             match token.text {
-                "(" => {}
-                "[" | "{" => scopes.push(vec![]),
+                "[" | "{" => scopes.push(Scope::default()),
                 "]" | "}" if scopes.len() > 1 => {
                     scopes.pop();
                 }
+                "(" => scopes.iter_mut().for_each(|scope| scope.n_round += 1),
+                ")" => scopes.iter_mut().for_each(|scope| scope.n_round -= 1),
                 name if token.kind == TokenKind::Word => {
                     let next = self.before.get(i + 1).map_or("", |token| token.text);
                     let is_item = back(1) == "for" || back(1) == "," && back(3) == "for";
                     let is_argument = next == ":" && matches!(back(1), "(" | ",");
-                    if is_item || is_argument || back(1) == "let" {
-                        scopes.last_mut().into_iter().for_each(|scope| scope.push(name));
+                    let Some(scope) = scopes.last_mut() else { continue };
+                    if is_item || is_argument {
+                        scope.names.push(name);
+                    } else if back(1) == "let" {
+                        scope.begun = Some(name);
                     }
                 }
                 _ => {}
             }
         }
-        scopes.concat()
+        if let Some(scope) = scopes.last_mut().filter(|_| self.is_fresh) {
+            scope.end();
+        }
+        scopes.into_iter().flat_map(|scope| scope.names).collect()
+    }
+}
+
+/// Names of a block.
+#[derive(Default)]
+struct Scope<'d> {
+    names: Vec<&'d str>,
+    /// What a `let` defines whose value has not ended.
+    begun: Option<&'d str>,
+    /// Round brackets that are open since it began.
+    n_round: isize,
+}
+
+impl Scope<'_> {
+    /// A value ends here, unless brackets are open.
+    fn end(&mut self) {
+        if self.n_round <= 0 {
+            self.names.extend(self.begun.take());
+        }
     }
 }
 
@@ -227,15 +275,16 @@ pub(super) fn dotted<'t, 'd>(tokens: &'t [Token<'d>]) -> (String, &'t [Token<'d>
     if last.kind != TokenKind::Word {
         return (String::new(), tokens);
     }
-    let mut out = last.text.to_owned();
+    let mut words = vec![last.text];
     while let [before @ .., word, dot] = rest
         && dot.text == "."
         && word.kind == TokenKind::Word
     {
-        out = format!("{}.{out}", word.text);
+        words.push(word.text);
         rest = before;
     }
-    (out, rest)
+    words.reverse();
+    (words.join("."), rest)
 }
 
 /// What a brace belongs to, by the tokens before it.

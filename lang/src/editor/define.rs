@@ -14,7 +14,7 @@ use super::symbols::{Role, Sort, Symbol};
 use crate::syntax::{RESERVED, StmtNode};
 
 /// Names behind one another's dots that are followed: far more than files that import one another.
-const MAX_DOTS: usize = 64;
+pub(super) const MAX_DOTS: usize = 64;
 
 /// The files that an editor knows.
 pub trait Project {

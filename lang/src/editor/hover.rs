@@ -10,6 +10,7 @@ use luxel_sdk::params::UNITS;
 use super::context::{Context, Inside, dotted};
 use super::define::{Place, Project, definition};
 use super::document::Document;
+use super::named::Around;
 use super::schema;
 use super::statements::page_of;
 use crate::eval::types;
@@ -32,6 +33,7 @@ pub struct Hover {
 /// What is told of a byte of a file.
 pub fn hover(project: &dyn Project, path: &Path, at: usize, registry: &Registry) -> Option<Hover> {
     let document = project.document(path)?;
+    let around = Around { project, path, document: &document, registry };
     let end = word_end(document.text(), at);
     let here = Context::at(&document, end);
     if here.inside != Inside::Code || here.word.is_empty() {
@@ -41,7 +43,7 @@ pub fn hover(project: &dyn Project, path: &Path, at: usize, registry: &Registry)
         |code: String, text: String| Hover { range: here.word.clone(), code, text, of: None };
     let word = here.word();
     let next = here.after().map_or("", |token| token.text);
-    if let Some((code, text)) = of_field(registry, &here, next) {
+    if let Some((code, text)) = of_field(around, &here, next) {
         let of = Place { path: path.to_owned(), range: (here.word.start, here.word.end) };
         return Some(Hover { of: Some(of), ..told(code, text) });
     }
@@ -78,9 +80,9 @@ fn word_end(text: &str, at: usize) -> usize {
 }
 
 /// The manual of a parameter that is given.
-fn of_field(registry: &Registry, here: &Context<'_>, next: &str) -> Option<(String, String)> {
+fn of_field(around: Around<'_>, here: &Context<'_>, next: &str) -> Option<(String, String)> {
     let head = here.head().filter(|_| next == "=" && here.begins())?;
-    let givens = schema::givens(registry, here.document, head);
+    let givens = schema::givens(around, head);
     let given = givens.into_iter().find(|given| given.name() == here.word())?;
     Some((format!("{}: {}", given.name(), given.facts()), given.doc().to_owned()))
 }

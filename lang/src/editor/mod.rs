@@ -10,6 +10,7 @@ mod document;
 mod fold;
 mod hover;
 mod lines;
+mod named;
 mod outline;
 mod piece;
 mod schema;
@@ -18,9 +19,10 @@ mod swatch;
 mod symbols;
 #[cfg(test)]
 mod tests;
+mod texts;
 mod tokens;
 
-pub use complete::{Completion, Item, ItemKind, complete};
+pub use complete::{Completion, Item, ItemKind, OnDisk, complete};
 pub use define::{Place, Project, definition, reached, references, renamable, rename};
 pub use document::Document;
 pub use fold::{Fold, folds};

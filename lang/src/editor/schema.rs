@@ -1,17 +1,15 @@
 //! What the registry says of what stands around a place.
 
-use std::path::Path;
-
 use luxel_core::registry::Registry;
 use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Param, Unit};
 
 use super::context::{Context, Head, brace};
-use super::define::{Project, label};
-use super::document::Document;
+use super::define::label;
+use super::named::Around;
 use crate::manual::{self, Field};
-use crate::syntax::{Expr, ExprNode, StmtNode, tokens};
+use crate::syntax::tokens;
 
 /// What an object may be given.
 #[derive(Clone, Copy)]
@@ -47,10 +45,10 @@ impl Given {
 }
 
 /// What the object may be given in whose braces a head says that a place stands.
-pub(super) fn givens(registry: &Registry, document: &Document, head: &Head) -> Vec<Given> {
+pub(super) fn givens(around: Around<'_>, head: &Head) -> Vec<Given> {
     let (category, kind) = match head {
         Head::Object { category, kind } => (category.clone(), kind.clone()),
-        Head::Amend(name) => match object_named(document, name, 8) {
+        Head::Amend(name) => match around.object_named(name) {
             Some(found) => found,
             None => return vec![],
         },
@@ -61,60 +59,44 @@ pub(super) fn givens(registry: &Registry, document: &Document, head: &Head) -> V
         return word.fields.iter().map(Given::Field).collect();
     }
     let Some(kind_of) = Kind::of_word(&category) else { return vec![] };
-    let class = kind.and_then(|name| registry.class(kind_of, &name));
-    let own = class.into_iter().flat_map(Registry::params).map(Given::Param);
-    own.chain(manual::fields_of(kind_of).iter().map(Given::Field)).collect()
+    let class = kind.and_then(|name| around.registry.class(kind_of, &name));
+    let own = match class {
+        Some(class) => Registry::params(class).collect(),
+        None => shared(around.registry, kind_of),
+    };
+    let fields = manual::fields_of(kind_of).iter().map(Given::Field);
+    own.into_iter().map(Given::Param).chain(fields).collect()
+}
+
+/// The parameters that all classes of a kind have.
+fn shared(registry: &Registry, kind: Kind) -> Vec<&'static Param> {
+    let mut classes = registry.of_kind(kind).map(|entry| &entry.class);
+    let mut out: Vec<_> = classes.next().map_or(vec![], |first| Registry::params(first).collect());
+    for class in classes {
+        let has = |param: &&Param| {
+            Registry::params(class).any(|own| own.name == param.name && own.ty == param.ty)
+        };
+        out.retain(has);
+    }
+    out
 }
 
 /// What the first object of a label may be given.
-pub(super) fn givens_of_label(
-    registry: &Registry,
-    project: &dyn Project,
-    path: &Path,
-    name: &str,
-) -> Option<Vec<Given>> {
-    let place = label(project, path, name)?;
-    let document = project.document(&place.path)?;
+pub(super) fn givens_of_label(around: Around<'_>, name: &str) -> Option<Vec<Given>> {
+    let place = label(around.project, around.path, name)?;
+    let document = around.project.document(&place.path)?;
     let start = document.piece_at(place.range.0)?.start;
     let before: Vec<_> = tokens(document.text(), start..place.range.1).collect();
-    Some(givens(registry, &document, &brace(&before)))
+    Some(givens(Around { path: &place.path, document: &document, ..around }, &brace(&before)))
 }
 
 /// What the value is given to that stands at a place: `name = |`.
-pub(super) fn given_to(registry: &Registry, here: &Context<'_>) -> Option<Given> {
+pub(super) fn given_to(around: Around<'_>, here: &Context<'_>) -> Option<Given> {
     if here.text_back(1) != "=" {
         return None;
     }
     let name = here.text_back(2);
-    givens(registry, here.document, here.head()?).into_iter().find(|given| given.name() == name)
-}
-
-/// Category and kind of the object that a name of the file stands for, through copies with changes.
-pub(super) fn object_named(
-    document: &Document,
-    name: &str,
-    steps: usize,
-) -> Option<(String, Option<String>)> {
-    let piece = document.piece_at(document.top(name)?.start)?;
-    let value = piece.read.stmts.iter().find_map(|stmt| match &stmt.node {
-        StmtNode::Let { name: own, value, .. } if *own.text == *name => Some(value),
-        _ => None,
-    })?;
-    object_of(document, value, steps)
-}
-
-fn object_of(document: &Document, value: &Expr, steps: usize) -> Option<(String, Option<String>)> {
-    match &value.node {
-        ExprNode::Object(object) => {
-            let kind = object.kind.as_ref().map(|kind| kind.text.to_string());
-            Some((object.category.text.to_string(), kind))
-        }
-        ExprNode::With { of, .. } => object_of(document, of, steps),
-        ExprNode::Path(path) if path.len() == 1 => {
-            object_named(document, &path[0].text, steps.checked_sub(1)?)
-        }
-        _ => None,
-    }
+    givens(around, here.head()?).into_iter().find(|given| given.name() == name)
 }
 
 /// What a parameter's numbers measure.

@@ -4,9 +4,11 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use luxel_sdk::kind::Kind;
+use luxel_sdk::params::UNITS;
 
 use super::complete::{Item, ItemKind};
 use super::document::Document;
+use super::named::Signature;
 use super::schema::Given;
 use super::symbols::{Role, Sort};
 use crate::eval::types;
@@ -47,6 +49,13 @@ pub(super) fn in_objects() -> impl Iterator<Item = Item> {
     words(|word| matches!(word, "let" | "fn" | "for" | "if" | "assert"))
 }
 
+/// What may stand after `@`.
+pub(super) fn attributes() -> Vec<Item> {
+    let doc = "Takes the statement that follows out of the scene: it is read, and neither evaluated nor \
+               rendered. `@off shape sphere { radius = 1 m }`";
+    vec![Item::new("off", ItemKind::Keyword).detail("the next statement off").doc(doc)]
+}
+
 /// Categories of objects.
 pub(super) fn categories() -> Vec<Item> {
     let kinds = Kind::ALL.iter().map(|(_, word)| {
@@ -80,9 +89,12 @@ pub(super) fn param(given: Given) -> Item {
         .rank(u8::from(!required))
 }
 
-/// What `units { }` may give a unit to.
+/// What `units { }` may give a unit to: a unit of one name.
 pub(super) fn dimensions() -> Vec<Item> {
-    let with_unit = |name: &&str| types::dimension(name).is_some_and(|d| !d.is_none());
+    let with_unit = |name: &&str| {
+        let wanted = types::dimension(name).filter(|dimension| !dimension.is_none());
+        UNITS.iter().any(|(_, unit)| Some(unit.dimension) == wanted)
+    };
     let names = types::names().filter(with_unit);
     names.map(|name| Item::new(name, ItemKind::Param).insert(format!("{name} = $0"))).collect()
 }
@@ -113,14 +125,18 @@ pub(super) fn names(document: &Document, before: usize) -> Vec<Item> {
         for name in &piece.read.facts.defines {
             let start = name.span.range().start;
             let symbol = piece.symbols().iter().find(|symbol| symbol.start == start);
-            let (kind, detail) = match symbol.map(|symbol| &symbol.role) {
-                Some(Role::Definition(Sort::Fn)) => (ItemKind::Function, "a function"),
-                Some(Role::Definition(Sort::Param)) => (ItemKind::Name, "a parameter"),
-                Some(Role::Definition(Sort::Import(_))) => (ItemKind::Name, "an imported file"),
-                _ => (ItemKind::Name, ""),
-            };
-            let doc = piece.doc();
-            out.push(Item::new(&*name.text, kind).detail(detail).doc(doc));
+            let item = Item::new(&*name.text, ItemKind::Name).doc(piece.doc());
+            out.push(match symbol.map(|symbol| &symbol.role) {
+                Some(Role::Definition(Sort::Fn)) => {
+                    let usage = Signature::of(document, piece).map(|found| found.usage());
+                    let insert = format!("{}($0)", name.text);
+                    let item = Item { kind: ItemKind::Function, ..item };
+                    item.detail(usage.unwrap_or_default()).insert(insert)
+                }
+                Some(Role::Definition(Sort::Param)) => item.detail("a parameter"),
+                Some(Role::Definition(Sort::Import(_))) => item.detail("an imported file"),
+                _ => item,
+            });
         }
     }
     out
@@ -160,16 +176,5 @@ impl Document {
         let symbols = self.pieces().iter().flat_map(super::piece::Piece::symbols);
         let labels = symbols.filter(|symbol| symbol.role == Role::Label).map(|symbol| &symbol.text);
         labels.filter(|label| seen.insert(*label)).cloned().collect()
-    }
-
-    /// The names of a function's arguments.
-    pub(super) fn arguments(&self, function: &str) -> Vec<Arc<str>> {
-        let piece = self.top(function).and_then(|place| self.piece_at(place.start));
-        let stmts = piece.into_iter().flat_map(|piece| &piece.read.stmts);
-        let function = stmts.filter_map(|stmt| match &stmt.node {
-            StmtNode::Fn(def) if *def.name.text == *function => Some(def),
-            _ => None,
-        });
-        function.flat_map(|def| def.params.iter().map(|param| param.name.text.clone())).collect()
     }
 }

@@ -40,8 +40,8 @@ pub(crate) use parse::{
     read_head, read_piece,
 };
 pub(crate) use tree::{
-    Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Form, ListTy, Name, Object, Op,
-    ParamDef, Stmt, StmtNode, Ty, children,
+    Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Form, ListTy, Name,
+    Object, Op, ParamDef, Stmt, StmtNode, Ty, children,
 };
 
 pub(crate) use walk::each_expr;

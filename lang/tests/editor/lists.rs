@@ -1,6 +1,6 @@
 //! Completion and hover against a registry of made-up classes.
 
-use luxel_lang::editor::{Completion, Item, complete, hover};
+use luxel_lang::editor::{Completion, Item, OnDisk, complete, hover};
 
 use crate::marked;
 use crate::registry::registry;
@@ -64,6 +64,8 @@ fn values_fit_what_they_are_given_to() {
     check("place |", &["b"], &["red"]);
     check("fn f(wide: float) = 1\nlet z = f(|)", &["wide = "], &[]);
     check("for i in 0..3 { shape sphere { radius = |", &["i"], &[]);
+    check("group {\n let w = f(1,\n 2)\n let v = max(w, 2, |", &["w"], &["v"]);
+    check("group {\n let w = 2\n shape sphere { radius = |", &["w"], &[]);
     check("let z = f(x // |", &[], &["n"]);
     check("let z = \"|", &[], &["n"]);
 }
@@ -86,10 +88,131 @@ fn other_files_offer_their_names_and_parameters() {
     assert_eq!(labels("scene 1\nimport \"lib\" as n\nplace n.|"), ["far", "tree"]);
     assert_eq!(labels("scene 1\ninclude \"lib\" with { | }"), ["far"]);
     let found = completed(&[lib, ("a", "scene 1\ninclude \"sub/l|\"")]);
-    assert_eq!(found.files, Some(("sub/l".to_owned(), vec![".scene"])));
-    let found = completed(&[("a", "scene 1\ntexture image { file = \"b|")]);
-    assert_eq!(found.files, Some(("b".to_owned(), vec![])));
+    assert_eq!(found.on_disk, Some(files("sub/l", &[".scene"])));
     assert_eq!(completed(&[("a", "sc|")]).items[0].label, "scene 1");
+}
+
+fn files(written: &str, ends: &[&'static str]) -> OnDisk {
+    OnDisk::Files { written: written.to_owned(), ends: ends.to_vec() }
+}
+
+#[test]
+fn a_string_is_completed_by_what_it_is_read_as() {
+    let asked = |text: &str, expected: Option<OnDisk>| {
+        assert_eq!(completed(&[("a", &format!("scene 1\n{text}"))]).on_disk, expected, "{text}");
+    };
+    // The manual of `file` says nothing, that of the class names formats.
+    let pictures = [".exr", ".jpeg", ".jpg", ".png"];
+    asked("texture image { file = \"b|", Some(files("b", &pictures)));
+    asked("texture image { file = \"b/c|\" }", Some(files("b/c", &pictures)));
+    let known = "let t = texture image { file = \"x.png\" }\n";
+    asked(&format!("{known}let u = t with {{ file = \"|\" }}"), Some(files("", &pictures)));
+    asked("texture image { space = \"|", None);
+    asked("import \"|\" as n", Some(files("", &[".scene"])));
+    asked("expect same_as \"x|\"", Some(files("x", &[".scene"])));
+    let spectra = [".csv", ".dat", ".spd", ".tsv", ".txt"];
+    asked("let s = spectrum.file(\"le|\")", Some(files("le", &spectra)));
+    asked("let s = spectrum.file(path = \"le|\")", Some(files("le", &spectra)));
+    asked("let s = spectrum.file(\"leaf.csv\", column = \"|\")", None);
+    asked("use plugin \"|\"", Some(OnDisk::Libraries));
+    asked("use plugin \"velvet\" version \"|\"", None);
+    asked("let s = \"|\"", None);
+}
+
+#[test]
+fn loaded_libraries_and_their_versions_are_offered() {
+    let labels = |text: &str| -> Vec<String> {
+        let items = completed(&[("a", text)]).items;
+        items.into_iter().map(|item| item.label).collect()
+    };
+    assert_eq!(labels("scene 1\nuse plugin \"ve|\""), ["gyroid", "velvet"]);
+    assert_eq!(labels("scene 1\nuse plugin \"velvet\" version \"|\""), ["^1.2.3"]);
+    assert_eq!(labels("scene 1\nuse plugin \"felt\" version \"|\""), Vec::<String>::new());
+    assert_eq!(labels("scene 1\nuse plugin \"velvet\" |"), ["version"]);
+    assert_eq!(labels("scene 1\nimport \"lib\" |"), ["as"]);
+}
+
+#[test]
+fn an_object_without_a_kind_is_offered_what_all_kinds_take() {
+    offers("film { | }", &["resolution", "exposure", "shutter"], &["radius"]);
+    offers("shape { | }", &["material", "transform"], &["radius", "points"]);
+    offers("shape bal { | }", &["material", "transform"], &["radius"]);
+}
+
+#[test]
+fn what_comes_of_an_import_is_offered_as_what_it_is() {
+    let inner = ("in", "scene 1\nlet orb = shape sphere { radius = 1 m }");
+    let lib = (
+        "lib",
+        "scene 1\nimport \"in\" as deep\nlet gold = material conductor {}\nlet dark = gold\n\
+         /// A ball.\nfn ball(r: length, n: int = 2, at: vec3[] = []) {}",
+    );
+    let labels = |text: &str| -> Vec<String> {
+        let text = format!("scene 1\nimport \"lib\" as lib\nlet mine = lib.dark\n{text}");
+        let mut items = completed(&[inner, lib, ("a", &text)]).items;
+        items.sort_by_key(|item| item.rank);
+        items.into_iter().map(|item| item.label).collect()
+    };
+    let has = |text: &str, wanted: &[&str]| {
+        let found = labels(text);
+        assert!(wanted.iter().all(|label| found.iter().any(|it| it == label)), "{text}: {found:?}");
+    };
+    has("let a = lib.gold with { | }", &["eta", "roughness"]);
+    has("let a = lib.dark with { eta = x, | }", &["roughness"]);
+    has("let a = mine with { | }", &["eta"]);
+    has("let a = lib.deep.orb with { | }", &["radius"]);
+    has("let a = lib.gold with { distribution = | }", &["\"ggx\""]);
+    has("let a = lib.deep.|", &["orb"]);
+    let named = ["r = ", "n = ", "at = "];
+    assert_eq!(labels("lib.ball(|")[..3], named);
+    assert_eq!(labels("let a = 2 * lib.ball(|)")[..3], named);
+    assert_eq!(labels("lib.ball(1 m, |)")[..2], named[1..]);
+    assert_eq!(labels("lib.ball(|, n = 3)")[..2], ["r = ", "at = "]);
+    assert!(!labels("lib.ball(1 m + |)").contains(&"r = ".to_owned()));
+    let text = "scene 1\nimport \"lib\" as lib\nlib.b|";
+    let items = completed(&[inner, lib, ("a", text)]).items;
+    let ball = items.iter().find(|item| item.label == "ball").unwrap();
+    let facts = (ball.detail.as_str(), ball.doc.as_str(), ball.insert.as_str());
+    assert_eq!(facts, ("ball(r: length, n: int = 2, at: vec3[] = [])", "A ball.", "ball($0)"));
+    let called = completed(&[inner, lib, ("a", &format!("{text}(2 m)"))]).items;
+    assert_eq!(called.iter().find(|item| item.label == "ball").unwrap().insert, "");
+    let items = completed(&[inner, lib, ("a", "scene 1\nimport \"lib\" as l\nl.ball(|")]).items;
+    let n = items.iter().find(|item| item.label == "n = ").unwrap();
+    assert_eq!(n.detail, "int, default 2");
+    assert!(n.doc.contains("fn ball(r: length") && n.doc.ends_with("A ball."), "{}", n.doc);
+}
+
+#[test]
+fn units_go_on_behind_a_slash_and_stand_in_units() {
+    let best = |text: &str| -> Vec<String> {
+        let items = completed(&[("a", &format!("scene 1\n{text}"))]).items;
+        let least = items.iter().map(|item| item.rank).min();
+        let first = items.into_iter().filter(|item| Some(item.rank) == least);
+        first.map(|item| item.label).collect()
+    };
+    assert_eq!(best("light area { radiance = 5 W/|"), ["m^2/sr"]);
+    assert_eq!(best("light area { radiance = 5 W/m^2/|"), ["sr"]);
+    assert_eq!(best("light area { radiance = 5 W/m^2/s| }"), ["sr"]);
+    assert_eq!(best("medium homogeneous { sigma_t = 5 | }"), ["1/m"]);
+    assert_eq!(
+        best("param x: length = 5 |"),
+        ["m", "km", "cm", "mm", "um", "µm", "nm", "inch", "ft"]
+    );
+    assert_eq!(best("units { angle = | }"), ["rad", "deg"]);
+    assert_eq!(best("units { length = mm, time = | }"), ["s", "ms", "us"]);
+    offers("let a = 5 W/|", &["m", "sr", "sin"], &["EV"]);
+    offers("let a = (1, 2) W/m^2/|", &["sr"], &["EV"]);
+    offers("let n = 2\nlet a = 5 / |", &["n", "sin"], &["m", "sr"]);
+    offers("let n = 2\nlet a = n/|", &["n", "sin"], &["m", "sr"]);
+    offers("units { | }", &["length", "intensity"], &["area", "volume"]);
+}
+
+#[test]
+fn an_attribute_stands_before_a_statement() {
+    offers("@|", &["off"], &["shape", "let"]);
+    offers("let a = 1\n@o|", &["off"], &["shape", "let"]);
+    offers("group {\n @| shape sphere {}\n}", &["off"], &["shape"]);
+    offers("@off |", &["shape", "let"], &["with"]);
 }
 
 #[test]

@@ -134,7 +134,7 @@ struct Coated<'a> {
     base: MaterialRef<'a>,
 }
 
-/// An image.
+/// An image: PNG, JPEG or EXR.
 #[derive(Params, Clone, Copy)]
 #[repr(C)]
 struct Image<'a> {

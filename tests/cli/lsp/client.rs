@@ -26,7 +26,12 @@ pub(super) struct Client {
 impl Client {
     /// A server in a folder that nothing was said to.
     pub(super) fn raw(folder: &Folder) -> Self {
-        let mut child = folder.talk(&["lsp"]);
+        Self::raw_with(folder, &[])
+    }
+
+    /// The same, started with these options.
+    pub(super) fn raw_with(folder: &Folder, options: &[&str]) -> Self {
+        let mut child = folder.talk(&[&["lsp"], options].concat());
         let input = child.stdin.take();
         let output = listen(BufReader::new(child.stdout.take().unwrap()));
         Self { child, input, output, next: 0, heard: vec![] }
@@ -34,7 +39,11 @@ impl Client {
 
     /// A server that is ready.
     pub(super) fn new(folder: &Folder) -> Self {
-        let mut client = Self::raw(folder);
+        Self::ready(Self::raw(folder), folder)
+    }
+
+    /// The server made ready.
+    pub(super) fn ready(mut client: Self, folder: &Folder) -> Self {
         let root = uri(folder, "");
         let trees = json!({ "hierarchicalDocumentSymbolSupport": true });
         let capabilities = json!({ "textDocument": { "documentSymbol": trees } });

@@ -208,6 +208,46 @@ fn files_are_offered_where_a_path_is_written() {
     assert_eq!(items[0]["textEdit"], edit);
 }
 
+/// The labels that are offered at a place.
+fn offered(client: &mut Client, uri: &str, place: Value) -> Vec<String> {
+    let list = client.ask("textDocument/completion", params(uri, place)).unwrap();
+    let items = list["items"].as_array().unwrap();
+    items.iter().map(|item| item["label"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn files_that_a_parameter_does_not_read_are_not_offered() {
+    let mut folder = Folder::new("lsp-formats").with("sub/x", "");
+    for name in ["a.png", "B.JPG", "c.exr", "d.obj", "e.ply", "f.glb", "g.txt", "h.scene"] {
+        folder = folder.with(name, "");
+    }
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    let text = "scene 1\nlet a = texture image { file = \"\" }\nshape mesh { file = \"\" }\n\
+                let b = asset gltf { file = \"\" }\nshape heightfield { file = \"\" }\n";
+    client.open(&uri, text);
+    let pictures = ["B.JPG", "a.png", "c.exr", "sub/"];
+    assert_eq!(offered(&mut client, &uri, at(1, 32)), pictures);
+    assert_eq!(offered(&mut client, &uri, at(2, 21)), ["d.obj", "e.ply", "sub/"]);
+    assert_eq!(offered(&mut client, &uri, at(3, 29)), ["f.glb", "sub/"]);
+    assert_eq!(offered(&mut client, &uri, at(4, 28)), pictures);
+}
+
+#[test]
+fn libraries_that_are_not_loaded_are_offered_too() {
+    let folder = Folder::new("lsp-libraries");
+    let name =
+        format!("plugins/{}felt{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    folder.write(&name, "no library");
+    let mut client =
+        Client::ready(Client::raw_with(&folder, &["--plugin-dir", "plugins"]), &folder);
+    let uri = uri(&folder, "a.scene");
+    client.open(&uri, "scene 1\nuse plugin \"\"\n");
+    let list = client.ask("textDocument/completion", params(&uri, at(1, 12))).unwrap();
+    let items = list["items"].as_array().unwrap();
+    let found = (items.len(), &items[0]["label"], &items[0]["detail"]);
+    assert_eq!(found, (1, &json!("felt"), &json!("not trusted")));
+}
+
 #[test]
 fn a_file_is_laid_out_by_the_lines_that_change() {
     let folder = Folder::new("lsp-format");

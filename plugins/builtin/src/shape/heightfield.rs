@@ -43,7 +43,7 @@ pub(crate) struct Heightfield<'a> {
     /// Numbers in a row of `heights`: unless given, as many as there are rows.
     #[param(optional, min = 2)]
     columns: u32,
-    /// A picture of heights: its luminance counts.
+    /// A picture of heights, PNG, JPEG, HDR or EXR: its luminance counts.
     #[param(optional, group = "grid")]
     file: File<'a>,
     /// Height of white in the picture above black.

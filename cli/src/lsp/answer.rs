@@ -39,7 +39,7 @@ pub(super) fn answer(
             server.tokens(params, stop)
         }
         "textDocument/documentColor" => server.colours(params, stop),
-        "textDocument/colorPresentation" => Server::presentation(params),
+        "textDocument/colorPresentation" => server.presentation(params),
         "textDocument/formatting" => server.formatting(params),
         "textDocument/codeAction" => server.actions(params),
         other => Err(Refusal::new(Code::MethodNotFound, format!("there is no method `{other}`"))),

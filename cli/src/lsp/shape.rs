@@ -152,14 +152,17 @@ impl Server {
         Ok(swatches(&document, stop).iter().map(one).collect())
     }
 
-    pub(super) fn presentation(params: &Value) -> Result<Value, Refusal> {
+    pub(super) fn presentation(&self, params: &Value) -> Result<Value, Refusal> {
+        let (_, document) = self.asked(params)?;
+        let range = self.asked_range(&document, params)?;
         let channel = |name: &str| params["color"][name].as_f64();
         let (Some(r), Some(g), Some(b)) = (channel("red"), channel("green"), channel("blue"))
         else {
             let why = "`color` wants `red`, `green` and `blue`";
             return Err(Refusal::new(Code::InvalidParams, why));
         };
-        Ok(json!([{ "label": editor::written([r, g, b]) }]))
+        let forms = editor::written(&document.text()[range], [r, g, b]);
+        Ok(forms.iter().map(|form| json!({ "label": form })).collect())
     }
 }
 

@@ -19,7 +19,7 @@ mod given;
 mod include;
 mod mention;
 pub(crate) mod names;
-mod note;
+pub(crate) mod note;
 mod numbered;
 mod object;
 mod ops;

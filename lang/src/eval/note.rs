@@ -43,32 +43,53 @@ fn shown(color: &Color) -> String {
         Color::Rgb(rgb) => hex(*rgb),
         Color::Constant(x) => format!("{} at every wavelength", number(*x)),
         Color::Waves(length) => format!("{} m, in waves of each wavelength", number(*length)),
-        Color::Curve(points) => match Curve::from_points(points, Outside::Constant) {
-            Ok(curve) => spectrum(&curve, reflectance_rgb(&curve)),
-            Err(_) => "a spectrum".to_owned(),
-        },
-        Color::Blackbody(kelvin) => of_light(blackbody(*kelvin)),
-        Color::Illuminant(name) => of_light(illuminant(name)),
-        Color::Metal(name) => metal(name).map_or_else(String::new, |metal| {
-            // The fraction of light that a polished surface reflects straight back.
-            let back = metal.eta.map(|nm, eta| {
-                let k = f64::from(metal.k.at(narrow(nm)));
-                ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k)
-            });
-            spectrum(&back, reflectance_rgb(&back))
-        }),
         Color::Glass(name) => glass(name).map_or_else(String::new, |glass| {
             format!("n_d = {:.4}, Abbe number {:.1}", glass.eta_d(), glass.abbe())
         }),
         Color::Scaled(color, factor) => format!("{} × {}", number(*factor), shown(color)),
+        curve => match of_curve(curve) {
+            Some((curve, rgb)) => spectrum(&curve, rgb),
+            None => "a spectrum".to_owned(),
+        },
     }
 }
 
-fn of_light(curve: Option<Curve>) -> String {
-    curve.map_or_else(String::new, |curve| {
-        let rgb = emission_rgb(&curve);
-        spectrum(&curve, rgb / rgb.max_element().max(f32::MIN_POSITIVE))
-    })
+/// What a screen shows of a colour, of light at full brightness: sRGB, each in [0, 1]. `None` of what has
+/// no colour.
+pub(crate) fn on_screen(color: &Color) -> Option<[f64; 3]> {
+    let linear = match color {
+        Color::Rgb(rgb) => *rgb,
+        Color::Constant(x) => [*x; 3],
+        Color::Waves(_) | Color::Glass(_) | Color::Scaled(..) => return None,
+        curve => of_curve(curve)?.1.to_array().map(f64::from),
+    };
+    Some(linear.map(|x| srgb_encode(x).clamp(0.0, 1.0)))
+}
+
+/// A spectrum and what it is in linear sRGB; of a metal the fraction of light that a polished surface
+/// reflects straight back.
+fn of_curve(color: &Color) -> Option<(Curve, Vec3)> {
+    let curve = match color {
+        Color::Curve(points) => Curve::from_points(points, Outside::Constant).ok()?,
+        Color::Metal(name) => {
+            let metal = metal(name)?;
+            metal.eta.map(|nm, eta| {
+                let k = f64::from(metal.k.at(narrow(nm)));
+                ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k)
+            })
+        }
+        Color::Blackbody(kelvin) => return blackbody(*kelvin).map(of_light),
+        Color::Illuminant(name) => return illuminant(name).map(of_light),
+        _ => return None,
+    };
+    let rgb = reflectance_rgb(&curve);
+    Some((curve, rgb))
+}
+
+/// Light as bright as a screen can show it.
+fn of_light(curve: Curve) -> (Curve, Vec3) {
+    let rgb = emission_rgb(&curve);
+    (curve, rgb / rgb.max_element().max(f32::MIN_POSITIVE))
 }
 
 fn spectrum(curve: &Curve, rgb: Vec3) -> String {

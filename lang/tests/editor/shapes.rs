@@ -61,9 +61,68 @@ fn brackets_tables_and_comments_fold() {
 fn colours_of_numbers_are_found_and_written() {
     let document = Document::new(TEXT, &Budgets::default());
     let found = swatches(&document, &never);
-    assert_eq!(&TEXT[found[0].range.clone()], "rgb.linear_srgb(1, 0, 0)");
-    assert_eq!((found[0].srgb.map(f64::round), found.len()), ([1.0, 0.0, 0.0], 1));
-    assert_eq!(written([1.0, 0.50004, 0.0]), "rgb.srgb(1, 0.5, 0)");
+    assert_eq!(&TEXT[found[0].range.clone()], "metal(\"Au\")");
+    assert_eq!(&TEXT[found[1].range.clone()], "rgb.linear_srgb(1, 0, 0)");
+    assert_eq!((found[1].srgb.map(f64::round), found.len()), ([1.0, 0.0, 0.0], 2));
+    assert!(swatches(&document, &|| true).is_empty(), "it can be stopped");
+}
+
+/// The colour of the only call that has one, in 255 steps.
+fn swatch(call: &str) -> Option<[f64; 3]> {
+    let document = Document::new(format!("scene 1\nlet c = {call}\n"), &Budgets::default());
+    let found = swatches(&document, &never);
+    assert!(found.len() < 2, "{found:?}");
+    found.first().map(|swatch| swatch.srgb.map(|x| (x * 255.0).round()))
+}
+
+#[test]
+fn colours_of_calls_with_literal_arguments_are_found() {
+    assert_eq!(swatch("rgb.srgb(1, 0.5, 0)"), Some([255.0, 128.0, 0.0]));
+    assert_eq!(swatch("rgb.srgb(b = 1, r = 0, g = 0)"), Some([0.0, 0.0, 255.0]));
+    assert_eq!(swatch("rgb.linear_srgb(-0.1, 1, 9)"), Some([0.0, 255.0, 255.0]));
+    assert_eq!(swatch("xyz(0.9505, 1, 1.089)"), Some([255.0, 255.0, 255.0]));
+    assert_eq!(swatch("spectrum.constant(1)"), Some([255.0, 255.0, 255.0]));
+    let [r, g, b] = swatch("2 * blackbody(2700 K)").unwrap();
+    assert!(r > g && g > b, "a warm lamp");
+    let [r, _, b] = swatch("blackbody(20000 K)").unwrap();
+    assert!(r < b, "a blue star");
+    let [r, g, b] = swatch("illuminant(\"D65\")").unwrap();
+    assert!(r.min(g).min(b) > 240.0, "white");
+    let [r, g, b] = swatch("metal(\"Au\")").unwrap();
+    assert!(r > g && g > b, "gold");
+    let [r, _, b] = swatch("spectrum([(400 nm, 0), (700 nm, 1)])").unwrap();
+    assert!(r > b, "it reflects red");
+    // Glass has no colour; the rest is no literal, or a mistake.
+    for none in [
+        "glass(\"N-BK7\")",
+        "blackbody(t)",
+        "blackbody(5)",
+        "metal(\"X\")",
+        "rgb.srgb(1)",
+        "rgb.srgb(1, 2, 3, 4)",
+        "sin(1, 2, 3)",
+        "rgb.srgb(1 m, 0, 0)",
+        "rgb.srgb(x = 1)",
+        "rgb(1, 0, 0)",
+    ] {
+        assert_eq!(swatch(none), None, "{none}");
+    }
+}
+
+#[test]
+fn a_colour_is_written_back_where_numbers_stood() {
+    let forms = |call: &str| written(call, [1.0, 0.50004, 0.0]);
+    assert_eq!(forms("rgb.srgb(0, 0, 0)"), ["rgb.srgb(1, 0.5, 0)"]);
+    let linear = forms("rgb.linear_srgb(0, 0, 0)");
+    assert_eq!(linear, ["rgb.linear_srgb(1, 0.21408, 0)", "rgb.srgb(1, 0.5, 0)"]);
+    for call in ["xyz (0, 0, 0)", "rgb.acescg(0, 0, 0)", "rgb.rec2020(0, 0, 0)"] {
+        let found = forms(call);
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert_eq!(swatch(&found[0]), Some([255.0, 128.0, 0.0]), "{found:?}");
+    }
+    for call in ["blackbody(2700 K)", "metal(\"Au\")", "spectrum.constant(1)", "", "let a = 1"] {
+        assert_eq!(forms(call), Vec::<String>::new(), "{call}");
+    }
 }
 
 #[test]

@@ -191,9 +191,15 @@ fn a_mend_is_offered_and_a_colour_is_shown() {
         (&colours[0]["range"], &colours[0]["color"]["red"]),
         (&span(1, 11, 30), &json!(1.0))
     );
-    let colour = json!({ "color": { "red": 1.0, "green": 0.0, "blue": 0.25, "alpha": 1.0 } });
-    let forms = client.ask("textDocument/colorPresentation", colour).unwrap();
-    assert_eq!(forms[0]["label"], "rgb.srgb(1, 0, 0.25)");
+    let mut asked = json!({ "textDocument": { "uri": uri }, "range": span(1, 11, 30) });
+    asked["color"] = json!({ "red": 1.0, "green": 0.0, "blue": 0.25, "alpha": 1.0 });
+    let forms = client.ask("textDocument/colorPresentation", asked.clone()).unwrap();
+    assert_eq!(forms, json!([{ "label": "rgb.srgb(1, 0, 0.25)" }]));
+    // What is no colour of numbers is not written over.
+    asked["range"] = span(2, 8, 11);
+    assert_eq!(client.ask("textDocument/colorPresentation", asked.clone()), Ok(json!([])));
+    asked["range"] = Value::Null;
+    assert_eq!(client.ask("textDocument/colorPresentation", asked).unwrap_err().0, -32602);
 }
 
 #[test]

@@ -222,6 +222,21 @@ pub(super) fn linear_srgb(make: Make, c: [f64; 3]) -> [f64; 3] {
     }
 }
 
+/// The numbers of a space that make a colour of a screen, sRGB; `None` if they are not what is given.
+pub(super) fn of_screen(make: Make, srgb: [f64; 3]) -> Option<[f64; 3]> {
+    let linear = DVec3::from_array(srgb.map(decode));
+    let from = RgbSpace::LinearSrgb;
+    let out = match make {
+        Make::LinearSrgb => linear,
+        Make::Srgb => return Some(srgb),
+        Make::AcesCg => from.convert_to(RgbSpace::AcesCg).mul_vec3(linear),
+        Make::Rec2020 => from.convert_to(RgbSpace::Rec2020).mul_vec3(linear),
+        Make::Xyz => from.to_xyz().mul_vec3(linear),
+        _ => return None,
+    };
+    Some(out.to_array())
+}
+
 /// The linear value of an sRGB component; beyond [0, 1] the curve goes on, odd about zero.
 fn decode(x: f64) -> f64 {
     let magnitude = x.abs();

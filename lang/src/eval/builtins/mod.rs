@@ -165,6 +165,19 @@ pub(crate) fn linear_srgb(name: &str, c: [f64; 3]) -> Option<[f64; 3]> {
     }
 }
 
+/// Three numbers from which a function makes a colour of a screen, sRGB, if it makes one of numbers.
+pub(crate) fn of_screen(name: &str, srgb: [f64; 3]) -> Option<[f64; 3]> {
+    match find(name)?.run {
+        Run::Color(make) => color::of_screen(make, srgb),
+        _ => None,
+    }
+}
+
+/// Where a function takes an argument of a name, from 0.
+pub(crate) fn place(function: &str, name: &str) -> Option<usize> {
+    find(function)?.arguments().position(|argument| argument == name)
+}
+
 impl Builtin {
     /// The names of its arguments.
     fn arguments(&self) -> impl Iterator<Item = &'static str> {

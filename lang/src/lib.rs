@@ -123,8 +123,8 @@ pub struct Loaded {
     pub sources: Sources,
     /// The parameters that the root file declares.
     pub params: Vec<ParamInfo>,
-    /// If it was asked for, the first value of each `let`, `param` and field, by its name's place, as
-    /// text.
+    /// If it was asked for, the first value of each `let`, `param`, field, member and call that makes a
+    /// colour, and what each loop runs over, by the name's place, as text.
     pub values: BTreeMap<Span, String>,
 }
 

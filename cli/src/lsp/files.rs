@@ -109,6 +109,17 @@ impl Project for Opened {
         }
         out
     }
+
+    fn size(&self, path: &Path) -> Result<u64, FileError> {
+        if let Some(open) = self.open.get(path) {
+            return Ok(open.document.text().len() as u64);
+        }
+        let about = fs::metadata(path).map_err(|_| FileError::NotFound)?;
+        if self.readers().all(|files| files.forbids(path)) {
+            return Err(FileError::Outside);
+        }
+        if about.is_file() { Ok(about.len()) } else { Err(FileError::NotFound) }
+    }
 }
 
 /// Names in the folder that a path in a scene begins with; folders end in `/`.

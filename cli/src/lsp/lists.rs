@@ -63,9 +63,10 @@ impl Server {
         let Some(found) = hover(&self.files, &at.path, at.byte, &self.plugins.registry) else {
             return Value::Null;
         };
-        let value = found.of.and_then(|place| self.value(place.path, place.range.0));
+        let evaluated = || found.of.and_then(|place| self.value(place.path, place.range.0));
+        let value = found.value.or_else(evaluated);
         let code = format!("```scene\n{}\n```", found.code);
-        let value = value.map(|value| format!("value: {value}"));
+        let value = value.map(|value| format!("{}: {value}", found.value_is));
         let words = Some(found.text).filter(|text| !text.is_empty());
         let parts: Vec<String> = [Some(code), value, words].into_iter().flatten().collect();
         let text = parts.join("\n\n");

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use luxel_core::files::normalise;
+use luxel_core::files::{FileError, normalise};
 use luxel_sdk::params::Unit;
 
 use super::document::Document;
@@ -23,6 +23,12 @@ pub trait Project {
 
     /// Files that may refer to others: those that are open, and those beside them.
     fn files(&self) -> Vec<PathBuf>;
+
+    /// How many bytes a file of any kind has.
+    ///
+    /// # Errors
+    /// Why a scene could not read it.
+    fn size(&self, path: &Path) -> Result<u64, FileError>;
 }
 
 /// Bytes of a file.

@@ -138,7 +138,7 @@ impl Signature {
 
 impl Argument {
     /// As it is declared: `n: int = 2`.
-    fn usage(&self) -> String {
+    pub(super) fn usage(&self) -> String {
         let default = self.default.as_ref().map_or(String::new(), |text| format!(" = {text}"));
         format!("{}: {}{default}", self.name, self.ty)
     }

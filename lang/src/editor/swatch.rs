@@ -10,7 +10,7 @@ use luxel_sdk::params::{Dimension, Unit};
 use super::document::Document;
 use crate::eval::builtins::{self, linear_srgb};
 use crate::eval::names::moved;
-use crate::eval::note::on_screen;
+use crate::eval::note::{on_screen, shown};
 use crate::syntax::{Arg, Expr, ExprNode, Form, Op, Stmt, each_expr};
 
 /// A colour in a text.
@@ -54,6 +54,25 @@ fn each_call<'s>(stmt: &'s Stmt, each: &mut dyn FnMut(&'s Expr, &'s Expr, &'s [A
             each(expr, callee, args);
         }
     });
+}
+
+/// The colour in words of the call whose function's name a byte stands in, if its arguments are literal.
+pub(super) fn literal_at(document: &Document, at: usize) -> Option<String> {
+    let piece = document.piece_at(at)?;
+    let mut found = None;
+    for stmt in &piece.read.stmts {
+        each_call(stmt, &mut |_, callee, args| {
+            if moved(callee.span, piece.start).range().contains(&at) {
+                found = literal(callee, args);
+            }
+        });
+    }
+    found.as_ref().map(shown)
+}
+
+/// What a name of a catalogue stands for, in words.
+pub(super) fn named(function: &str, name: &str) -> Option<String> {
+    of_name(function, name).as_ref().map(shown)
 }
 
 /// The colour that a call makes of literal arguments.

@@ -8,13 +8,19 @@ use super::Evaluator;
 use super::builtins::Given;
 use super::env::Env;
 use super::value::{Function, Value};
-use crate::syntax::{Arg, Expr, FnBody, Stmt};
+use crate::syntax::{Arg, Expr, ExprNode, FnBody, Stmt};
 
 impl Evaluator<'_> {
     /// A call as an expression.
     pub(super) fn call(&mut self, callee: &Expr, args: &[Arg], span: Span, env: &Env) -> Value {
         let function = self.eval(callee, env);
-        self.apply(&function, args, span, env)
+        let value = self.apply(&function, args, span, env);
+        if let (Value::Color(..), Value::Builtin(_), ExprNode::Path(path)) =
+            (&value, &function, &callee.node)
+        {
+            path.last().into_iter().for_each(|name| self.note(name, &value));
+        }
+        value
     }
 
     /// Calls a value with arguments that stand in `env`.

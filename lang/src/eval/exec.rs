@@ -205,7 +205,9 @@ impl Evaluator<'_> {
         body: &mut Body,
     ) {
         let value = self.eval(over, env);
+        self.note(item, &value);
         let Some(elements) = self.elements(value, over.span) else { return };
+        self.note_index(index, &elements);
         self.loops.push(item.span);
         let mut count = 0.0;
         let mut inner = env.inner();

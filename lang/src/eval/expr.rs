@@ -8,7 +8,7 @@ use luxel_sdk::params::{Dimension, Unit};
 use super::Evaluator;
 use super::builtins;
 use super::env::Env;
-use super::value::{FieldValue, Items, Value};
+use super::value::{FieldValue, Items, Range, Value};
 use crate::syntax::{Comp, Expr, ExprNode, Field, Form, Name};
 
 impl Evaluator<'_> {
@@ -148,6 +148,7 @@ impl Evaluator<'_> {
             }
         };
         if let Some(value) = found {
+            self.note(name, &value);
             return value;
         }
         let what = match of {
@@ -243,7 +244,9 @@ impl Evaluator<'_> {
 
     fn comp(&mut self, comp: &Comp, span: Span, env: &Env) -> Value {
         let over = self.eval(&comp.over, env);
+        self.note(&comp.item, &over);
         let Some(elements) = self.elements(over, comp.over.span) else { return Value::Poison };
+        self.note_index(comp.index.as_ref(), &elements);
         if comp.filter.is_none() && elements.len() > self.budgets.list as f64 {
             let message = format!(
                 "a list of {} elements; the limit is {}",
@@ -290,6 +293,15 @@ impl Evaluator<'_> {
             self.held -= made.saturating_sub(packed.data.len() * size_of::<f64>()).min(self.held);
         }
         list
+    }
+
+    /// Keeps what the index of a loop runs through.
+    pub(super) fn note_index(&mut self, index: Option<&Name>, elements: &Elements) {
+        if let Some(index) = index {
+            let dimension = Dimension::NONE;
+            let all = Range { start: 0.0, end: elements.len(), inclusive: false, dimension };
+            self.note(index, &Value::Range(all));
+        }
     }
 
     /// What a loop runs over; `None` after a mistake.

@@ -38,7 +38,7 @@ impl Evaluator<'_> {
 }
 
 /// A colour in words: what a screen shows of it, and its spectrum from 380 to 730 nm.
-fn shown(color: &Color) -> String {
+pub(crate) fn shown(color: &Color) -> String {
     match color {
         Color::Rgb(rgb) => hex(*rgb),
         Color::Constant(x) => format!("{} at every wavelength", number(*x)),

@@ -52,6 +52,11 @@ pub(crate) fn number(x: f64) -> String {
     if is_plain { x.to_string() } else { format!("{x:e}") }
 }
 
+/// A number of a dimension in SI units.
+pub(crate) fn si(x: f64, dimension: Dimension) -> String {
+    if dimension.is_none() { number(x) } else { format!("{} {}", number(x), si_unit(dimension)) }
+}
+
 fn rounded(x: f64) -> f64 {
     format!("{x:.6e}").parse().unwrap_or(x)
 }
@@ -76,15 +81,15 @@ fn in_units(numbers: &[f64], dimension: Dimension, shown: &dyn Fn(&[f64]) -> Str
     if dimension.is_none() {
         return shown(numbers);
     }
-    let si = format!("{} {}", shown(numbers), si_unit(dimension));
+    let in_si = format!("{} {}", shown(numbers), si_unit(dimension));
     let most = numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let is_si = |unit: &Unit| (unit.scale - 1.0).abs() <= f64::EPSILON;
     match chosen(dimension, most) {
         Some((name, unit)) if !is_si(&unit) => {
             let scaled: Vec<f64> = numbers.iter().map(|x| x / unit.scale).collect();
-            format!("{} {name} = {si}", shown(&scaled))
+            format!("{} {name} = {in_si}", shown(&scaled))
         }
-        _ => si,
+        _ => in_si,
     }
 }
 

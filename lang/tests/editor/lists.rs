@@ -1,6 +1,6 @@
-//! Completion and hover against a registry of made-up classes.
+//! Completion against a registry of made-up classes.
 
-use luxel_lang::editor::{Completion, Item, OnDisk, complete, hover};
+use luxel_lang::editor::{Completion, Item, OnDisk, complete};
 
 use crate::marked;
 use crate::registry::registry;
@@ -238,33 +238,4 @@ fn an_item_says_type_unit_and_default_and_writes_what_is_required() {
 fn sphere_of(items: &[Item]) -> (&str, &str) {
     let sphere = items.iter().find(|item| item.label == "sphere").expect("it is there");
     (&sphere.detail, &sphere.insert)
-}
-
-fn told(text: &str) -> (String, String) {
-    let (files, path, at) = marked(&[("a", text)]);
-    let found = hover(&files, &path, at, &registry());
-    found.map_or_else(Default::default, |found| (found.code, found.text))
-}
-
-#[test]
-fn hover_tells_manual_definition_and_unit() {
-    let check = |text: &str, code: &str, words: &str| {
-        let (found, said) = told(&format!("scene 1\n{text}"));
-        assert_eq!(found, code, "{text}");
-        assert!(said.contains(words), "{said}");
-    };
-    let radius = "radius: number, in m, more than 0, required";
-    check("shape sphere { ra|dius = 1 m }", radius, "Its radius.");
-    check("sh|ape ball {}", "shape", "Kinds: box, cylinder");
-    check("shape |sphere {}", "shape sphere", "A ball.");
-    check("/// Wide.\nlet w = 3 m\nlet q = w| + 1 m", "let w = 3 m", "Wide.");
-    check("fn f(x: float) = x\nlet q = |f(1)", "fn f(x: float) = x", "");
-    check("let q = clam|p(1, 2, 3)", "clamp(x, low, high)", "else the nearer");
-    check("let q = rgb.s|rgb(1, 2, 3)", "rgb.srgb(r, g, b)", "```scene\nrgb.srgb(1, 0.5, 0)");
-    check("let q = 2 * p|i", "pi", "without a unit");
-    check("let q = 5 c|m", "cm", "a length");
-    check("gr|oup \"g\" {}", "group", "frame of their own");
-    check("let q = \"te|xt\"", "", "");
-    check("// comm|ent", "", "");
-    check("shape sphere { ra|dius = , }\nlet z = (", radius, "Its");
 }

@@ -5,11 +5,13 @@ mod names;
 #[path = "../language/registry.rs"]
 mod registry;
 mod shapes;
+mod told;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use luxel_core::files::FileError;
 use luxel_lang::Budgets;
 use luxel_lang::editor::{Document, Place, Project};
 
@@ -23,6 +25,10 @@ impl Project for Files {
 
     fn files(&self) -> Vec<PathBuf> {
         self.0.keys().cloned().collect()
+    }
+
+    fn size(&self, path: &Path) -> Result<u64, FileError> {
+        self.document(path).map(|file| file.text().len() as u64).ok_or(FileError::NotFound)
     }
 }
 

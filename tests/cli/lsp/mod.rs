@@ -202,6 +202,36 @@ fn a_mend_is_offered_and_a_colour_is_shown() {
     assert_eq!(client.ask("textDocument/colorPresentation", asked).unwrap_err().0, -32602);
 }
 
+/// What is told of a place, once the file has been evaluated.
+fn told(client: &mut Client, uri: &str, place: Value) -> String {
+    let hover = client.ask("textDocument/hover", params(uri, place)).unwrap();
+    hover["contents"]["value"].as_str().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn values_of_an_evaluation_are_told_in_units_that_people_say() {
+    let folder = Folder::new("lsp-values").with("pic.png", "four");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    let lines = "let v = (0.1 + 0.2, 0, 1) * 1 cm\nlet w = v.x\nlet t = 3000 K\n\
+                 light point { spectrum = blackbody(t), power = 1 W }\n\
+                 for i, x in [1, 2] { shape sphere { radius = x * 1 mm } }\n\
+                 let p = texture image { file = \"pic.png\" }\n";
+    client.open(&uri, &format!("{SCENE}{lines}"));
+    // What evaluation finds is told after what is told at once.
+    client.told(&uri);
+    let mut has = |line: u64, column: u64, words: &str| {
+        let found = told(&mut client, &uri, at(LINE + line, column));
+        assert!(found.contains(words), "{words} in {found}");
+    };
+    has(0, 4, "value: (0.3, 0, 1) cm = (0.003, 0, 0.01) m");
+    has(1, 10, "value: 3 mm = 0.003 m");
+    has(3, 27, "█");
+    has(4, 4, "one of: 0..2");
+    has(4, 7, "one of: [1, 2]");
+    has(4, 37, "value: 1 mm = 0.001 m");
+    has(5, 36, "pic.png`, 4 bytes");
+}
+
 #[test]
 fn files_are_offered_where_a_path_is_written() {
     let folder = Folder::new("lsp-paths").with("sub/l$0.scene", "").with("sub/x.txt", "");

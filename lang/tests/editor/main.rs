@@ -18,6 +18,14 @@ use luxel_lang::editor::{Document, Place, Project};
 /// Files in memory.
 pub(crate) struct Files(BTreeMap<PathBuf, Arc<Document>>);
 
+impl Files {
+    /// Files by name.
+    pub(crate) fn of(files: &[(&str, &str)]) -> Self {
+        let document = |text: &str| Arc::new(Document::new(text, &Budgets::default()));
+        Self(files.iter().map(|(name, text)| (PathBuf::from(name), document(text))).collect())
+    }
+}
+
 impl Project for Files {
     fn document(&self, path: &Path) -> Option<Arc<Document>> {
         self.0.get(path).cloned()
@@ -34,17 +42,12 @@ impl Project for Files {
 
 /// Files by name, `|` in one of them; and where it stands.
 pub(crate) fn marked(files: &[(&str, &str)]) -> (Files, PathBuf, usize) {
-    let (mut out, mut cursor) = (BTreeMap::new(), None);
-    for (name, text) in files {
-        let path = PathBuf::from(name);
-        if let Some(at) = text.find('|') {
-            cursor = Some((path.clone(), at));
-        }
-        let document = Document::new(text.replacen('|', "", 1), &Budgets::default());
-        out.insert(path, Arc::new(document));
-    }
-    let (path, at) = cursor.expect("a snippet has a cursor");
-    (Files(out), path, at)
+    let mut cursors = files.iter().filter_map(|(name, text)| Some((name.into(), text.find('|')?)));
+    let (path, at) = cursors.next_back().expect("a snippet has a cursor");
+    let bare: Vec<(&str, String)> =
+        files.iter().map(|(name, text)| (*name, text.replacen('|', "", 1))).collect();
+    let bare: Vec<(&str, &str)> = bare.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    (Files::of(&bare), path, at)
 }
 
 /// `name:line:text` of a place.

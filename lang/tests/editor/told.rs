@@ -1,9 +1,11 @@
 //! Hover against a registry of made-up classes.
 
-use luxel_lang::editor::{Hover, hover};
+use std::path::Path;
+
+use luxel_lang::editor::{Hover, complete, hover};
 
 use crate::registry::registry;
-use crate::{marked, shown};
+use crate::{Files, marked, shown};
 
 fn told(files: &[(&str, &str)]) -> Option<Hover> {
     let (files, path, at) = marked(files);
@@ -148,4 +150,29 @@ fn spectra_are_told_as_a_screen_shows_them_without_an_evaluation() {
     assert_eq!(value("blackb|ody(t)"), None, "an evaluation tells it");
     assert_eq!(value("blackb|ody(0 K)"), None);
     assert_eq!(value("metal(\"u|nobtainium\")"), None);
+}
+
+#[test]
+fn every_place_of_a_scene_is_answered_also_of_one_that_is_cut_off() {
+    let texts = [
+        include_str!("../scenes/bad_multi.scene"),
+        include_str!("../scenes/glass_fog.scene"),
+        include_str!("../scenes/parametric.scene"),
+    ];
+    let registry = registry();
+    let ask = |files: &Files, at: usize| {
+        complete(files, Path::new("a"), at, &registry);
+        hover(files, Path::new("a"), at, &registry)
+    };
+    let mut n_told = 0;
+    for text in texts {
+        let whole = Files::of(&[("a", text)]);
+        for (at, _) in text.char_indices() {
+            n_told += usize::from(ask(&whole, at).is_some());
+        }
+        for (at, _) in text.char_indices().step_by(41) {
+            ask(&Files::of(&[("a", &text[..at])]), at);
+        }
+    }
+    assert!(n_told > 1000, "only {n_told}");
 }

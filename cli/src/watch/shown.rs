@@ -36,9 +36,7 @@ impl Subject {
         let same = |(path, seen): (&PathBuf, &Seen)| {
             self.texts.contains(path) || known.look(path) == *seen
         };
-        hashes.shown == self.hashes.shown
-            && !self.stage.has_failed()
-            && self.files.iter().all(same)
+        hashes.shown == self.hashes.shown && !self.stage.has_failed() && self.files.iter().all(same)
     }
 
     /// Whether what is measured for another subject is right for this one too: it is only shown in

@@ -349,13 +349,13 @@ mod tests {
     #[test]
     fn what_is_dropped_counts_for_the_hash_and_what_is_required_does_not() {
         let mut scene = camera("a", 0.05);
-        let plain = [scene.hash(), scene.measured_hash(), scene.sampled_hash()];
+        let plain = [scene.hash(), scene.measured_hash(), scene.hashes().sampled];
         scene.require(Feature::Media).unwrap();
-        assert_eq!([scene.hash(), scene.measured_hash(), scene.sampled_hash()], plain);
+        assert_eq!([scene.hash(), scene.measured_hash(), scene.hashes().sampled], plain);
         scene.leave_out(Feature::Motion).unwrap();
         assert_ne!(scene.hash(), plain[0]);
         assert_ne!(scene.measured_hash(), plain[1]);
-        assert_ne!(scene.sampled_hash(), plain[2]);
+        assert_ne!(scene.hashes().sampled, plain[2]);
         let mut other = camera("a", 0.05);
         other.leave_out(Feature::Nested).unwrap();
         assert_ne!(scene.hash(), other.hash());

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use luxel_core::diag::Sources;
+use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::files::MemoryFiles;
 use luxel_core::registry::Registry;
 use luxel_lang::{Budgets, Kept, Loaded, Settings, load};
@@ -15,7 +15,7 @@ const CAMERA: &str = "camera perspective { fov = 40 deg, look = look_at(from = (
                       to = (0, 0, 0) m, up = (0, 1, 0)) }";
 
 /// Statements that depend on others, emit, share, declare, read other files, or are wrong.
-const LINES: [&str; 36] = [
+const LINES: [&str; 42] = [
     "let r = 5 cm",
     "let r = 25 cm",
     "let grey = material diffuse { reflectance = 0.5 }",
@@ -51,6 +51,12 @@ const LINES: [&str; 36] = [
     "shape sphere { radius = r, material = glass }",
     "set one.radius = 7 cm",
     "material dielectric { }",
+    "fn row(n: int) { let step = 2 cm for i in 0..n { shape sphere { radius = step, center = (n, i, 0) } } }",
+    "row(2)",
+    "row(3)",
+    "shape sphere { radius = 5 deg, center = (r, 0) }",
+    "let wrong = r + 2 s",
+    "shape sphere { radus = wrong }",
     "@off shape sphere \"three\" { radius = nope }",
 ];
 
@@ -68,11 +74,16 @@ fn text_of(lines: &[String]) -> String {
     format!("{head}\n{}\n//{}\n", lines.join("\n"), " ".repeat(1 << 18))
 }
 
+fn is_good(loaded: &Loaded) -> bool {
+    !loaded.diagnostics.iter().any(Diagnostic::is_error)
+}
+
 /// What a load gives, in words that can be compared.
 fn told(loaded: &Loaded) -> String {
     let texts: Vec<_> = Sources::texts(&loaded.sources).map(str::len).collect();
-    let Loaded { scene, diagnostics, params, .. } = loaded;
-    format!("{scene:#?}\n{diagnostics:#?}\n{params:#?}\n{texts:?}")
+    let Loaded { scene, diagnostics, params, values, .. } = loaded;
+    let values = values.all();
+    format!("{scene:#?}\n{diagnostics:#?}\n{params:#?}\n{texts:?}\n{values:#?}")
 }
 
 /// A file that is edited, and another one that it reads.
@@ -82,6 +93,8 @@ struct Edited {
     settings: Settings,
     other: String,
     n_short: usize,
+    /// Short ones with a mistake.
+    n_told: usize,
 }
 
 impl Edited {
@@ -93,7 +106,10 @@ impl Edited {
         let path = Path::new("a.scene");
         let (short, whole) = (files(), files());
         let again = self.kept.load(path, &short, &self.registry, &self.settings);
-        let fresh = load(path, &whole, &self.registry, &self.settings);
+        let mut fresh = load(path, &whole, &self.registry, &self.settings);
+        if self.settings.without_scene && again.scene.is_none() && is_good(&fresh) {
+            fresh.scene = None;
+        }
         let shown = text.trim_end_matches(['/', ' ', '\n']);
         assert!(again.scene == fresh.scene, "{step}\n{shown}\n{}\n{}", told(&again), told(&fresh));
         assert_eq!(told(&again), told(&fresh), "{step}\n{shown}");
@@ -106,7 +122,8 @@ impl Edited {
         assert!(asked[1].iter().all(|path| asked[0].contains(path)), "{step}\n{shown}");
         let n_stmts = text.lines().count();
         let is_short = self.kept.n_evaluated().is_some_and(|n| n < n_stmts / 3);
-        self.n_short += usize::from(is_short);
+        self.n_short += usize::from(is_short && is_good(&again));
+        self.n_told += usize::from(is_short && !is_good(&again));
         again
     }
 }
@@ -138,7 +155,7 @@ fn edit(lines: &mut Vec<String>, rng: &mut Rng) {
 
 #[test]
 fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
-    let (mut n_short, mut n_good, mut n_loads) = (0, 0, 0);
+    let (mut n_short, mut n_good, mut n_told, mut n_loads) = (0, 0, 0, 0);
     for seed in 0..40_u64 {
         let mut rng = Rng::new(seed);
         let set = if seed % 4 == 0 { vec![("size".to_owned(), "0.6".to_owned())] } else { vec![] };
@@ -148,10 +165,12 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
             names: if seed % 2 == 0 { 500_000 } else { 9 },
             ..Budgets::default()
         };
-        let settings = Settings { set, budgets, ..Settings::default() };
+        let noting = seed % 5 != 1;
+        let without_scene = seed % 7 == 1;
+        let settings = Settings { set, budgets, noting, without_scene, ..Settings::default() };
         let other = OTHER.to_owned();
-        let mut edited =
-            Edited { registry: registry(), kept: Kept::default(), settings, other, n_short: 0 };
+        let (registry, kept) = (registry(), Kept::default());
+        let mut edited = Edited { registry, kept, settings, other, n_short: 0, n_told: 0 };
         let good = [0, 2, 4, 5, 6, 8, 9, 10, 11, 12, 14, 15, 18, 20];
         let mut lines: Vec<String> = good.iter().map(|i| LINES[*i].to_owned()).collect();
         let mut last = lines.clone();
@@ -159,11 +178,11 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
             let loaded = edited.load(&text_of(&lines), &format!("seed {seed}, step {step}"));
             n_loads += 1;
             if step == 0 {
-                assert!(loaded.scene.is_some(), "{:#?}", loaded.diagnostics);
+                assert!(is_good(&loaded), "{:#?}", loaded.diagnostics);
             }
-            n_good += usize::from(loaded.scene.is_some());
+            n_good += usize::from(is_good(&loaded));
             // Mistakes are taken back more often than not, as people do.
-            if loaded.scene.is_some() {
+            if is_good(&loaded) {
                 last.clone_from(&lines);
             } else if step % 4 > 0 {
                 lines.clone_from(&last);
@@ -174,6 +193,11 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
             }
         }
         n_short += edited.n_short;
+        n_told += edited.n_told;
     }
-    assert!(n_good * 4 > n_loads && n_short * 4 > n_good, "{n_short} of {n_good} of {n_loads}");
+    let told = format!("{n_short} of {n_good} of {n_loads}, with mistakes {n_told}");
+    assert!(
+        n_good * 4 > n_loads && n_short * 4 > n_good && n_told * 10 > n_loads - n_good,
+        "{told}"
+    );
 }

@@ -19,14 +19,15 @@ mod fmt;
 mod shares;
 mod sink;
 mod syntax;
+mod values;
 
 pub use budgets::Budgets;
 pub use catalogue::{CATALOGUE, Example, Page, Setup, page, setup};
 pub use fmt::format;
 #[doc(hidden)]
 pub use syntax::{Agreement, agree};
+pub use values::Values;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -47,6 +48,8 @@ pub struct Settings {
     pub unloaded: Vec<Unloaded>,
     /// Whether values are noted, for editors.
     pub noting: bool,
+    /// Whether the scene itself is not wanted: [`Kept::load`] may give none, though there is no error.
+    pub without_scene: bool,
     /// Ends the load soon after it is set; what it then gives is of no use.
     pub stop: Option<Arc<AtomicBool>>,
 }
@@ -123,9 +126,9 @@ pub struct Loaded {
     pub sources: Sources,
     /// The parameters that the root file declares.
     pub params: Vec<ParamInfo>,
-    /// If it was asked for, the first value of each `let`, `param`, field, member and call that makes a
-    /// colour, and what each loop runs over, by the name's place, as text.
-    pub values: BTreeMap<Span, String>,
+    /// What was noted of values, if that was asked for: the first of each `let`, `param`, field, member
+    /// and call that makes a colour, and what each loop runs over, by the name's place, as text.
+    pub values: Values,
 }
 
 /// Reads and evaluates the scene at `path`: everything it names comes from `files`, every class from

@@ -4,20 +4,23 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
-use luxel_core::diag::{Diagnostic, Grade, Severity, Sources, Span};
+use luxel_core::diag::{Diagnostic, Grade, Severity, SourceId, Sources, Span};
 use luxel_core::files::normalise;
 use luxel_core::stage::{self, Unbuilt};
+use luxel_lang::{Kept, Values};
 
 use super::files::Overlay;
 use super::queue::{Event, Queue};
 use crate::exit::blaming;
 use crate::libraries::Plugins;
 
-/// How long nothing must change before scenes are evaluated.
+/// How long nothing must change before scenes are evaluated of which that takes long.
 const PAUSE: Duration = Duration::from_millis(200);
+/// What is no longer than that is done at every letter.
+const SHORT: Duration = Duration::from_millis(50);
 /// The stack of an evaluation: several times what the budgets allow.
 const STACK: usize = 16 << 20;
 
@@ -44,8 +47,7 @@ pub(super) struct Judged {
     pub(super) told: Vec<Told>,
     /// What is wrong with meshes and textures; `None` if they were not read.
     pub(super) built: Option<Vec<Told>>,
-    /// Values by file and first byte of the name.
-    pub(super) values: BTreeMap<(PathBuf, usize), String>,
+    pub(super) values: Valued,
 }
 
 /// Bytes of a file.
@@ -97,6 +99,39 @@ impl Told {
     }
 }
 
+/// What names of a scene have for values.
+#[derive(Default)]
+pub(super) struct Valued {
+    values: Values,
+    /// The files that were read.
+    texts: Vec<PathBuf>,
+    /// What has been edited since: the bytes of a file, and how many came in their place.
+    edits: Vec<(PathBuf, Range<usize>, usize)>,
+}
+
+impl Valued {
+    /// The value of the name whose first byte stands there now.
+    pub(super) fn at(&self, path: &Path, mut byte: usize) -> Option<&str> {
+        for (_, range, length) in self.edits.iter().rev().filter(|edit| edit.0 == path) {
+            let end = range.start + length;
+            if byte > end {
+                byte = byte - end + range.end;
+            } else if byte >= range.start {
+                return None;
+            }
+        }
+        let texts = (0..).map(SourceId).zip(&self.texts);
+        texts.filter(|(_, text)| *text == path).find_map(|(source, _)| self.values.at(source, byte))
+    }
+
+    /// A file has been edited.
+    pub(super) fn edit(&mut self, path: &Path, range: &Range<usize>, length: usize) {
+        if self.texts.iter().any(|text| text == path) {
+            self.edits.push((path.to_owned(), range.clone(), length));
+        }
+    }
+}
+
 /// The thread that evaluates.
 pub(super) struct Judge(Arc<Desk>);
 
@@ -127,10 +162,20 @@ impl Judge {
         let thread = std::thread::Builder::new().name("judge".to_owned()).stack_size(STACK);
         // Without it, what is written and named is told all the same.
         let _ = thread.spawn(move || {
+            let (mut all, mut pause) = (BTreeMap::<PathBuf, Kept>::new(), PAUSE);
             loop {
-                let (job, watch) = next(&own);
-                let one = |root| judged(root, &job, &plugins, &allow, &watch);
-                let roots = job.roots.iter().map(one).collect();
+                let (job, watch) = next(&own, pause);
+                all.retain(|root, _| job.texts.contains_key(root));
+                let mut is_short = true;
+                let mut one = |(root, whole): (&PathBuf, &bool)| {
+                    let kept = all.entry(root.clone()).or_default();
+                    let course = (&job, &*watch, *whole);
+                    let (judged, took) = judged(root, kept, course, (&plugins, &allow));
+                    is_short &= took < SHORT || kept.n_evaluated().is_some();
+                    judged
+                };
+                let roots = job.roots.iter().map(&mut one).collect();
+                pause = if is_short { Duration::ZERO } else { PAUSE };
                 if !watch.is_cancelled() {
                     queue.put(Event::Judged(Verdict { serial: job.serial, roots }));
                 }
@@ -149,14 +194,14 @@ impl Judge {
 }
 
 /// Waits for a job, and until it has not changed for a while.
-fn next(desk: &Desk) -> (Job, Arc<Watch>) {
+fn next(desk: &Desk, pause: Duration) -> (Job, Arc<Watch>) {
     let mut state = desk.lock();
     loop {
         let Some(serial) = state.job.as_ref().map(|job| job.serial) else {
             state = desk.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
             continue;
         };
-        let waited = desk.changed.wait_timeout(state, PAUSE);
+        let waited = desk.changed.wait_timeout(state, pause);
         state = waited.unwrap_or_else(PoisonError::into_inner).0;
         if let Some(job) = state.job.take_if(|job| job.serial == serial) {
             state.watch = Arc::default();
@@ -165,22 +210,25 @@ fn next(desk: &Desk) -> (Job, Arc<Watch>) {
     }
 }
 
+/// What came of a scene, and how long reading and evaluating it took.
 fn judged(
-    (root, whole): (&PathBuf, &bool),
-    job: &Job,
-    plugins: &Plugins,
-    allow: &[PathBuf],
-    watch: &Watch,
-) -> Judged {
+    root: &Path,
+    kept: &mut Kept,
+    (job, watch, whole): (&Job, &Watch, bool),
+    (plugins, allow): (&Plugins, &[PathBuf]),
+) -> (Judged, Duration) {
+    let (start, mut took) = (Instant::now(), Duration::ZERO);
     let run = || {
         let files = Overlay::new(root, allow, &job.texts);
         let settings = luxel_lang::Settings {
             unloaded: plugins.unloaded(),
             noting: true,
+            without_scene: !whole,
             stop: Some(watch.flag()),
             ..Default::default()
         };
-        let loaded = luxel_lang::load(root, &files, &plugins.registry, &settings);
+        let loaded = kept.load(root, &files, &plugins.registry, &settings);
+        took = start.elapsed();
         let build =
             |scene| match stage::build_watched(scene, &plugins.registry, &files, None, watch) {
                 Ok(built) => built.warnings,
@@ -190,29 +238,30 @@ fn judged(
         let look = |rest| stage::faults(rest, &plugins.registry, &files, None, watch);
         let built = || loaded.scene.as_ref().map(build).or_else(|| loaded.rest.as_ref().map(look));
         let built = whole.then(|| built().unwrap_or_default());
-        of_sources(root, (loaded.diagnostics, built), &loaded.sources, &loaded.values)
+        of_sources(root, (loaded.diagnostics, built), &loaded.sources, loaded.values)
     };
-    blaming(&root.display().to_string(), run).unwrap_or_else(|failure| Judged {
-        root: root.to_owned(),
-        told: vec![Told::new(Diagnostic::unplaced("E0421", failure.message), root, &|_| {
-            root.into()
-        })],
-        ..Judged::default()
-    })
+    let judged = blaming(&root.display().to_string(), run).unwrap_or_else(|failure| {
+        // A panic may have left half of it.
+        *kept = Kept::default();
+        let found = Diagnostic::unplaced("E0421", failure.message);
+        let told = vec![Told::new(found, root, &|_| root.into())];
+        Judged { root: root.to_owned(), told, ..Judged::default() }
+    });
+    (judged, took)
 }
 
 fn of_sources(
     root: &Path,
     (found, built): (Vec<Diagnostic>, Option<Vec<Diagnostic>>),
     sources: &Sources,
-    values: &BTreeMap<Span, String>,
+    values: Values,
 ) -> Judged {
     let path_of = |span: Span| normalise(Path::new(sources.name(span.source)));
     let all = |found: Vec<Diagnostic>| -> Vec<Told> {
         found.into_iter().map(|found| Told::new(found, root, &path_of)).collect()
     };
-    let value =
-        |(span, value): (&Span, &String)| ((path_of(*span), span.range().start), value.clone());
-    let values = values.iter().map(value).collect();
+    let n_texts = u32::try_from(sources.n_texts()).unwrap_or(u32::MAX);
+    let texts = (0..n_texts).map(|i| normalise(Path::new(sources.name(SourceId(i))))).collect();
+    let values = Valued { values, texts, edits: vec![] };
     Judged { root: root.to_owned(), told: all(found), built: built.map(all), values }
 }

@@ -1,6 +1,6 @@
 //! What may be written, and what is told of what is written.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use luxel_lang::editor::{Item, ItemKind, OnDisk, complete, hover};
 use serde_json::{Value, json};
@@ -63,7 +63,7 @@ impl Server {
         let Some(found) = hover(&self.files, &at.path, at.byte, &self.plugins.registry) else {
             return Value::Null;
         };
-        let evaluated = || found.of.and_then(|place| self.value(place.path, place.range.0));
+        let evaluated = || found.of.and_then(|place| self.value(&place.path, place.range.0));
         let value = found.value.or_else(evaluated);
         let code = format!("```scene\n{}\n```", found.code);
         let value = value.map(|value| format!("{}: {value}", found.value_is));
@@ -77,9 +77,8 @@ impl Server {
     }
 
     /// The value that a name had in the last evaluation.
-    fn value(&self, path: PathBuf, at: usize) -> Option<String> {
-        let place = (path, at);
-        self.judged.values().find_map(|judged| judged.values.get(&place).cloned())
+    fn value(&self, path: &Path, at: usize) -> Option<&str> {
+        self.judged.values().find_map(|judged| judged.values.at(path, at))
     }
 }
 

@@ -44,12 +44,7 @@ impl Judged {
         };
         self.told.retain_mut(kept);
         self.built.iter_mut().for_each(|built| built.retain_mut(kept));
-        let values = std::mem::take(&mut self.values);
-        let kept = values.into_iter().filter_map(|((file, at), value)| {
-            let mut place = (file, at..at);
-            moved(&mut place).then_some(((place.0, place.1.start), value))
-        });
-        self.values = kept.collect();
+        self.values.edit(path, range, length);
     }
 }
 

@@ -5,6 +5,7 @@ use luxel_core::scene::{Node, NodeId, Placed, Pose, Scene, Target, Value};
 use luxel_sdk::kind::Kind;
 
 use super::Evaluator;
+use super::note::Noted;
 use crate::Loaded;
 
 /// Nodes of a faulty scene that are kept to be looked at.
@@ -30,7 +31,7 @@ impl Evaluator<'_> {
             let message = "the scene could not be evaluated";
             diagnostics.push(Diagnostic::unplaced("E0023", message));
         }
-        let values = self.values.unwrap_or_default();
+        let values = self.noted.map(Noted::values).unwrap_or_default();
         Loaded { scene, rest, diagnostics, sources: self.sources, params: self.params, values }
     }
 

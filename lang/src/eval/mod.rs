@@ -128,7 +128,7 @@ struct Evaluator<'a> {
     n_unmet: usize,
     params: Vec<ParamInfo>,
     /// Values for editors, if they are wanted.
-    values: Option<BTreeMap<Span, String>>,
+    noted: Option<note::Noted>,
     /// What each statement of a large root file came to, if that is wanted.
     record: Option<again::Record>,
 }
@@ -182,7 +182,7 @@ impl<'a> Evaluator<'a> {
             orphans: vec![],
             n_unmet: 0,
             params: vec![],
-            values: settings.noting.then(BTreeMap::new),
+            noted: settings.noting.then(note::Noted::default),
             record: None,
         }
     }

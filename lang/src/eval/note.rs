@@ -1,6 +1,11 @@
 //! Values as an editor shows them.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::sync::Arc;
+
 use glam::Vec3;
+use luxel_core::diag::{SourceId, Span};
 use luxel_core::scene::Color;
 use luxel_sdk::color::{
     Curve, Outside, blackbody, emission_rgb, glass, illuminant, metal, reflectance_rgb, srgb_encode,
@@ -10,14 +15,91 @@ use super::Evaluator;
 use super::readable::{number, readable};
 use super::value::Value;
 use crate::syntax::Name;
+use crate::values::{Elsewhere, Layer, Values};
 
 /// Values that are kept of one load, at most.
-const KEPT: usize = 100_000;
+pub(super) const KEPT: usize = 100_000;
+
+/// The statement that is being evaluated, where its names are noted apart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Noting {
+    pub(super) id: SourceId,
+    pub(super) span: Span,
+}
+
+/// The values that were noted so far.
+#[derive(Debug)]
+pub(super) struct Noted {
+    of: Option<Noting>,
+    /// Names in that statement.
+    own: BTreeMap<u32, Box<str>>,
+    /// Names in the statements before.
+    pub(super) layer: Layer,
+    pub(super) others: Elsewhere,
+    /// How many more are noted.
+    room: usize,
+}
+
+impl Default for Noted {
+    fn default() -> Self {
+        let (own, layer, others) = Default::default();
+        Self { of: None, own, layer, others, room: KEPT }
+    }
+}
+
+impl Noted {
+    /// All of them, by places in files.
+    pub(super) fn values(self) -> Values {
+        let mut others = self.others;
+        for (id, notes) in self.layer {
+            let notes = notes.iter().map(|(at, value)| ((SourceId(0), *at), (id, value.clone())));
+            others.extend(notes);
+        }
+        Values { others: Arc::new(others), ..Values::default() }
+    }
+
+    fn note(&mut self, span: Span, value: impl FnOnce() -> String) {
+        let is_own = |of: &Noting| {
+            of.span.source == span.source && of.span.range().contains(&span.range().start)
+        };
+        if self.room == 0 {
+            return;
+        }
+        if self.of.as_ref().is_some_and(is_own) {
+            if let Entry::Vacant(place) = self.own.entry(span.start) {
+                place.insert(value().into());
+                self.room -= 1;
+            }
+        } else if let Entry::Vacant(place) = self.others.entry((span.source, span.start)) {
+            place.insert((self.of.map_or(span.source, |of| of.id), value().into()));
+            self.room -= 1;
+        }
+    }
+}
 
 impl Evaluator<'_> {
+    /// At most so many more values are noted.
+    pub(super) fn note_at_most(&mut self, room: usize) {
+        self.noted.iter_mut().for_each(|noted| noted.room = room);
+    }
+
+    /// A statement is about to be evaluated whose names are noted apart.
+    pub(super) fn begin_noting(&mut self, of: Noting) {
+        self.noted.iter_mut().for_each(|noted| noted.of = Some(of));
+    }
+
+    /// It has been evaluated; how many more values are noted.
+    pub(super) fn end_noting(&mut self) -> usize {
+        let Some(noted) = &mut self.noted else { return 0 };
+        if let Some(Noting { id, .. }) = noted.of.take() {
+            noted.layer.insert(id, std::mem::take(&mut noted.own).into_iter().collect());
+        }
+        noted.room
+    }
+
     /// Keeps the first value of a name, if values are wanted.
     pub(super) fn note(&mut self, name: &Name, value: &Value) {
-        let Some(values) = &mut self.values else { return };
+        let Some(noted) = &mut self.noted else { return };
         // Of an object or a function, the text says more.
         let is_plain = !matches!(
             value,
@@ -27,13 +109,12 @@ impl Evaluator<'_> {
                 | Value::Function(_)
                 | Value::Builtin(_)
         );
-        if !is_plain || values.len() >= KEPT {
-            return;
+        if is_plain {
+            noted.note(name.span, || match value {
+                Value::Color(color, dimension) if dimension.is_none() => shown(color),
+                other => readable(other),
+            });
         }
-        values.entry(name.span).or_insert_with(|| match value {
-            Value::Color(color, dimension) if dimension.is_none() => shown(color),
-            other => readable(other),
-        });
     }
 }
 

@@ -23,7 +23,7 @@ pub(crate) struct Numbered {
     /// How many of them are of the first sort and of the first two.
     ends: [u32; 2],
     /// Nothing is wrong with it whatever stands around it.
-    is_sound: bool,
+    pub(super) is_sound: bool,
     /// A function stands in it.
     pub(super) has_functions: bool,
     is_known: bool,

@@ -36,7 +36,7 @@ impl Evaluator<'_> {
         let mut out = Tree::default();
         for piece in &pieces {
             let part = &text[piece.range.clone()];
-            if !part.contains("units") && !part.contains("param") && !syntax::says_units(part) {
+            if !declares(part) {
                 continue;
             }
             let stmts = syntax::read_at(text, piece, source, &self.budgets);
@@ -98,6 +98,11 @@ impl Evaluator<'_> {
         told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;
     }
+}
+
+/// Whether a statement may be about the whole file.
+pub(super) fn declares(part: &str) -> bool {
+    part.contains("units") || part.contains("param") || syntax::says_units(part)
 }
 
 /// What a large file declares for all of it, and where its statements are.

@@ -298,3 +298,53 @@ fn a_file_is_laid_out_by_the_lines_that_change() {
     client.edit(&uri, 3, span(2, 8, 9), "");
     assert_eq!(client.ask("textDocument/formatting", document).unwrap_err().0, -32803);
 }
+
+/// A scene of which statements are kept, since it is long enough.
+fn large() -> String {
+    let more =
+        "shape sphere { center = (1.5, 0, 0) m, radius = r, material = grey }\n".repeat(4000);
+    format!("{}let r = 5 cm\nfn pair(x: float) {{ let d = 2 * x }}\n{more}", scene())
+}
+
+/// The value that is told of a place.
+fn value(client: &mut Client, uri: &str, place: Value) -> String {
+    let hover = client.ask("textDocument/hover", params(uri, place)).unwrap();
+    let text = hover["contents"]["value"].as_str().unwrap_or_default();
+    let value = text.split("\n\n").find_map(|part| part.strip_prefix("value: "));
+    value.unwrap_or_default().to_owned()
+}
+
+#[test]
+fn values_are_those_of_the_text_after_each_edit_of_a_large_file() {
+    let folder = Folder::new("lsp-values");
+    let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
+    client.open(&uri, &large());
+    client.told(&uri);
+    let (r, first, far) = (LINE + 1, LINE + 3, LINE + 3003);
+    assert_eq!(value(&mut client, &uri, at(far, 16)), "(1.5, 0, 0) m");
+    // Another one in its statement; those behind it move.
+    client.edit(&uri, 2, span(first, 25, 28), "22.25");
+    client.told(&uri);
+    assert_eq!(value(&mut client, &uri, at(first, 16)), "(22.25, 0, 0) m");
+    assert_eq!(value(&mut client, &uri, at(far, 16)), "(1.5, 0, 0) m");
+    // A mistake: what else is in the statement is known, and so is all else.
+    client.edit(&uri, 3, span(first, 25, 30), "7 deg");
+    let told = client.until(&uri, &["E0203"]);
+    assert_eq!(told["diagnostics"][0]["range"]["start"]["line"], first);
+    assert_eq!(value(&mut client, &uri, at(first, 44)), "0.05 m");
+    assert_eq!(value(&mut client, &uri, at(far, 16)), "(1.5, 0, 0) m");
+    // A line before it, and its mend; the name that all use; a function that is used first.
+    client.edit(&uri, 4, span(first, 25, 30), "3");
+    assert_eq!(codes(&client.told(&uri)), Vec::<&str>::new());
+    client.edit(&uri, 5, span(r, 8, 9), "8");
+    client.told(&uri);
+    assert_eq!(value(&mut client, &uri, at(r, 4)), "0.08 m");
+    assert_eq!(value(&mut client, &uri, at(far, 42)), "0.08 m");
+    client.edit(&uri, 6, span(first, 0, 0), "pair(3)\npair(4)\n");
+    client.told(&uri);
+    assert_eq!(value(&mut client, &uri, at(r + 1, 25)), "6");
+    client.edit(&uri, 7, json!({ "start": at(first, 0), "end": at(first + 1, 0) }), "");
+    client.told(&uri);
+    assert_eq!(value(&mut client, &uri, at(r + 1, 25)), "8");
+    assert_eq!(value(&mut client, &uri, at(far + 1, 16)), "(1.5, 0, 0) m");
+}

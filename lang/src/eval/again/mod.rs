@@ -5,7 +5,9 @@
 //! own nodes are known. All others are as they were: places in the root file count from the first byte
 //! of their statement, so that they are right wherever it moves.
 //!
-//! Whatever this does not know how to go on from is loaded anew, as a whole: mistakes and warnings, a
+//! With a mistake in what an edit concerns, that is told, and what is kept stays what it was before.
+//!
+//! Whatever this does not know how to go on from is loaded anew, as a whole: other mistakes, warnings, a
 //! `set`, other files that have changed, a changed `units` or `param`, a changed statement that other
 //! files come into. `docs/decisions/0042` says why.
 
@@ -16,6 +18,8 @@ mod plan;
 mod put;
 mod record;
 mod slice;
+mod told;
+mod values;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -29,6 +33,7 @@ use luxel_core::scene::{Pose, Scene};
 use self::asked::{Questions, Remembering};
 use self::made::{Cost, Made};
 pub(super) use self::record::Record;
+use self::values::KeptValues;
 use super::Evaluator;
 use super::names::{Known, Numbered};
 use super::numbered::Tables;
@@ -92,6 +97,7 @@ pub(crate) struct State {
     other_bytes: usize,
     /// How many statements were evaluated the last time.
     n_evaluated: usize,
+    values: KeptValues,
 }
 
 /// Evaluates the scene at `path`, going on from `kept` if that is possible.
@@ -121,7 +127,7 @@ fn load_in_turns(
     let plain = files;
     let files = Remembering::new(files);
     let mut evaluator = Evaluator::new(&files, registry, settings, turn);
-    evaluator.record = (!settings.noting).then(Record::default);
+    evaluator.record = Some(Record::default());
     evaluator.root(path, &settings.set);
     // How much is told where a budget is spent depends on how much was read by then.
     if evaluator.spent.is_some() {
@@ -146,14 +152,17 @@ impl State {
     }
 
     fn is_set(&self, now: &Settings) -> bool {
-        let Settings { set, budgets, unloaded, noting, stop: _ } = now;
+        let Settings { set, budgets, unloaded, noting, without_scene: _, stop: _ } = now;
         let before = &self.settings;
-        *set == before.set && *budgets == before.budgets && *unloaded == before.unloaded && !noting
+        *set == before.set
+            && *budgets == before.budgets
+            && *unloaded == before.unloaded
+            && *noting == before.noting
     }
 
     /// The scene of all statements, with what was told of it as a whole in `evaluator`. `None` if that is
     /// something, or a setting is given twice.
-    fn gathered(&mut self, evaluator: &mut Evaluator<'_>) -> Option<Loaded> {
+    fn gathered(&mut self, evaluator: &mut Evaluator<'_>, settings: &Settings) -> Option<Loaded> {
         let mut starts = vec![0; self.n_ids];
         let mut rare = vec![];
         for stmt in &self.stmts {
@@ -176,19 +185,24 @@ impl State {
         scene.expectations = said.cloned().collect();
         evaluator.has_asset = rare.iter().any(|rare| rare.has_asset);
         let place = |span: Span| in_file(span, &starts);
-        evaluator.scene = self.scene.gathered(&place);
+        let is_wanted = !settings.without_scene || !self.scene.expectations.is_empty();
+        if is_wanted {
+            evaluator.scene = self.scene.gathered(&place);
+        } else {
+            evaluator.scene.camera = self.scene.camera;
+        }
         evaluator.lacks();
         if !evaluator.sink.is_empty() {
             return None;
         }
         let param = |param: &ParamInfo| ParamInfo { span: place(param.span), ..param.clone() };
         Some(Loaded {
-            scene: Some(std::mem::take(&mut evaluator.scene)),
+            scene: is_wanted.then(|| std::mem::take(&mut evaluator.scene)),
             rest: None,
             diagnostics: vec![],
             sources: self.sources.clone(),
             params: self.params.iter().map(param).collect(),
-            values: std::collections::BTreeMap::new(),
+            values: self.values(),
         })
     }
 }

@@ -3,12 +3,15 @@
 use std::collections::{BTreeSet, VecDeque};
 use std::ops::Range;
 
+use luxel_core::diag::Diagnostic;
+
 use super::edit::{Edit, Recut, recut};
 use super::{State, Statement, source_of};
 use crate::eval::builtins;
 use crate::eval::mention::mention_stmts;
 use crate::eval::names::Facts;
 use crate::eval::numbered::{Firsts, Tables};
+use crate::eval::turns::declares;
 use crate::syntax::{Stmt, read_head, read_piece};
 
 /// Of how many statements one at most is evaluated again: of more, all are as soon.
@@ -27,6 +30,8 @@ pub(super) struct Plan {
     pub(super) tables: Option<Tables>,
     /// How many names the file defines.
     pub(super) n_names: usize,
+    /// What is wrong with what is written and with names.
+    pub(super) told: Vec<Diagnostic>,
 }
 
 /// A statement to evaluate.
@@ -80,11 +85,16 @@ impl State {
             return None;
         }
         let Recut { gone, pieces } = recut((text, self.from), &edit, &self.stmts, &budgets)?;
-        let (mut fresh, mut trees) = (vec![], vec![]);
+        let (mut fresh, mut trees, mut told) = (vec![], vec![], vec![]);
         for (k, range) in pieces.into_iter().enumerate() {
             let id = u32::try_from(self.n_ids + k).ok()?;
             let part = &text[range.clone()];
-            let stmt = read(part, id, &budgets)?;
+            let (stmt, found) = read(part, id, &budgets)?;
+            // What cannot be read may have been meant to be about the whole file.
+            if !found.is_empty() && declares(part) {
+                return None;
+            }
+            told.extend(found);
             let facts = Facts::of(part, std::slice::from_ref(&stmt));
             let names = self.names.numbered(&facts);
             fresh.push(Statement::new(id, range, names, &stmt, &facts));
@@ -98,15 +108,17 @@ impl State {
         let mut tables = None;
         if !self.is_named_alike(&gone, &fresh) {
             let (found, odd) = Tables::of(&self.names, after.iter().map(|stmt| &stmt.names));
-            if !odd.is_empty() || n_names > budgets.names {
+            if n_names > budgets.names {
                 return None;
             }
+            let firsts = Firsts::new(&self.names, &found);
+            told.extend(self.odd_names((text, &edit), &after, &firsts, &odd)?);
             tables = Some(found);
         }
         let new = self.concerned(&gone, &fresh)?;
         let firsts = Firsts::new(&self.names, tables.as_ref().unwrap_or(&self.tables));
         let tasks = self.tasks((text, &edit), &after, &firsts, (&new, trees))?;
-        Some(Plan { edit, gone, fresh, tasks, tables, n_names })
+        Some(Plan { edit, gone, fresh, tasks, tables, n_names, told })
     }
 
     /// Whether statements have the same to do with names as those that they stand for.
@@ -162,14 +174,16 @@ impl State {
             // The fresh ones come first, and their trees are there.
             let stmt = match trees.next() {
                 Some(stmt) => stmt,
-                None => read(&text[range], statement.id, &self.settings.budgets)?,
+                None => read(&text[range], statement.id, &self.settings.budgets)?.0,
             };
             let uses = statement.names.uses().filter_map(|(name, _)| firsts.definer_of(name));
             let mut definers: Vec<usize> = uses.collect();
-            if self.n_shadows > 0 {
+            // What is wrong may use more names than it seems.
+            let is_odd = !statement.names.is_sound;
+            if is_odd || self.n_shadows > 0 {
                 let mut mentioned = BTreeSet::new();
                 mention_stmts(std::slice::from_ref(&stmt), &mut mentioned);
-                let mentioned = mentioned.iter().filter(|name| builtins::begins(name));
+                let mentioned = mentioned.iter().filter(|name| is_odd || builtins::begins(name));
                 definers.extend(mentioned.filter_map(|name| firsts.definer(name)));
             }
             open.extend(
@@ -182,8 +196,12 @@ impl State {
     }
 }
 
-/// The one statement of a piece; `None` if something is told of it.
-fn read(text: &str, id: u32, budgets: &crate::Budgets) -> Option<Stmt> {
+/// The one statement of a piece, and what is told of it.
+pub(super) fn read(
+    text: &str,
+    id: u32,
+    budgets: &crate::Budgets,
+) -> Option<(Stmt, Vec<Diagnostic>)> {
     let (mut stmts, told) = read_piece(text, false, source_of(id), budgets);
-    stmts.pop().filter(|_| stmts.is_empty() && told.is_empty())
+    stmts.pop().filter(|_| stmts.is_empty()).map(|stmt| (stmt, told))
 }

@@ -34,7 +34,7 @@ impl State {
                 slot.id = NodeId(nodes[slot.id.0 as usize]);
             }
         }
-        let Plan { edit, gone, fresh, tasks, tables, n_names } = plan;
+        let Plan { edit, gone, fresh, tasks, tables, n_names, told: _ } = plan;
         self.n_names = n_names;
         if let Some(tables) = tables {
             self.tables = tables;

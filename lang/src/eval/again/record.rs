@@ -8,12 +8,14 @@ use luxel_core::diag::{SourceId, Span};
 
 use super::asked::Questions;
 use super::made::{Cost, Made};
+use super::values::KeptValues;
 use super::{State, Statement, source_of};
 use crate::eval::Evaluator;
 use crate::eval::builtins;
 use crate::eval::env::Env;
 use crate::eval::exec::Body;
 use crate::eval::names::{Facts, Known};
+use crate::eval::note::Noting;
 use crate::eval::numbered::Tables;
 use crate::syntax::{Cut, Stmt, StmtNode};
 use crate::{Loaded, Settings};
@@ -36,7 +38,7 @@ impl Record {
     fn note(&mut self, stmt: &Stmt, facts: &Facts, made: Made) {
         let names = self.names.numbered(facts);
         let range = self.cuts.get(self.stmts.len()).map_or(0..0, |cut| cut.range.clone());
-        let id = u32::try_from(self.stmts.len()).unwrap_or(u32::MAX);
+        let id = narrow(self.stmts.len());
         self.stmts.push(Statement::new(id, range, names, stmt, facts).with(made));
     }
 }
@@ -52,7 +54,7 @@ impl Statement {
     ) -> Self {
         let declares = matches!(stmt.node, StmtNode::Units(_) | StmtNode::Param(_));
         let shadows = facts.defines.iter().any(|name| builtins::begins(&name.text));
-        let is_wide = declares || shadows || matches!(stmt.node, StmtNode::Broken { .. });
+        let is_wide = declares || shadows;
         Self { id, range, names, made: Made::default(), declares, shadows, is_wide }
     }
 
@@ -82,12 +84,15 @@ impl Evaluator<'_> {
             self.stmts(stmts, env, body);
             return vec![];
         }
-        let one = |stmt| {
+        let first = self.record.as_ref().map_or(0, |record| record.stmts.len());
+        let one = |(i, stmt): (usize, &Stmt)| {
             let mark = self.mark();
+            self.begin_noting(Noting { id: source_of(narrow(i)), span: stmt.span });
             self.stmts(std::slice::from_ref(stmt), env, body);
+            self.end_noting();
             self.made_since(&mark)
         };
-        stmts.iter().map(one).collect()
+        (first..).zip(stmts).map(one).collect()
     }
 
     /// Notes the next of them.
@@ -131,6 +136,7 @@ impl Evaluator<'_> {
         let said = rare.flat_map(|rare| &mut rare.expectations);
         said.for_each(|said| said.span = place(said.span));
         let (tables, _) = Tables::of(&record.names, stmts.iter().map(|stmt| &stmt.names));
+        let values = self.noted.take().map(|noted| KeptValues::of(noted, &ranges));
         let mut params = std::mem::take(&mut self.params);
         for param in &mut params {
             param.span = place(param.span);
@@ -154,25 +160,29 @@ impl Evaluator<'_> {
             other_bytes: self.bytes_read - text.len(),
             text,
             n_evaluated: 0,
+            values: values.unwrap_or_default(),
         };
         state.n_evaluated = state.stmts.len();
-        match state.gathered(&mut self) {
+        match state.gathered(&mut self, settings) {
             Some(loaded) => (loaded, Some(state)),
             // What it lacks has been told.
-            None => (self.finish(), None),
+            None => (Loaded { values: state.values(), ..self.finish() }, None),
         }
     }
 }
 
+fn narrow(n: usize) -> u32 {
+    u32::try_from(n).unwrap_or(u32::MAX)
+}
+
 /// A place in the root file as one in its statement.
-fn in_statement(span: Span, ranges: &[Range<usize>]) -> Span {
+pub(super) fn in_statement(span: Span, ranges: &[Range<usize>]) -> Span {
     let at = span.range();
     let next = ranges.partition_point(|range| range.start <= at.start);
     match next.checked_sub(1).filter(|_| span.source == SourceId(0)) {
         Some(i) => {
             let start = ranges[i].start;
-            let id = u32::try_from(i).unwrap_or(u32::MAX);
-            Span::new(source_of(id), at.start - start, at.end - start)
+            Span::new(source_of(narrow(i)), at.start - start, at.end - start)
         }
         None => span,
     }

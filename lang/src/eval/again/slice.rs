@@ -11,6 +11,7 @@ use super::plan::{After, Plan, Task};
 use super::{State, Statement};
 use crate::eval::env::{Env, File};
 use crate::eval::exec::{Body, Place};
+use crate::eval::note::Noting;
 use crate::eval::resolve::defines;
 use crate::eval::value::Value;
 use crate::eval::{Evaluator, OpenGroup};
@@ -46,15 +47,23 @@ impl State {
         let plan = self.plan(&text)?;
         let mut evaluator = Evaluator::new(files, registry, settings, usize::MAX);
         let made = self.evaluate(&plan, &text, &mut evaluator)?;
+        let values = self.values_after(&plan, evaluator.noted.take())?;
         let after = After::of(self, &plan.gone, &plan.fresh);
-        let renamed = self.renamed(&plan.tasks, &made, &after, &plan)?;
-        let spent = self.spent(&plan, &made, &after)?;
+        let (spent, n_moved) = self.spent(&plan, &made, &after)?;
         if evaluator.sink.is_stopped() {
             return None;
         }
+        if !plan.told.is_empty() || !evaluator.sink.is_empty() {
+            return self.told(plan, text, evaluator, &values);
+        }
+        if n_moved > MOVED {
+            return None;
+        }
+        let renamed = self.renamed(&plan.tasks, &made, &after, &plan)?;
         (self.n_evaluated, self.spent) = (plan.tasks.len(), spent);
         self.put(plan, made, text, &mut evaluator, renamed);
-        self.gathered(&mut evaluator)
+        self.values = values;
+        self.gathered(&mut evaluator, settings)
     }
 
     /// Whether more is gone than is left.
@@ -62,8 +71,7 @@ impl State {
         self.scene.nodes.len() + self.scene.groups.len() > 2 * self.n_kept + self.stmts.len()
     }
 
-    /// What each statement of a plan comes to; `None` if something is told of one, or what it does cannot
-    /// be put in the place of what it did.
+    /// What each statement of a plan comes to; `None` if that cannot be put in the place of what it did.
     fn evaluate(
         &self,
         plan: &Plan,
@@ -72,19 +80,29 @@ impl State {
     ) -> Option<Vec<Made>> {
         let env = self.surroundings(text, evaluator);
         let mut body = Body::new(Place::File);
-        let mut all = vec![];
-        for Task { stmt, is_new, .. } in &plan.tasks {
+        let (mut all, mut is_poisoned) = (vec![], false);
+        let mut room = self.room(plan);
+        for task in &plan.tasks {
+            let Task { stmt, is_new, .. } = task;
             let mark = evaluator.mark();
+            let most = plan.most_noted(task, room);
+            evaluator.note_at_most(most);
+            if *is_new {
+                evaluator.begin_noting(Noting { id: stmt.span.source, span: stmt.span });
+            }
             evaluator.stmts(std::slice::from_ref(stmt), &env, &mut body);
+            room = room.saturating_sub(most - evaluator.end_noting().min(most));
             let made = evaluator.made_since(&mark);
             let is_poison = |name: &Name| matches!(env.get(&name.text), Some(Value::Poison));
-            let is_poisoned = defines(stmt).iter().any(is_poison);
-            if is_poisoned || *is_new && made.has_read() {
+            is_poisoned |= defines(stmt).iter().any(is_poison);
+            if *is_new && made.has_read() {
                 return None;
             }
             all.push(made);
         }
-        let is_good = evaluator.sink.is_empty() && !evaluator.damaged && !evaluator.stopped;
+        // Nothing comes of a mistake, but without one something does.
+        let is_told = !evaluator.sink.is_empty() || !plan.told.is_empty();
+        let is_good = !evaluator.stopped && (is_told || !evaluator.damaged && !is_poisoned);
         let is_alike = evaluator.sources.n_texts() == self.sources.n_texts();
         (is_good && is_alike && evaluator.labels.sets.is_empty()).then_some(all)
     }
@@ -139,9 +157,9 @@ impl State {
         Some(out)
     }
 
-    /// What is spent now; `None` if that is more than the budgets allow, or many statements have come to
-    /// another number of things.
-    fn spent(&self, plan: &Plan, made: &[Made], after: &After<'_>) -> Option<Cost> {
+    /// What is spent now, and how many statements have come to another number of things; `None` if it is
+    /// more than the budgets allow.
+    fn spent(&self, plan: &Plan, made: &[Made], after: &After<'_>) -> Option<(Cost, usize)> {
         let gone = self.stmts[plan.gone.clone()].iter();
         let mut spent = gone.fold(self.spent, |sum, stmt| sum.minus(stmt.made.cost));
         let (mut n_moved, end) = (0, plan.gone.start + plan.fresh.len());
@@ -150,6 +168,6 @@ impl State {
             spent = spent.minus(before.cost).plus(made.cost);
             n_moved += usize::from(task.i >= end && before.n_items != made.n_items);
         }
-        (n_moved <= MOVED && spent.is_within(&self.settings.budgets)).then_some(spent)
+        spent.is_within(&self.settings.budgets).then_some((spent, n_moved))
     }
 }

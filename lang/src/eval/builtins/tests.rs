@@ -19,7 +19,7 @@ fn evaluated(expression: &str) -> (Option<String>, Vec<Diagnostic>) {
     let mut loaded = crate::load(Path::new("example.scene"), &files, &Registry::new(), &settings);
     // A scene without a camera is told so, when nothing else is wrong with it.
     loaded.diagnostics.retain(|found| found.code != "E0409");
-    (loaded.values.into_values().next(), loaded.diagnostics)
+    (loaded.values.all().into_values().next().map(str::to_owned), loaded.diagnostics)
 }
 
 #[test]

@@ -1,0 +1,154 @@
+//! What is wrong after an edit, if that is in the statements that it concerns.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use luxel_core::diag::{Diagnostic, SourceId, Span};
+use luxel_sdk::kind::Kind;
+
+use super::edit::Edit;
+use super::plan::{After, Plan, Task, read};
+use super::values::KeptValues;
+use super::{State, in_file, source_of};
+use crate::eval::Evaluator;
+use crate::eval::names::{Around, Facts, Odd, tell_odd};
+use crate::eval::numbered::Firsts;
+use crate::sink::Sink;
+use crate::syntax::Name;
+use crate::{Budgets, Loaded, ParamInfo};
+
+/// Statements with something wrong about their names that are looked at one by one.
+const ODD: usize = 100;
+
+impl State {
+    /// What is wrong with the names of statements that are `odd`; `None` if looking at these statements alone
+    /// does not tell.
+    pub(super) fn odd_names(
+        &self,
+        (text, edit): (&str, &Edit),
+        after: &After<'_>,
+        firsts: &Firsts<'_>,
+        odd: &[usize],
+    ) -> Option<Vec<Diagnostic>> {
+        let budgets = &self.settings.budgets;
+        let around = Among { text, edit, after, firsts, budgets };
+        let mut sink = Sink::new(budgets.diagnostics);
+        for i in odd.iter().take(ODD + 1) {
+            let (statement, range) = after.get(*i, edit);
+            let is_first = |name: &u32| firsts.definer_of(*name) == Some(*i);
+            // Of a function it matters what others mention, of a second definition who uses it.
+            if text[range.clone()].contains("fn") || !statement.names.defines().iter().all(is_first)
+            {
+                return None;
+            }
+            let (stmt, _) = read(&text[range.clone()], statement.id, budgets)?;
+            let stmts = std::slice::from_ref(&stmt);
+            let facts = Facts::of(&text[range.clone()], stmts);
+            let mut found = sink.rest();
+            let odd = Odd { i: *i, text: &text[range], stmts, facts: &facts };
+            tell_odd(&odd, &around, &mut None, &mut found);
+            sink.absorb(found);
+        }
+        (odd.len() <= ODD && !sink.is_full()).then(|| sink.finish())
+    }
+
+    /// A load with mistakes, after which all is kept as it was; `None` if there are too many, or they may
+    /// not be all.
+    pub(super) fn told(
+        &mut self,
+        plan: Plan,
+        text: Arc<str>,
+        evaluator: Evaluator<'_>,
+        values: &KeptValues,
+    ) -> Option<Loaded> {
+        let Plan { edit, gone, fresh, tasks, told, .. } = plan;
+        let after = After::of(self, &gone, &fresh);
+        if concerns_others(&after, &tasks, &evaluator) {
+            return None;
+        }
+        let mut sink = Sink::new(self.settings.budgets.diagnostics);
+        for found in told {
+            sink.push(found);
+        }
+        sink.absorb(evaluator.sink);
+        if sink.errors() == 0 || sink.is_full() {
+            return None;
+        }
+        let begun = (0..after.iter().count()).map(|i| {
+            let (stmt, range) = after.get(i, &edit);
+            (range.start, stmt.id)
+        });
+        let mut starts = vec![0; self.n_ids + fresh.len()];
+        begun.clone().for_each(|(start, id)| starts[id as usize] = start);
+        let place = |span: &mut Span| *span = in_file(*span, &starts);
+        sink.each(&mut |found| {
+            found.labels.iter_mut().for_each(|label| place(&mut label.span));
+            found.fixes.iter_mut().for_each(|fix| place(&mut fix.span));
+        });
+        let mut sources = self.sources.clone();
+        sources.replace(SourceId(0), text);
+        let param =
+            |param: &ParamInfo| ParamInfo { span: in_file(param.span, &starts), ..param.clone() };
+        let n_evaluated = tasks.len();
+        let loaded = Loaded {
+            scene: None,
+            rest: None,
+            diagnostics: sink.finish(),
+            sources,
+            params: self.params.iter().map(param).collect(),
+            values: self.values_of(begun.map(|(start, id)| (start, source_of(id))), values),
+        };
+        self.n_evaluated = n_evaluated;
+        Some(loaded)
+    }
+}
+
+/// Whether more may be wrong than with the statements that were evaluated: an expectation is held against
+/// the whole scene, and what two statements give is told of the second.
+fn concerns_others(after: &After<'_>, tasks: &[Task], evaluator: &Evaluator<'_>) -> bool {
+    let evaluated: BTreeSet<usize> = tasks.iter().map(|task| task.i).collect();
+    let others = after.iter().enumerate().filter(|(i, _)| !evaluated.contains(i));
+    let mut given: Vec<Kind> = evaluator.slots.iter().map(|(kind, _)| *kind).collect();
+    let mut expects = !evaluator.scene.expectations.is_empty();
+    for rare in others.filter_map(|(_, stmt)| stmt.made.rare.as_ref()) {
+        given.extend(rare.slots.iter().map(|slot| slot.kind));
+        expects |= !rare.expectations.is_empty();
+    }
+    let n_given = given.len();
+    given.sort_unstable();
+    given.dedup();
+    expects || given.len() < n_given
+}
+
+/// The names of the statements after an edit.
+struct Among<'a> {
+    text: &'a str,
+    edit: &'a Edit,
+    after: &'a After<'a>,
+    firsts: &'a Firsts<'a>,
+    budgets: &'a Budgets,
+}
+
+impl Among<'_> {
+    fn span(&self, i: usize, names: fn(&Facts) -> &[Name], text: &str) -> Option<(usize, Span)> {
+        let (statement, range) = self.after.get(i, self.edit);
+        let part = &self.text[range];
+        let (stmt, _) = read(part, statement.id, self.budgets)?;
+        let facts = Facts::of(part, std::slice::from_ref(&stmt));
+        names(&facts).iter().find(|name| *name.text == *text).map(|name| (i, name.span))
+    }
+}
+
+impl Around for Among<'_> {
+    fn definer(&self, name: &str) -> Option<(usize, Span)> {
+        self.span(self.firsts.definer(name)?, |facts| &facts.defines, name)
+    }
+
+    fn labeller(&self, label: &str) -> Option<(usize, Span)> {
+        self.span(self.firsts.labeller(label)?, |facts| &facts.labels, label)
+    }
+
+    fn before(&self, statement: usize) -> Vec<&str> {
+        self.firsts.before(statement)
+    }
+}

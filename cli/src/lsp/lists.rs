@@ -63,7 +63,8 @@ impl Server {
         let Some(found) = hover(&self.files, &at.path, at.byte, &self.plugins.registry) else {
             return Value::Null;
         };
-        let evaluated = || found.of.and_then(|place| self.value(&place.path, place.range.0));
+        let evaluated =
+            || found.of.and_then(|place| self.value(&place.path, place.range.0).map(str::to_owned));
         let value = found.value.or_else(evaluated);
         let code = format!("```scene\n{}\n```", found.code);
         let value = value.map(|value| format!("{}: {value}", found.value_is));

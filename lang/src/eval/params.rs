@@ -14,7 +14,7 @@ use super::env::{Env, File, Override};
 use super::finish::children;
 use super::include;
 use super::object::merged;
-use super::value::{FieldValue, ObjectValue, Value, What, show_number};
+use super::value::{FieldValue, ObjectValue, Range, Value, What, show_number};
 use crate::syntax::{self, Expr, ExprNode, Name, ParamDef, StmtNode, Tree};
 use crate::{ParamInfo, ParamLimits, ParamValue};
 
@@ -24,7 +24,9 @@ const SET: u64 = 60;
 impl Evaluator<'_> {
     /// The value of a declared parameter: from outside, or its default.
     pub(super) fn param(&mut self, def: &ParamDef, env: &Env) -> Value {
-        let range = def.range.as_ref().map(|range| (self.eval(range, env), range.span));
+        let limits =
+            |this: &mut Self, range: &Expr| (measured(this.eval(range, env), def, env), range.span);
+        let range = def.range.as_ref().map(|range| limits(self, range));
         let own = self.eval(&def.value, env);
         let own = self.fit(&def.ty, own, def.value.span, env);
         self.in_range(def, &own, range.as_ref(), def.value.span, "E0405");
@@ -298,6 +300,21 @@ impl Evaluator<'_> {
         let found = Diagnostic::error("E0109", label.span, message)
             .meant(label.span, near(&label.text, self.labels.objects.keys().map(|l| &**l)));
         self.tell(found.help("a label is the text after the kind: `shape sphere \"ball\" { … }`"));
+    }
+}
+
+/// The range of a parameter, bare numbers in the file's unit.
+fn measured(range: Value, def: &ParamDef, env: &Env) -> Value {
+    let Value::Range(bare) = &range else { return range };
+    let unit = super::types::dimension(&def.ty.name.text)
+        .filter(|_| bare.dimension.is_none())
+        .and_then(|wanted| Some((wanted, env.file.units.get(&wanted)?)));
+    match unit {
+        Some((dimension, scale)) => {
+            let (start, end) = (bare.start * scale, bare.end * scale);
+            Value::Range(Range { start, end, dimension, ..*bare })
+        }
+        None => range,
     }
 }
 

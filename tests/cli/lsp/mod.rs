@@ -331,15 +331,15 @@ fn values_are_those_of_the_text_after_each_edit_of_a_large_file() {
     client.edit(&uri, 3, span(first, 25, 30), "7 deg");
     let told = client.until(&uri, &["E0203"]);
     assert_eq!(told["diagnostics"][0]["range"]["start"]["line"], first);
-    assert_eq!(value(&mut client, &uri, at(first, 44)), "0.05 m");
+    assert_eq!(value(&mut client, &uri, at(first, 44)), "5 cm = 0.05 m");
     assert_eq!(value(&mut client, &uri, at(far, 16)), "(1.5, 0, 0) m");
     // A line before it, and its mend; the name that all use; a function that is used first.
     client.edit(&uri, 4, span(first, 25, 30), "3");
     assert_eq!(codes(&client.told(&uri)), Vec::<&str>::new());
     client.edit(&uri, 5, span(r, 8, 9), "8");
     client.told(&uri);
-    assert_eq!(value(&mut client, &uri, at(r, 4)), "0.08 m");
-    assert_eq!(value(&mut client, &uri, at(far, 42)), "0.08 m");
+    assert_eq!(value(&mut client, &uri, at(r, 4)), "8 cm = 0.08 m");
+    assert_eq!(value(&mut client, &uri, at(far, 42)), "8 cm = 0.08 m");
     client.edit(&uri, 6, span(first, 0, 0), "pair(3)\npair(4)\n");
     client.told(&uri);
     assert_eq!(value(&mut client, &uri, at(r + 1, 25)), "6");

@@ -24,30 +24,25 @@ pub(crate) fn asked(given: &Path) -> Result<Option<Page>, Failure> {
 /// The page for a terminal of a hundred columns.
 pub(crate) fn text(page: &Page) -> String {
     let Page { code, title, meaning, example } = page;
-    let mut out = format!("{code}: {title}\n\n{meaning}\n");
-    if let Some(Example { wrong, mend, right }) = example {
-        for part in ["\n", &indented(wrong), "\n", mend, "\n\n", &indented(right)] {
-            out.push_str(part);
-        }
-    }
-    out
+    let Example { wrong, mend, right } = example;
+    let (wrong, right) = (indented(wrong), indented(right));
+    format!("{code}: {title}\n\n{meaning}\n\n{wrong}\n{mend}\n\n{right}")
 }
 
 fn indented(scene: &str) -> String {
     scene.lines().fold(String::new(), |page, line| page + "    " + line + "\n")
 }
 
-/// One object: `code, title, meaning, example, mend, mended`; the last three may be `null`.
+/// One object: `code, title, meaning, example, mend, mended`.
 pub(crate) fn json(page: &Page) -> String {
     let Page { code, title, meaning, example } = page;
-    let part = |of: fn(&Example) -> &'static str| example.as_ref().map(of);
     let told = json!({
         "code": code,
         "title": title,
         "meaning": meaning.replace('\n', " ").replace("  ", "\n"),
-        "example": part(|it| it.wrong),
-        "mend": part(|it| it.mend),
-        "mended": part(|it| it.right),
+        "example": example.wrong,
+        "mend": example.mend,
+        "mended": example.right,
     });
     format!("{told}\n")
 }
@@ -75,12 +70,9 @@ mod tests {
             assert!(lines.starts_with(&format!("{code}: {}\n\n", page.title)), "{lines}");
         }
         let told: serde_json::Value = serde_json::from_str(&json(&page("E0421").unwrap())).unwrap();
-        assert!(
-            told["meaning"]
-                .as_str()
-                .unwrap()
-                .ends_with("finds it.\nNo scene of the built-in classes shows it.")
-        );
-        assert!(told["example"].is_null() && told["mended"].is_null());
+        assert!(told["meaning"].as_str().unwrap().contains("finds it.\nIn the example"), "{told}");
+        let scenes = ["example", "mended"].map(|name| told[name].as_str().unwrap());
+        assert!(scenes.iter().all(|scene| scene.starts_with("scene 1\n")), "{told}");
+        assert!(told["mend"].as_str().unwrap().ends_with("(E0401)."), "{told}");
     }
 }

@@ -5,6 +5,7 @@ mod bits;
 mod builtins;
 mod c_example;
 mod compiler;
+pub(crate) mod ember;
 mod examples;
 mod files;
 mod forge;

@@ -105,10 +105,9 @@ fn message(code: &str, title: &str) -> String {
         format!("<h2 id=\"{code}\"><code>{code}</code> {}</h2>\n", markdown::inline(title));
     let Some(page) = page(code) else { return out };
     out += &markdown::html(page.meaning);
-    if let Some(Example { wrong, mend, right }) = page.example {
-        let block = |scene: &str| format!("<pre><code>{}</code></pre>\n", escaped(scene.trim()));
-        out.extend([block(wrong), markdown::html(mend), block(right)]);
-    }
+    let Example { wrong, mend, right } = page.example;
+    let block = |scene: &str| format!("<pre><code>{}</code></pre>\n", escaped(scene.trim()));
+    out.extend([block(wrong), markdown::html(mend), block(right)]);
     out
 }
 

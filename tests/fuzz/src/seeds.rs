@@ -61,8 +61,8 @@ pub(crate) fn texts() -> Seeds {
         }
     }
     for (code, _) in luxel_lang::CATALOGUE {
-        let example = luxel_lang::page(code).and_then(|page| page.example);
-        let both = example.map(|example| [example.wrong, example.right]);
+        let page = luxel_lang::page(code);
+        let both = page.map(|page| [page.example.wrong, page.example.right]);
         for (i, text) in both.into_iter().flatten().enumerate() {
             out.push((format!("{code}-{i}"), text.as_bytes().to_vec()));
         }

@@ -66,7 +66,7 @@ fn evaluated() -> Vec<Attack> {
 }
 
 /// What is spent in reading one text: each text is made when it is its turn, as it is large.
-const READ: [fn() -> Attack; 17] = [
+const READ: [fn() -> Attack; 19] = [
     || attack("open braces", "{".repeat(MUCH)),
     || attack("closing braces", "}".repeat(MUCH)),
     || attack("wrong brackets", "[)".repeat(MUCH / 2)),
@@ -83,6 +83,8 @@ const READ: [fn() -> Attack; 17] = [
     || attack("operators", format!("let a = 1{}", " + 1".repeat(MUCH / 4))),
     || attack("else if", format!("if true {{ }} {}", "else if true { } ".repeat(3_000_000))),
     || attack("words", "x ".repeat(MUCH / 2)),
+    || attack("doc comments", format!("{}let a = 1", "/// a\n".repeat(MUCH / 6))),
+    || attack("doc comments of nothing", "/// a\n".repeat(MUCH / 6)),
     || attack("mistakes", "let a = = 1\n".repeat(1_000_000)),
 ];
 

@@ -27,7 +27,7 @@ pub struct Budgets {
     pub string: usize,
     /// Names that one block defines.
     pub names: usize,
-    /// Words, marks and texts of one statement, numbers left out.
+    /// Words, marks, texts and lines of doc comments of one statement, numbers left out.
     pub pieces: usize,
     /// Bytes that large lists, comprehensions and records hold, all that were made counted.
     pub value_bytes: usize,

@@ -37,7 +37,8 @@ pub(super) fn too_large(
 /// How large a statement is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Weight {
-    /// Words, marks and texts; numbers and what parts them are read at one go and count nothing.
+    /// Words, marks, texts and lines of doc comments; numbers and what parts them are read at one go and
+    /// count nothing.
     pieces: usize,
     /// The first text or word that is longer than the limit.
     text: Option<Range<usize>>,
@@ -53,6 +54,8 @@ fn weigh(text: &str, limit: usize) -> Weight {
         match byte {
             b' ' | b'\t' | b'\n' | b'\r' => continue,
             b'/' if bytes.get(at) == Some(&b'/') => {
+                // Doc comments are kept.
+                out.pieces += usize::from(bytes.get(at + 1) == Some(&b'/'));
                 at += memchr::memchr(b'\n', &bytes[at..]).unwrap_or(bytes.len() - at);
                 continue;
             }
@@ -128,11 +131,10 @@ mod tests {
         assert_eq!(pieces("let a = #[ 1 2 x y z ] m"), 5);
         assert_eq!(pieces("x.a.a + b"), 7);
         assert_eq!(pieces("a /* #[ \" */ = b // 5\" wide\n + c /**/ /* "), 5);
+        assert_eq!(pieces("/// one\n/// two\n// none\na\n"), 3);
         assert_eq!(weigh("a = b12345678901", 10).text, Some(4..16));
         assert_eq!(weigh("a = b123456789", 10).text, None);
         assert_eq!(weigh("a = \"0123456789\"", 10).text, None);
-        assert_eq!(weigh("a = b12345678901", 10).text, Some(4..16));
-        assert_eq!(weigh("a = b123456789", 10).text, None);
         assert_eq!(weigh("a = \"01234\\\"6789a\"", 10).text, Some(4..18));
     }
 }

@@ -1,10 +1,11 @@
 //! How fast scene text is read, evaluation left out, and what its tree holds: by the reader that is in
-//! use, and by pest, which is the grammar of record.
+//! use, and by pest, which is the grammar of record; and how fast the pass before both finds where
+//! statements begin.
 
 use std::path::Path;
 use std::time::Instant;
 
-use luxel_lang::{Budgets, parse_by_pest, parse_only};
+use luxel_lang::{Budgets, parse_by_pest, parse_only, prescan};
 
 use crate::process;
 use crate::scene::lines;
@@ -72,7 +73,7 @@ struct Reader {
     read: fn(&str),
 }
 
-const READERS: [Reader; 2] = [
+const READERS: [Reader; 3] = [
     Reader {
         name: "ours",
         read: |text| drop(std::hint::black_box(parse_only(text, &Budgets::default()))),
@@ -81,15 +82,23 @@ const READERS: [Reader; 2] = [
         name: "pest",
         read: |text| drop(std::hint::black_box(parse_by_pest(text, &Budgets::default()))),
     },
+    Reader {
+        name: "pre-scan",
+        read: |text| {
+            let limit = Budgets::default().brackets;
+            drop(std::hint::black_box(prescan::scan(text, 0..text.len(), 0, limit)));
+        },
+    },
 ];
 
-/// Prints megabytes per second of processor time, and what is held at most for a byte of text.
+/// Prints megabytes per second of processor time, what is held at most for a byte of text, and how many
+/// processors the reader in use keeps busy.
 ///
 /// # Errors
 /// This program does not start anew.
 pub(crate) fn run() -> Result<(), String> {
     println!(
-        "parse, MB/s of scene text per second of processor time (goals: objects 10, lists and tables 150)"
+        "parse, MB/s of scene text per second of processor time (goals: objects 10, lists and tables 150, pre-scan 200)"
     );
     for case in &CASES {
         let text = case.scene();
@@ -104,7 +113,8 @@ pub(crate) fn run() -> Result<(), String> {
                 series.spread()
             );
         }
-        println!();
+        let busy = Series::of(ROUNDS, || reading(&text, &READERS[0]).busy);
+        println!("   on {:.2} processors", busy.median());
     }
     mistake();
     Ok(())
@@ -116,7 +126,7 @@ pub(crate) fn ours(case: &Case, times: usize) -> Series {
 }
 
 fn rates(text: &str, reader: &Reader, times: usize) -> Series {
-    Series::of(times, || rate(text, reader))
+    Series::of(times, || reading(text, reader).rate)
 }
 
 /// How long a mistake inside many objects takes, on the wall.
@@ -139,16 +149,23 @@ fn mistake() {
     );
 }
 
-/// Megabytes per second of processor time, all threads together.
-fn rate(text: &str, reader: &Reader) -> f64 {
-    let (start, mut read) = (processor_seconds(), 0.0);
+/// What reading a text again and again took.
+struct Reading {
+    /// Megabytes per second of processor time, all threads together.
+    rate: f64,
+    /// Seconds of processor time in a second.
+    busy: f64,
+}
+
+fn reading(text: &str, reader: &Reader) -> Reading {
+    let (start, begun, mut read) = (processor_seconds(), Instant::now(), 0.0);
     loop {
         (reader.read)(text);
         read += text.len() as f64 / 1e6;
         let seconds = processor_seconds() - start;
         // Where the system does not tell, it is not a number and one reading is enough.
         if seconds.is_nan() || seconds >= LEAST {
-            return read / seconds;
+            return Reading { rate: read / seconds, busy: seconds / begun.elapsed().as_secs_f64() };
         }
     }
 }

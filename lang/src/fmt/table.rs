@@ -45,18 +45,27 @@ pub(super) fn flat(text: &str) -> String {
     out
 }
 
+/// Whether a byte only separates numbers.
+fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | b',')
+}
+
+/// Whether a line of a table holds nothing but what separates numbers.
+fn is_empty(line: &str) -> bool {
+    line.bytes().all(is_blank)
+}
+
 /// The numbers of a row; commas between them are blanks.
 fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
-    let blank = |b: u8| matches!(b, b' ' | b'\t' | b'\r' | b'\n' | b',');
     let (bytes, mut at, mut first) = (row.as_bytes(), 0, true);
     std::iter::from_fn(move || {
         let mut gap = 0;
-        while bytes.get(at).is_some_and(|b| blank(*b)) {
+        while bytes.get(at).is_some_and(|b| is_blank(*b)) {
             gap += usize::from(bytes[at] != b',');
             at += 1;
         }
         let start = at;
-        while bytes.get(at).is_some_and(|b| !blank(*b)) {
+        while bytes.get(at).is_some_and(|b| !is_blank(*b)) {
             at += 1;
         }
         let text = &row[start..at];
@@ -70,8 +79,7 @@ fn cells(row: &str) -> impl Iterator<Item = Cell<'_>> {
 /// in it goes to the end of its line.
 pub(super) fn is_long(text: &str) -> bool {
     let rows = body(text).split_once('\n');
-    let has_several =
-        |(head, rest): (&str, &str)| head.trim().is_empty() || !rest.trim().is_empty();
+    let has_several = |(head, rest): (&str, &str)| is_empty(head) || !is_empty(rest);
     rows.is_some_and(has_several) || text.contains("//")
 }
 
@@ -148,7 +156,7 @@ fn wrapped(row: &str, width: usize) -> String {
 fn rows(body: &str, out: &mut Out) {
     let base = out.indent;
     let (head, rest) = body.split_once('\n').unwrap_or((body, ""));
-    let hangs = !head.trim().is_empty();
+    let hangs = !is_empty(head);
     out.put("#[", 2);
     let indent = if hangs { out.column + 1 } else { base + STEP };
     let columns = columns(body).filter(|columns| {
@@ -162,7 +170,7 @@ fn rows(body: &str, out: &mut Out) {
     }
     let mut any = hangs;
     for line in rest.split('\n') {
-        if line.trim().is_empty() {
+        if is_empty(line) {
             blank = any;
             continue;
         }
@@ -174,7 +182,8 @@ fn rows(body: &str, out: &mut Out) {
         any = true;
     }
     // A comment at the end would swallow the bracket.
-    let commented = body.trim_end().rsplit('\n').next().is_some_and(|line| line.contains('/'));
+    let commented =
+        body.rsplit('\n').find(|line| !is_empty(line)).is_some_and(|line| line.contains('/'));
     if hangs && !commented {
         out.blanks(1);
     } else {

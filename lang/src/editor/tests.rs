@@ -70,7 +70,7 @@ fn an_edited_document_is_the_document_of_the_edited_text() {
 }
 
 /// Lines about names: defined, used, used too early, mentioned by functions, shadowed, labelled.
-const NAMED: [&str; 16] = [
+const NAMED: [&str; 17] = [
     "let a = 1",
     "let b = a + c",
     "let c = (a, b, a)",
@@ -85,6 +85,7 @@ const NAMED: [&str; 16] = [
     "shape sphere \"b\" { radius (a, 1, 1) material = sin(a) }",
     "set a.radius = c",
     "@off let b = nope",
+    "let a = )",
     "import \"f\" as c",
     "include \"f\" with { a = b }",
 ];
@@ -126,6 +127,15 @@ fn names_of_an_edited_document_are_those_of_a_whole_reading() {
         }
     }
     assert!(told > 1000, "{told}");
+}
+
+#[test]
+fn a_definition_that_is_mended_counts_as_one() {
+    let mut document = Document::new("scene 1\nlet a = 1\nlet a = )\n", &Budgets::default());
+    let at = document.text().find(')').unwrap();
+    document.edit(at..at + 1, "2");
+    same(&document, "mended");
+    assert_eq!(document.diagnostics().iter().map(|it| it.code).collect::<Vec<_>>(), ["E0103"]);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::numbered::{Firsts, Tables};
 pub(crate) use super::numbered::{Known, Numbered};
 use super::resolve::{Resolver, Scope, defines, mentions, stray_names};
 use crate::sink::Sink;
-use crate::syntax::{Name, Stmt};
+use crate::syntax::{Name, Stmt, StmtNode};
 
 /// The source of spans that count from the first byte of their statement.
 pub(crate) const RELATIVE: SourceId = SourceId(1);
@@ -23,6 +23,8 @@ pub(crate) struct Facts {
     pub(super) free: BTreeMap<Arc<str>, u32>,
     /// Names that it defines for what stands after it.
     pub(crate) defines: Vec<Name>,
+    /// Those of them that a mistake in it only seems to define: defining them twice is not told.
+    perhaps: Vec<Name>,
     pub(super) labels: Vec<Name>,
     /// What the functions in it mention.
     pub(super) mentions: Vec<(Arc<str>, BTreeSet<Arc<str>>)>,
@@ -46,9 +48,12 @@ impl Facts {
         let mut labels: Vec<Name> =
             scope.labels.into_iter().map(|(text, span)| Name { text, span }).collect();
         labels.sort_by_key(|label| label.span);
-        let defines = on().flat_map(defines).cloned().chain(on().flat_map(stray_names)).collect();
+        let strays = || on().flat_map(stray_names);
+        let is_broken = |stmt: &&Stmt| matches!(stmt.node, StmtNode::Broken { .. });
+        let perhaps = on().filter(is_broken).flat_map(defines).cloned().chain(strays()).collect();
+        let defines = on().flat_map(defines).cloned().chain(strays()).collect();
         let mentions = on().filter_map(mentions).collect();
-        Self { free, defines, labels, mentions, sound: sink.errors() == 0 }
+        Self { free, defines, perhaps, labels, mentions, sound: sink.errors() == 0 }
     }
 
     /// Whether it is one of the statements that nothing around concerns.

@@ -184,12 +184,11 @@ impl<'a> Cutter<'a, '_> {
                     (newlines, blanks) = (0, 0);
                     length
                 }
-                b' ' | b'\t' => {
+                // What is left is white space.
+                _ => {
                     blanks = (blanks + 1).min(2);
-                    1
+                    rest.chars().next().map_or(1, char::len_utf8)
                 }
-                // What is left is white space of another kind.
-                _ => rest.chars().next().map_or(1, char::len_utf8),
             };
             self.at += length;
         }

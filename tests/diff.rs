@@ -84,3 +84,33 @@ fn what_came_and_went_is_told() {
     )]);
     assert_eq!(class, ["light constant removed", "light point added"]);
 }
+
+#[test]
+fn an_edit_among_alike_items_is_told_wherever_it_stands() {
+    const LINES: [&str; 6] = [
+        "shape sphere { radius = 1 m }\n",
+        "shape sphere { radius = 1 m }\n",
+        "shape sphere { radius = 2 m }\n",
+        "shape sphere { radius = 1 m }\n",
+        "shape sphere { radius = 2 m }\n",
+        "shape sphere { radius = 2 m }\n",
+    ];
+    let (head, _) = SCENE.split_once("let grey").unwrap();
+    let of = |lines: &[&str]| scene(&format!("{head}{}", lines.concat()));
+    let told = |lines: &[&str]| -> Vec<String> {
+        diff(&of(&LINES), &of(lines)).iter().map(ToString::to_string).collect()
+    };
+    for at in 0..LINES.len() {
+        let mut lines = LINES.to_vec();
+        lines.remove(at);
+        assert_eq!(told(&lines), ["shape sphere removed"], "{at}");
+        lines.rotate_left(at);
+        assert_eq!(told(&lines), ["shape sphere removed"], "{at}, in another order");
+        let mut lines = LINES.to_vec();
+        lines.insert(at, LINES[0]);
+        assert_eq!(told(&lines), ["shape sphere added"], "{at}");
+        let mut lines = LINES.to_vec();
+        lines[at] = "shape sphere { radius = 3 m }\n";
+        assert_eq!(told(&lines), ["shape sphere: radius"], "{at}");
+    }
+}

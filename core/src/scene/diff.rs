@@ -104,7 +104,7 @@ impl Differ<'_> {
 
     /// What stands in two groups: first the same with the same, then by name, then by class.
     fn items(&mut self, groups: [&Group; 2]) {
-        let mut left = [0, 1].map(|i| groups[i].items.iter().collect::<Vec<_>>());
+        let mut left = self.between(groups).map(|items| items.iter().collect::<Vec<_>>());
         let hash = |i: usize, item: &Placed| hash_item(self.scenes[i], item, &self.groups[i]);
         let _ = pair_off(&mut left, |i, item| Some(hash(i, item)));
         let named = pair_off(&mut left, |i, item| {
@@ -122,6 +122,31 @@ impl Differ<'_> {
                 self.found.push(Difference { what, how: how.clone(), spans });
             }
         }
+    }
+
+    /// What stands between the beginning and the end that two groups have in common, which is all but a
+    /// few items of what is being edited.
+    fn between<'g>(&self, groups: [&'g Group; 2]) -> [&'g [Placed]; 2] {
+        let [a, b] = groups.map(|group| &*group.items);
+        let is_same = |(a, b): &(&Placed, &Placed)| self.is_same(a, b);
+        let begin = a.iter().zip(b).take_while(is_same).count();
+        let (a, b) = (&a[begin..], &b[begin..]);
+        let end = a.iter().rev().zip(b.iter().rev()).take_while(is_same).count();
+        [&a[..a.len() - end], &b[..b.len() - end]]
+    }
+
+    /// Whether an item of the first scene and one of the second are the same in the same place.
+    fn is_same(&self, a: &Placed, b: &Placed) -> bool {
+        let [first, second] = self.scenes;
+        let is_same_target = match (a.target, b.target) {
+            (Target::Node(a), Target::Node(b)) => first.node(a).hash == second.node(b).hash,
+            (Target::Group(a), Target::Group(b)) => {
+                self.groups[0].get(a.0 as usize) == self.groups[1].get(b.0 as usize)
+            }
+            _ => false,
+        };
+        let paint = |scene: &Scene, item: &Placed| item.material.map(|id| scene.node(id).hash);
+        is_same_target && a.pose == b.pose && paint(first, a) == paint(second, b)
     }
 
     /// Two placements of what is taken for the same.

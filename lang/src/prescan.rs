@@ -78,9 +78,9 @@ pub struct Scan {
 /// Words that continue a statement on a new line.
 const CONTINUE: [&[u8]; 4] = [b"else", b"with", b"in", b"as"];
 /// Words after which something must follow: a newline after them ends nothing.
-const PREFIX: [&[u8]; 18] = [
+const PREFIX: [&[u8]; 17] = [
     b"else", b"with", b"in", b"as", b"let", b"param", b"fn", b"for", b"if", b"include", b"import",
-    b"use", b"place", b"set", b"assert", b"expect", b"units", b"scene",
+    b"use", b"place", b"set", b"assert", b"expect", b"units",
 ];
 
 /// Faults that are noted: with more a text is no scene, and nothing after the last is scanned.

@@ -42,10 +42,12 @@ pub(crate) fn whole(text: &str) -> bool {
 fn are_apart(text: &str, tree: &Tree) -> bool {
     let mut statements = tree.stmts.iter().skip(1).map(|stmt| stmt.span.range().start).peekable();
     let mut before = "";
-    tokens(text, 0..text.len()).all(|token| {
+    let are_apart = tokens(text, 0..text.len()).all(|token| {
         let begins = statements.next_if_eq(&token.start).is_some();
         let apart = !begins || token.first_on_line || matches!(before, "," | ";");
         before = token.text;
         apart
-    })
+    });
+    // One that begins inside a token, as after `1` in `1_x {}`, follows what it stands in.
+    are_apart && statements.next().is_none()
 }

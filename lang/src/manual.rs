@@ -1,7 +1,7 @@
 //! The manual in a few words: what parameters take, the words of the language that stand for no plugin,
 //! and the functions that every scene has.
 
-use luxel_core::scene::{number_words, range_words};
+use luxel_core::scene::{range_words, said, said_unit};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Preset, Role, Type};
 
@@ -97,7 +97,7 @@ pub fn function(name: &str) -> Option<Function> {
 pub fn facts(param: &Param) -> Vec<String> {
     let mut facts = vec![what(param)];
     if !param.unit.is_empty() {
-        facts.push(format!("in {}", param.unit.replace('|', " or ")));
+        facts.push(format!("in {}", said_unit(param)));
     }
     facts.extend(range_words(param));
     if !param.choices.is_empty() {
@@ -154,18 +154,23 @@ pub fn what(param: &Param) -> String {
 pub fn default(param: &Param) -> Option<String> {
     match param.default {
         Preset::Absent => None,
-        Preset::Numbers(numbers) => Some(numbers_of(param.ty, numbers)),
+        Preset::Numbers(numbers) => Some(numbers_of(param, numbers)),
         Preset::Index(i) => Some(param.words().nth(i as usize).unwrap_or("?").into()),
         Preset::Text(text) => Some(format!("{text:?}")),
     }
 }
 
-fn numbers_of(ty: Type, numbers: [f64; 4]) -> String {
-    let n = match ty {
+fn numbers_of(param: &Param, numbers: [f64; 4]) -> String {
+    let n = match param.ty {
         Type::Vec2 => 2,
         Type::Vec3 | Type::DVec3 => 3,
         Type::Bool => return (numbers[0] > 0.0).to_string(),
-        _ => return number_words(numbers[0]),
+        _ => 1,
     };
-    format!("({})", numbers[..n].iter().map(|x| number_words(*x)).collect::<Vec<_>>().join(", "))
+    let all: Vec<String> = numbers[..n].iter().map(|x| said(param, *x)).collect();
+    let all = if n == 1 { all.concat() } else { format!("({})", all.join(", ")) };
+    match &*said_unit(param) {
+        "" | "EV" => all,
+        unit => format!("{all} {unit}"),
+    }
 }

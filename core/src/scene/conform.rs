@@ -12,7 +12,7 @@ use std::sync::Arc;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look, Param, Role, Type, Unit};
 
-pub use range::{number_words, range_words};
+pub use range::{number_words, range_words, said, said_unit};
 
 use super::{Color, NodeId, Value};
 use crate::diag::{Near, near};
@@ -258,15 +258,15 @@ fn in_range(param: &Param, x: f64, place: &str) -> Result<(), Misfit> {
     if param.min <= x && x <= param.max {
         return Ok(());
     }
-    let unit = if param.unit.is_empty() || param.unit == "EV" {
-        String::new()
-    } else {
-        dimensions(param).next().map(|d| format!(" {d}")).unwrap_or_default()
+    let unit = match param.unit {
+        "" | "EV" => String::new(),
+        "rad" | "deg" => " deg".to_owned(),
+        _ => dimensions(param).next().map(|d| format!(" {d}")).unwrap_or_default(),
     };
     let reflectance = param.role == Role::Reflectance && x > param.max;
     let code = if reflectance { "E0210" } else { "E0405" };
     let legal = range_words(param).unwrap_or_default();
-    let x = number_words(x);
+    let x = said(param, x);
     let message = format!("`{}`{place} is {x}{unit}; it must be {legal}{unit}", param.name);
     Err(Misfit::new(code, message))
 }

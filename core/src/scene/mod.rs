@@ -28,7 +28,8 @@ use crate::registry::common_params;
 pub use arguments::Arguments;
 pub use color::Color;
 pub use conform::{
-    DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, wanted,
+    DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, said,
+    said_unit, wanted,
 };
 pub use diff::{Change, Difference, How, called, diff};
 pub use expect::{Area, Claim, Expectation, Expected};

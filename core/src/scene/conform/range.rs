@@ -13,15 +13,33 @@ pub fn number_words(x: f64) -> String {
     format!("{x:e}")
 }
 
-/// The range that a parameter takes, in SI units and without their name: `from 0 to 1`,
-/// `at least 0`, `more than 0`; `None` if anything goes.
+/// A number of a parameter, in SI units, as people say it: an angle in degrees, to ten digits.
+pub fn said(param: &Param, x: f64) -> String {
+    if !is_angle(param) || !x.is_finite() {
+        return number_words(x);
+    }
+    let short = format!("{:.9e}", x.to_degrees());
+    number_words(short.parse().unwrap_or(x))
+}
+
+/// The unit of numbers that are so said; empty without one.
+pub fn said_unit(param: &Param) -> String {
+    if is_angle(param) { "deg".to_owned() } else { param.unit.replace('|', " or ") }
+}
+
+fn is_angle(param: &Param) -> bool {
+    matches!(param.unit, "rad" | "deg")
+}
+
+/// The range that a parameter takes, without its unit (`said_unit`): `from 0 to 1`, `at least 0`,
+/// `more than 0`; `None` if anything goes.
 ///
 /// The least positive number, denormal or not, as a minimum means that 0 itself is excluded.
 pub fn range_words(param: &Param) -> Option<String> {
     let Param { min, max, .. } = *param;
     let excludes_0 = min > 0.0 && min <= f64::MIN_POSITIVE;
-    let least = if excludes_0 { "more than 0".to_owned() } else { number_words(min) };
-    let most = number_words(max);
+    let least = if excludes_0 { "more than 0".to_owned() } else { said(param, min) };
+    let most = said(param, max);
     match (min.is_finite(), max.is_finite()) {
         (true, true) if excludes_0 => Some(format!("{least}, at most {most}")),
         (true, true) => Some(format!("from {least} to {most}")),
@@ -35,6 +53,19 @@ pub fn range_words(param: &Param) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn angles_are_said_in_degrees() {
+        let param = crate::registry::common_params(luxel_sdk::kind::Kind::Shape)[0];
+        let angle = Param { unit: "rad", min: 0.0, max: std::f64::consts::PI, ..param };
+        assert_eq!(range_words(&angle).unwrap(), "from 0 to 180");
+        assert_eq!(said_unit(&angle), "deg");
+        assert_eq!(said(&angle, 0.533_f64.to_radians()), "0.533");
+        assert_eq!(said(&angle, f64::INFINITY), "inf");
+        let rate = Param { unit: "1/m|rad/s", ..param };
+        assert_eq!(said_unit(&rate), "1/m or rad/s");
+        assert_eq!(said(&rate, 0.1), "0.1");
+    }
 
     #[test]
     fn numbers_are_short_and_read_back_the_same() {

@@ -150,7 +150,7 @@ struct Scanner<'a> {
     /// Whether what stands before could end an expression.
     operand: bool,
     newline: bool,
-    /// Between `for` and `in`, or in an `assert`, where a comma separates no statements.
+    /// Between `for` and `in`, or in an `assert` before its text, where a comma separates no statements.
     in_for: bool,
     /// The word that continues the running statement on a new line.
     follower: Option<&'static [u8]>,
@@ -445,6 +445,7 @@ mod tests {
             2
         );
         assert_eq!(starts("use plugin \"a\"\nversion {}").len(), 2);
+        assert_eq!(starts("assert a,\n  b(\"c\", d), \"m\",\nlet b = 1").len(), 2);
     }
 
     #[test]

@@ -30,6 +30,8 @@ impl Scanner<'_> {
             }
         }
         (self.operand, self.newline, self.doc) = (true, false, None);
+        // The text of an assertion ends it.
+        self.in_for &= self.open.len() != self.depth;
     }
 
     fn escape(&mut self) {

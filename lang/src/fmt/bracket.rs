@@ -2,7 +2,7 @@
 
 use super::STEP;
 use super::layout::Layout;
-use super::piece::Kind;
+use super::piece::{Kind, Piece};
 
 /// An item between commas: pieces `from..comma`, and comments behind the comma up to `to`.
 #[derive(Clone, Copy, Debug)]
@@ -152,7 +152,7 @@ impl Layout<'_> {
             }
             let wished = if refilled { 0 } else { self.pieces[item.from].newlines };
             if i > 0 && !self.out.fresh {
-                let fits = self.fits_here(item.from, core, tail);
+                let fits = self.fits_here(item.from, self.beside(core, item.comma), tail);
                 if wished > 1 {
                     self.out.blank_line();
                 }
@@ -170,6 +170,12 @@ impl Layout<'_> {
                 self.trailing(core, item.to, indent);
             }
         }
+    }
+
+    /// Where the comments end that stand beside what ends at `core`.
+    fn beside(&self, core: usize, to: usize) -> usize {
+        let is_beside = |piece: &Piece<'_>| piece.kind == Kind::Block && piece.newlines == 0;
+        core + self.pieces[core..to].iter().take_while(|piece| is_beside(piece)).count()
     }
 
     /// Whether a row that their author made of these items, all of them short, is too long.

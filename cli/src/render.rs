@@ -107,7 +107,8 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let film_file = stage.film.file.as_deref();
     let output = Output::choose(args.render.output.as_deref(), film_file, &args.file)?;
     guard.measuring();
-    beat.rendering(&control, interrupt);
+    beat.on_stop(interrupt);
+    beat.rendering(&control);
     output.check(&loaded.files)?;
     let (of, libraries) = ((stage, &loaded), plugins.hash());
     let how = (&args.options(), empty.window);

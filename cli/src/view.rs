@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let pressed = interrupt::pressed()?;
     let title = shown.values().map(|shown| name(&shown.path)).collect::<Vec<_>>().join(" · ");
-    let mut preview = Preview::start(&args.page, &title)?;
+    let mut preview = Preview::start(&args.page, &title, None)?;
     for file in shown.values() {
         show(&preview, file);
     }

@@ -1,6 +1,8 @@
 //! Plugins that fail, and what `--isolate` makes of it.
 #![cfg(unix)]
 
+use std::io::{Read, Write};
+use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
 use super::faulty::{self, OPEN};
@@ -199,6 +201,61 @@ fn a_watch_outlives_a_crash_and_renders_what_is_built_next() {
     let done = watching.end();
     assert_eq!(done.code, 0, "{done:?}");
     assert!(done.err.contains("killed by signal 11 (SIGSEGV)"), "{done:?}");
+}
+
+/// What the page at an address says to whoever opens it, as far as it is text.
+fn said(port: u16, token: &str) -> String {
+    let Ok(mut socket) = TcpStream::connect(("127.0.0.1", port)) else { return String::new() };
+    let wait = Duration::from_millis(300);
+    socket.set_read_timeout(Some(wait)).unwrap();
+    let key = "dGhlIHNhbXBsZSBub25jZQ==";
+    let ask = format!(
+        "GET /ws?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: Upgrade\r\n\
+         Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}\r\n\r\n"
+    );
+    let mut heard = vec![];
+    // It goes on telling: what came until it pauses is what there was to say.
+    let _ = socket.write_all(ask.as_bytes()).and_then(|()| socket.read_to_end(&mut heard));
+    String::from_utf8_lossy(&heard).into_owned()
+}
+
+#[test]
+fn a_page_outlives_a_crash_at_its_address_and_tells_it() {
+    const TOLD: &str = "killed by signal 11 (SIGSEGV)";
+    let folder = folder("page-crash", faulty::NOTHING);
+    let mut watching = watch(&folder, &["--isolate", "--preview", "--no-open"]);
+    let (port, token) = watching.page();
+    until("the first picture", || !folder.read("a.exr").is_empty());
+    let first = folder.read("a.exr");
+    let before = said(port, &token);
+    assert!(before.contains("101 Switching") && !before.contains(TOLD), "{before}");
+
+    faulty::build(&folder, faulty::WRITE_TO_NOWHERE);
+    until("the crash on the page", || said(port, &token).contains(TOLD));
+    assert!(!said(port, "0").contains("101 Switching"), "the token is asked for as before");
+    assert_eq!(folder.read("a.exr"), first, "the last picture stays");
+
+    let brighter = faulty::scene().replace("scale = 1", "scale = 2");
+    faulty::build(&folder, faulty::NOTHING);
+    folder.write("a.scene", &brighter);
+    until("a new picture", || folder.read("a.exr") != first);
+    until("the page without the crash", || !said(port, &token).contains(TOLD));
+    watching.interrupt();
+    assert_eq!(watching.end().code, 0);
+}
+
+#[test]
+fn a_command_after_a_picture_runs_as_outside() {
+    let folder = Folder::new("apart-exec").with("a.scene", SCENE);
+    let told = "printenv LUXEL_ISOLATED TMPDIR > told; test -s \"$LUXEL_EXR\" && echo > done";
+    let done = folder.luxel_in(
+        &[("TMPDIR", &folder.path("").to_string_lossy())],
+        &["watch", "a.scene", "--isolate", "--once-stable", "--exec", told],
+    );
+    assert_eq!(done.code, 0, "{done:?}");
+    let own = folder.path("").to_string_lossy().into_owned();
+    assert_eq!(String::from_utf8(folder.read("told")).unwrap().trim_end(), own);
+    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene", "done", "told"]);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests prepare and read files")]
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::OnceLock;
@@ -201,6 +202,16 @@ impl Running {
     /// Whether it has come to its end by itself.
     pub(crate) fn is_over(&mut self) -> bool {
         self.0.as_mut().unwrap().try_wait().unwrap().is_some()
+    }
+
+    /// The port and token of the page that it serves.
+    pub(crate) fn page(&mut self) -> (u16, String) {
+        let mut lines = BufReader::new(self.0.as_mut().unwrap().stderr.take().unwrap()).lines();
+        let told =
+            lines.find_map(|line| line.unwrap().split_once("127.0.0.1:").map(|it| it.1.to_owned()));
+        let (port, token) = told.as_ref().unwrap().split_once("/?token=").unwrap();
+        std::thread::spawn(move || lines.count());
+        (port.parse().unwrap(), token.to_owned())
     }
 
     pub(crate) fn end(mut self) -> Done {

@@ -10,6 +10,7 @@ use luxel_core::accel::Watch;
 use luxel_core::render::Control;
 use serde::{Deserialize, Serialize};
 
+use super::again::{Address, Again};
 use crate::exit::Exit;
 use crate::files::{Asked, Watched};
 use crate::interrupt::Interrupt;
@@ -32,6 +33,8 @@ pub(crate) enum Phase {
     Judging,
     /// A picture is written: no plugin runs.
     Saving,
+    /// There is nothing to do before a save.
+    Waiting,
     /// All is done, the process is about to end.
     Ended,
 }
@@ -47,6 +50,7 @@ impl Phase {
             Self::Rendering => "rendering",
             Self::Judging => "judging plugins",
             Self::Saving => "writing the picture",
+            Self::Waiting => "waiting for a save",
             Self::Ended => "ending",
         }
     }
@@ -64,6 +68,10 @@ pub(super) struct Told {
     /// Files that were asked for, with the hash of what was found. Names that are no Unicode are
     /// left out.
     pub(super) files: Vec<(String, Option<String>)>,
+    /// Where its page is served.
+    pub(super) page: Option<Address>,
+    /// Nobody wants any more what is being done, and it has to end before anything else is.
+    pub(super) is_overtaken: bool,
 }
 
 /// How far the work has come, for the process that watches over it; silent where there is none.
@@ -144,12 +152,33 @@ impl Beat {
         });
     }
 
-    /// Samples are counted here, and this answers a wish to stop.
-    pub(crate) fn rendering(&self, control: &Arc<Control>, interrupt: Interrupt) {
-        self.tell(|state| {
-            state.control = Some(control.clone());
-            state.interrupt = Some(interrupt);
-        });
+    /// Samples are counted here from now on.
+    pub(crate) fn rendering(&self, control: &Arc<Control>) {
+        self.tell(|state| state.control = Some(control.clone()));
+    }
+
+    /// The page is served here.
+    pub(crate) fn serves(&self, page: &Address) {
+        self.tell(|state| state.told.page = Some(page.clone()));
+    }
+
+    /// What a child before this one has left.
+    pub(crate) fn again(&self) -> Option<Again> {
+        let inner = self.0.as_ref()?;
+        let bytes = crate::files::read_regular(&inner.folder.join(AGAIN)).ok()?;
+        serde_json::from_slice(&bytes).ok()
+    }
+
+    /// Tells until dropped that what is being done has to end, for nobody wants it any more.
+    pub(crate) fn overtaken(&self) -> impl Drop + use<> {
+        struct Until(Beat);
+        impl Drop for Until {
+            fn drop(&mut self) {
+                self.0.tell(|state| state.told.is_overtaken = false);
+            }
+        }
+        self.tell(|state| state.told.is_overtaken = true);
+        Until(self.clone())
     }
 
     /// This answers a wish to stop.
@@ -185,7 +214,9 @@ impl Inner {
         let mut state = self.state();
         change(&mut state);
         state.refresh();
-        if state.written.as_ref() != Some(&state.told) && write(&self.folder, &state.told).is_ok() {
+        if state.written.as_ref() != Some(&state.told)
+            && write(&self.folder, FILE, &state.told).is_ok()
+        {
             state.written = Some(state.told.clone());
         }
     }
@@ -242,13 +273,21 @@ impl State {
 
 const FILE: &str = "beat.json";
 
+/// What the child before has left.
+const AGAIN: &str = "again.json";
+
+/// Leaves for the child of this folder what one before it has left.
+pub(super) fn leave_to(folder: &Path, again: &Again) -> io::Result<()> {
+    write(folder, AGAIN, again)
+}
+
 /// The file appears whole.
-fn write(folder: &Path, told: &Told) -> io::Result<()> {
-    let draft = folder.join("beat.new");
+fn write(folder: &Path, name: &str, value: &impl Serialize) -> io::Result<()> {
+    let draft = folder.join("draft");
     let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).open(&draft)?;
-    file.write_all(&serde_json::to_vec(told)?)?;
+    file.write_all(&serde_json::to_vec(value)?)?;
     drop(file);
-    fs::rename(draft, folder.join(FILE))
+    fs::rename(draft, folder.join(name))
 }
 
 /// What a child told last in this folder.

@@ -2,17 +2,17 @@
 
 use std::ffi::OsString;
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use super::VARIABLE;
+use super::again::Again;
 use super::beat::{self, Phase, Told};
 use super::ending::{End, Ending};
+use super::{OUTER, TEMPORARY, VARIABLE};
 use crate::exit::{Exit, Failure};
-use crate::files::Watched;
 
 /// A process of this program; killed when dropped.
 pub(crate) struct Child {
@@ -33,11 +33,14 @@ pub(crate) struct Child {
 /// How long a child may take to stop when it is asked to.
 const GRACE: Duration = Duration::from_secs(2);
 
+/// Between two looks at whether it has ended.
+const TICK: Duration = Duration::from_millis(5);
+
 /// Between two looks at what it tells.
 const PERIOD: Duration = Duration::from_millis(50);
 
 impl Child {
-    /// Starts this program with these arguments.
+    /// Starts this program with these arguments, perhaps in the place of another one.
     ///
     /// # Errors
     /// If the system refuses.
@@ -45,12 +48,16 @@ impl Child {
         args: impl IntoIterator<Item = OsString>,
         patience: Duration,
         out: Stdio,
+        again: Option<&Again>,
     ) -> Result<Self, Failure> {
         let begin = || {
             let folder = tempfile::tempdir()?;
+            again.map(|again| beat::leave_to(folder.path(), again)).transpose()?;
             let mut command = Command::new(std::env::current_exe()?);
             command.args(args).env(VARIABLE, folder.path()).stdin(Stdio::piped()).stdout(out);
-            for variable in ["TMPDIR", "TMP", "TEMP"] {
+            for variable in TEMPORARY {
+                let own = std::env::var_os(variable);
+                command.envs(own.map(|own| (format!("{OUTER}{variable}"), own)));
                 command.env(variable, folder.path());
             }
             Ok((command.spawn()?, folder))
@@ -72,7 +79,7 @@ impl Child {
     pub(crate) fn poll(&mut self) -> Option<Ending> {
         if let Ok(Some(status)) = self.process.try_wait() {
             self.look();
-            return Some(self.ending(End::of(status, self.told.phase)));
+            return Some(self.ended(End::of(status, self.told.phase)));
         }
         if self.looked.elapsed() >= PERIOD {
             self.look();
@@ -81,11 +88,13 @@ impl Child {
             // It will be whole soon, and no plugin can stand in the way.
             Phase::Saving => return None,
             _ if self.asked.is_some_and(|asked| asked.elapsed() > GRACE) => End::Stubborn,
+            Phase::Waiting => return None,
+            _ if self.told.is_overtaken && self.moved.elapsed() > GRACE => End::Stubborn,
             _ if self.moved.elapsed() > self.patience => End::Stuck(self.patience),
             _ => return None,
         };
         self.kill();
-        Some(self.ending(end))
+        Some(self.ended(end))
     }
 
     /// Asks it to stop; it is ended if it does not.
@@ -97,13 +106,22 @@ impl Child {
         }
     }
 
-    /// The files that it has asked for.
-    pub(crate) fn files(&self) -> Watched {
-        let one = |(path, seen): &(String, Option<String>)| {
-            let hash = seen.as_ref().and_then(|hex| blake3::Hash::from_hex(hex).ok());
-            (PathBuf::from(path), hash)
-        };
-        self.told.files.iter().map(one).collect()
+    /// What it leaves to one that takes its place, which waits for a save first if `failure` says why.
+    pub(crate) fn leaves(&self, failure: Option<Failure>) -> Again {
+        Again::after(&self.told, failure)
+    }
+
+    /// Waits for its end. Ctrl-C is passed on.
+    pub(crate) fn ending(&mut self, pressed: &AtomicBool) -> Ending {
+        loop {
+            if let Some(ending) = self.poll() {
+                return ending;
+            }
+            if pressed.load(Ordering::Relaxed) {
+                self.stop();
+            }
+            std::thread::sleep(TICK);
+        }
     }
 
     fn look(&mut self) {
@@ -116,7 +134,7 @@ impl Child {
         }
     }
 
-    fn ending(&self, end: End) -> Ending {
+    fn ended(&self, end: End) -> Ending {
         Ending { end, phase: self.told.phase, libraries: self.told.libraries.clone() }
     }
 

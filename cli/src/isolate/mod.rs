@@ -1,26 +1,52 @@
 //! `--isolate`: the work runs in a process of its own, so that a plugin that crashes, leaves or never
 //! ends costs a message.
 //!
+//! The child of a watch is the whole watch; where it comes to a bad end another one takes its place.
 //! The child is this program with the same arguments; a variable of its environment names the folder
 //! in which it tells how far it has come. Its standard input is a pipe: a byte asks it to stop, the
 //! end of the pipe says that the parent is gone. Output, progress and pictures are its own.
 
+mod again;
 mod beat;
 mod child;
 mod ending;
 mod supervise;
 
+use std::process::Command;
 use std::time::Duration;
 
 use crate::args::MOST_SECONDS;
 
+pub(crate) use again::{Address, Again};
 pub(crate) use beat::{Beat, Phase};
 pub(crate) use child::Child;
 pub(crate) use ending::{End, Ending};
-pub(crate) use supervise::{supervise, tell};
+pub(crate) use supervise::{PATIENCE, supervise, tell};
 
 /// Names the folder of the child's reports.
 const VARIABLE: &str = "LUXEL_ISOLATED";
+
+/// What names the folder for temporary files, which is the child's own in a child.
+const TEMPORARY: [&str; 3] = ["TMPDIR", "TMP", "TEMP"];
+
+/// Begins the names under which a child finds what those are outside.
+const OUTER: &str = "LUXEL_OUTER_";
+
+/// Lets a command that outlives this process run as if it had been started outside.
+pub(crate) fn as_outside(command: &mut Command) {
+    if std::env::var_os(VARIABLE).is_none() {
+        return;
+    }
+    command.env_remove(VARIABLE);
+    for variable in TEMPORARY {
+        let outer = format!("{OUTER}{variable}");
+        match std::env::var_os(&outer) {
+            Some(value) => command.env(variable, value),
+            None => command.env_remove(variable),
+        };
+        command.env_remove(outer);
+    }
+}
 
 /// Whether the work gets a process of its own.
 #[derive(clap::Args, Clone, Debug)]

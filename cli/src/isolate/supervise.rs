@@ -14,11 +14,8 @@ use crate::exit::{Exit, Failure};
 use crate::interrupt;
 use crate::report::{self, Form, Stream};
 
-/// Between two looks at the child.
-const TICK: Duration = Duration::from_millis(5);
-
 /// So long a render may stand still.
-const PATIENCE: Duration = Duration::from_secs(60);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Has this program's arguments carried out by a child. Ctrl-C is passed on.
 ///
@@ -32,16 +29,8 @@ pub(crate) fn supervise(
 ) -> Result<Exit, Failure> {
     let pressed = interrupt::pressed()?;
     let own = std::env::args_os().skip(1);
-    let mut child = Child::start(own, args.patience(PATIENCE), Stdio::inherit())?;
-    let mut ending = loop {
-        if let Some(ending) = child.poll() {
-            break ending;
-        }
-        if pressed.load(Ordering::Relaxed) {
-            child.stop();
-        }
-        std::thread::sleep(TICK);
-    };
+    let mut child = Child::start(own, args.patience(PATIENCE), Stdio::inherit(), None)?;
+    let mut ending = child.ending(&pressed);
     if let End::InOrder(exit) = ending.end {
         return Ok(exit);
     }

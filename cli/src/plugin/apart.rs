@@ -89,7 +89,7 @@ fn asked(
     all.push("--".into());
     all.extend(args.library().0.map(Into::into));
     all.extend(words);
-    let mut child = Child::start(all, args.isolate.patience(PATIENCE), Stdio::piped())?;
+    let mut child = Child::start(all, args.isolate.patience(PATIENCE), Stdio::piped(), None)?;
     let output = child.output();
     // Read beside it: a full pipe would make it wait.
     let reader = std::thread::spawn(move || {

@@ -7,12 +7,13 @@ use std::time::{Duration, Instant};
 use super::*;
 
 fn preview() -> Preview {
-    Preview::start(&PageArgs::default(), "a.exr").unwrap()
+    Preview::start(&PageArgs::default(), "a.exr", None).unwrap()
 }
 
 /// Port and token.
 fn place(preview: &Preview) -> (u16, String) {
-    let rest = preview.url().strip_prefix("http://127.0.0.1:").unwrap();
+    let url = preview.url();
+    let rest = url.strip_prefix("http://127.0.0.1:").unwrap();
     let (port, token) = rest.split_once("/?token=").unwrap();
     (port.parse().unwrap(), token.to_owned())
 }
@@ -246,8 +247,8 @@ fn a_port_that_is_taken_is_told_and_a_dropped_preview_frees_it() {
     let first = preview();
     let (port, _) = place(&first);
     let again = PageArgs { port, ..PageArgs::default() };
-    let wrong = Preview::start(&again, "").err().unwrap();
+    let wrong = Preview::start(&again, "", None).err().unwrap();
     assert!(wrong.message.contains(&port.to_string()), "{}", wrong.message);
     drop(first);
-    assert!(Preview::start(&again, "").is_ok());
+    assert!(Preview::start(&again, "", None).is_ok());
 }

@@ -6,6 +6,8 @@ use std::process::{Command, Stdio};
 
 use tempfile::NamedTempFile;
 
+use crate::isolate;
+
 /// Asks the desktop to show the address. What it gives has to live until the browser has read it;
 /// nothing, where there is no desktop.
 pub(super) fn open(url: &str) -> Option<NamedTempFile> {
@@ -21,6 +23,7 @@ pub(super) fn open(url: &str) -> Option<NamedTempFile> {
     let mut file = tempfile::Builder::new().prefix("luxel-").suffix(".html").tempfile().ok()?;
     file.write_all(leading(url).as_bytes()).ok()?;
     let mut command = Command::new(opener);
+    isolate::as_outside(&mut command);
     command.args(before).arg(file.path());
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()?;
     Some(file)

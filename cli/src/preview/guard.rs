@@ -17,16 +17,24 @@ pub(super) struct Gate {
     token: String,
 }
 
+/// A new token, 128 bits at random.
+///
+/// # Errors
+/// A system without random numbers.
+pub(super) fn token() -> Result<String, Failure> {
+    let mut bits = [0; 16];
+    getrandom::fill(&mut bits).map_err(|error| {
+        Failure::new(Exit::Ours, format!("no random numbers for the preview's token: {error}"))
+    })?;
+    Ok(format!("{:032x}", u128::from_be_bytes(bits)))
+}
+
 impl Gate {
-    /// A gate with a token of its own, 128 bits at random.
+    /// A gate that wants this token.
     ///
     /// # Errors
-    /// A system without random numbers; a host that is no name.
-    pub(super) fn new(port: u16, allowed: &[String]) -> Result<Self, Failure> {
-        let mut bits = [0; 16];
-        getrandom::fill(&mut bits).map_err(|error| {
-            Failure::new(Exit::Ours, format!("no random numbers for the preview's token: {error}"))
-        })?;
+    /// A host that is no name.
+    pub(super) fn new(port: u16, token: String, allowed: &[String]) -> Result<Self, Failure> {
         let mut hosts = vec![format!("127.0.0.1:{port}"), format!("localhost:{port}")];
         for host in allowed {
             let legal = |c: char| c.is_ascii_alphanumeric() || ".-:[]".contains(c);
@@ -37,7 +45,6 @@ impl Gate {
             }
             hosts.push(host.to_ascii_lowercase());
         }
-        let token = format!("{:032x}", u128::from_be_bytes(bits));
         Ok(Self { hosts, token })
     }
 
@@ -98,10 +105,14 @@ mod tests {
         gate.check(&request.body(()).unwrap()).map_or_else(|code| code.as_u16(), |_| 200)
     }
 
+    fn gate(allowed: &[String]) -> Result<Gate, Failure> {
+        Gate::new(7, token()?, allowed)
+    }
+
     #[test]
     fn only_the_own_page_with_the_token_passes() {
-        let gate = Gate::new(7, &["Box.example".into()]).unwrap();
-        let token = format!("token={}", gate.token());
+        let gate = gate(&["Box.example".into()]).unwrap();
+        let token = format!("token={}", gate.token);
         let host = ("host", "127.0.0.1:7");
         assert_eq!(answer(&gate, &token, &[host]), 200);
         assert_eq!(answer(&gate, &token, &[("host", "LOCALHOST:7")]), 200);
@@ -124,8 +135,8 @@ mod tests {
 
     #[test]
     fn a_foreign_page_may_lead_here_but_not_fetch() {
-        let gate = Gate::new(7, &[]).unwrap();
-        let token = format!("token={}", gate.token());
+        let gate = gate(&[]).unwrap();
+        let token = format!("token={}", gate.token);
         let ask = |site, mode| {
             let from =
                 [("host", "127.0.0.1:7"), ("sec-fetch-site", site), ("sec-fetch-mode", mode)];
@@ -138,12 +149,12 @@ mod tests {
     }
 
     #[test]
-    fn two_gates_have_two_tokens_of_128_bits_and_names_are_checked() {
-        let gates = [Gate::new(1, &[]).unwrap(), Gate::new(1, &[]).unwrap()];
-        assert!(gates[0].token() != gates[1].token());
-        assert!(gates.iter().all(|gate| gate.token().len() == 32));
+    fn two_tokens_differ_and_have_128_bits_and_names_are_checked() {
+        let tokens = [token().unwrap(), token().unwrap()];
+        assert!(tokens[0] != tokens[1]);
+        assert!(tokens.iter().all(|token| token.len() == 32));
         for wrong in ["", "a b", "http://a/", "a;script-src *"] {
-            assert!(Gate::new(1, &[wrong.into()]).is_err(), "{wrong}");
+            assert!(gate(&[wrong.into()]).is_err(), "{wrong}");
         }
     }
 }

@@ -28,6 +28,7 @@ use tempfile::NamedTempFile;
 use tokio::sync::oneshot;
 
 use crate::exit::{Exit, Failure};
+use crate::isolate::Address;
 use board::{Board, Topic};
 use guard::Gate;
 
@@ -58,7 +59,7 @@ pub(crate) struct Screen(Arc<Board>);
 
 /// A page being served from a thread of its own. Dropped, the server ends.
 pub(crate) struct Preview {
-    url: String,
+    address: Address,
     screen: Screen,
     commands: Receiver<Command>,
     stop: Option<oneshot::Sender<()>>,
@@ -68,12 +69,18 @@ pub(crate) struct Preview {
 }
 
 impl Preview {
-    /// Serves the page about a file on the loopback address from now on.
+    /// Serves the page about a file on the loopback address from now on, in the place of an earlier one
+    /// if there is one.
     ///
     /// # Errors
     /// A port that is taken; a system without threads or random numbers.
-    pub(crate) fn start(args: &PageArgs, title: &str) -> Result<Self, Failure> {
-        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, args.port));
+    pub(crate) fn start(
+        args: &PageArgs,
+        title: &str,
+        again: Option<&Address>,
+    ) -> Result<Self, Failure> {
+        let port = again.map_or(args.port, |again| again.port);
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
         let taken = |error: std::io::Error| {
             let message = format!("cannot serve the preview on {address}: {error}");
             Failure::new(Exit::Input, message).help("another port: --port N, or 0 for any")
@@ -81,8 +88,12 @@ impl Preview {
         let listener = TcpListener::bind(address).map_err(taken)?;
         listener.set_nonblocking(true).map_err(taken)?;
         let port = listener.local_addr().map_err(taken)?.port();
-        let gate = Gate::new(port, &args.allow_host)?;
-        let url = format!("http://127.0.0.1:{port}/?token={}", gate.token());
+        let token = match again {
+            Some(again) => again.token.clone(),
+            None => guard::token()?,
+        };
+        let gate = Gate::new(port, token.clone(), &args.allow_host)?;
+        let address = Address { port, token };
         let board = Arc::new(Board::new());
         board.tell(Topic::Title, &json!({ "title": title }));
         let (sender, commands) = mpsc::sync_channel(session::WAITING_COMMANDS);
@@ -93,17 +104,23 @@ impl Preview {
             .spawn(move || server::run(listener, state, stopped))
             .map_err(taken)?;
         let (screen, stop, thread) = (Screen(board), Some(stop), Some(thread));
-        Ok(Self { url, screen, commands, stop, thread, leading: None })
+        Ok(Self { address, screen, commands, stop, thread, leading: None })
     }
 
     /// Asks the desktop to show the page, where there is one.
     pub(crate) fn open(&mut self) {
-        self.leading = browser::open(&self.url);
+        self.leading = browser::open(&self.url());
     }
 
     /// The page's address; whoever knows it sees the picture.
-    pub(crate) fn url(&self) -> &str {
-        &self.url
+    pub(crate) fn url(&self) -> String {
+        let Address { port, token } = &self.address;
+        format!("http://127.0.0.1:{port}/?token={token}")
+    }
+
+    /// What its address is made of.
+    pub(crate) fn address(&self) -> &Address {
+        &self.address
     }
 
     /// Where pictures and words go.

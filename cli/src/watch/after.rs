@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use super::mailbox::Mailbox;
+use crate::isolate;
 use crate::output::Output;
 use crate::report;
 
@@ -31,14 +32,15 @@ impl After {
 /// Runs it to its end; what it prints goes to standard error.
 fn run(command: &OsString, scene: &Path, Output { exr, png }: &Output) {
     let (shell, takes) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
-    let ended = Command::new(shell)
+    let mut process = Command::new(shell);
+    isolate::as_outside(&mut process);
+    process
         .arg(takes)
         .arg(command)
         .envs([("LUXEL_SCENE", scene), ("LUXEL_EXR", exr), ("LUXEL_PNG", png)])
         .stdin(Stdio::null())
-        .stdout(std::io::stderr())
-        .status();
-    let told = match ended {
+        .stdout(std::io::stderr());
+    let told = match process.status() {
         Ok(status) if status.success() => return,
         Ok(status) => status.to_string(),
         Err(error) => error.to_string(),

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use super::changes::Noticed;
 use crate::exit::{Exit, Failure};
+use crate::isolate::Beat;
 
 /// So long work that was asked to end is waited for.
 const GRACE: Duration = Duration::from_millis(5);
@@ -25,14 +26,15 @@ pub(super) enum Ended<T> {
 /// Work on threads of its own.
 pub(super) struct Attempts<'scope, 'env> {
     scope: &'scope Scope<'scope, 'env>,
+    beat: Beat,
     /// What did not end when it was asked to: a decoder, or a plugin, that does not look. One at most, so
     /// that what nobody wants does not fill the machine.
     left: Option<ScopedJoinHandle<'scope, ()>>,
 }
 
 impl<'scope, 'env> Attempts<'scope, 'env> {
-    pub(super) fn new(scope: &'scope Scope<'scope, 'env>) -> Self {
-        Self { scope, left: None }
+    pub(super) fn new(scope: &'scope Scope<'scope, 'env>, beat: Beat) -> Self {
+        Self { scope, beat, left: None }
     }
 
     /// Does some work for as long as `look`, which waits a moment, notices nothing; then `cancel` asks it
@@ -85,6 +87,7 @@ impl<'scope, 'env> Attempts<'scope, 'env> {
     ) -> Noticed {
         let both = self.left.take().into_iter().chain([thread]);
         let mut both: Vec<_> = both.filter(|thread| !thread.is_finished()).collect();
+        let _waits = (both.len() > 1).then(|| self.beat.overtaken());
         while both.len() > 1 && noticed != Noticed::Stop {
             std::thread::sleep(MOMENT);
             if look() == Noticed::Stop {
@@ -114,7 +117,7 @@ mod tests {
     #[test]
     fn work_that_nothing_comes_between_is_done() {
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope);
+            let mut attempts = Attempts::new(scope, Beat::silent());
             let ended = attempts.run(
                 || {
                     sleep(LONG / 40);
@@ -134,7 +137,7 @@ mod tests {
     fn work_that_does_not_look_is_left_before_it_ends() {
         let ends = AtomicBool::new(false);
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope);
+            let mut attempts = Attempts::new(scope, Beat::silent());
             let deaf = || {
                 while !ends.load(Ordering::SeqCst) {
                     sleep(Duration::from_micros(100));
@@ -158,7 +161,7 @@ mod tests {
             Ok(())
         };
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope);
+            let mut attempts = Attempts::new(scope, Beat::silent());
             for _ in 0..4 {
                 let ended = attempts.run(deaf, save, || {});
                 assert!(matches!(ended, Ok(Ended::Left(_))), "{ended:?}");
@@ -171,7 +174,7 @@ mod tests {
     fn work_that_looks_ends_when_it_is_asked_to() {
         let asked = AtomicBool::new(false);
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope);
+            let mut attempts = Attempts::new(scope, Beat::silent());
             let work = || {
                 while !asked.load(Ordering::SeqCst) {
                     sleep(Duration::from_micros(100));

@@ -13,6 +13,7 @@ use super::tev::Tev;
 use super::wishes::Wishes;
 use super::{Args, ThenArgs};
 use crate::exit::Failure;
+use crate::isolate::{Again, Beat};
 use crate::output::Output;
 use crate::report;
 
@@ -26,12 +27,22 @@ pub(super) struct Audience {
 impl Audience {
     /// # Errors
     /// A port of the page that is taken; no address of an editor.
-    pub(super) fn new(args: &Args, wishes: Wishes) -> Result<Self, Failure> {
+    pub(super) fn new(
+        args: &Args,
+        wishes: Wishes,
+        beat: &Beat,
+        again: Option<&Again>,
+    ) -> Result<Self, Failure> {
         let (file, ThenArgs { tev, exec, .. }) = (&args.file, &args.then);
         let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
         let tev = tev.clone().map(|address| Tev::new(address, name.into_owned()));
         let after = exec.clone().map(|command| After::new(command, file.clone()));
-        let start = || Page::start(file, &args.page, args.editor.editor()?, wishes);
+        let page = again.and_then(Again::page);
+        let start = || {
+            let page = Page::start(file, &args.page, args.editor.editor()?, (wishes, page))?;
+            beat.serves(page.address());
+            Ok(page)
+        };
         let page = args.preview.then(start).transpose()?;
         Ok(Self { page, tev, after })
     }

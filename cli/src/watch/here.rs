@@ -17,6 +17,7 @@ use serde_json::json;
 use super::Args;
 use super::attempt::{Attempts, Ended};
 use super::audience::Audience;
+use super::begin::{is_saved_after, open};
 use super::changes::{Changes, Noticed, Wake};
 use super::edit::{self, Edit};
 use super::press::Press;
@@ -28,7 +29,7 @@ use crate::args::PluginArgs;
 use crate::exit::{Exit, Failure};
 use crate::files::{Asked, Watched, look};
 use crate::interrupt::Guard;
-use crate::isolate::Beat;
+use crate::isolate::{Again, Beat, Phase};
 use crate::libraries::{Plugins, Session, Surroundings};
 use crate::load::{self, Loaded, Text};
 use crate::report::{self, Stream};
@@ -44,6 +45,9 @@ const STEP: Duration = Duration::from_micros(200);
 
 /// So long nothing is saved when a scene is called stable.
 const STILL: Duration = Duration::from_millis(120);
+
+/// What is told at the end.
+const ENDED: &str = "watching has ended";
 
 /// What Ctrl-C ends: the render and the build in hand.
 #[derive(Clone, Default)]
@@ -66,30 +70,42 @@ enum Next {
     End,
 }
 
-pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
+pub(super) fn watch(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let (mut session, surroundings) = (Session::new(), Surroundings::of_process());
-    let plugins = session.refresh(&args.plugins, &surroundings)?;
-    plugins.notes.tell(args.form(), Stream::Error)?;
+    let again = beat.again();
+    // What crashed is not opened again before something is saved.
+    let failure = again.as_ref().and_then(Again::failure);
+    let mut open = || open(&mut session, args, &surroundings, beat);
+    let opened = failure.is_none().then(&mut open).transpose()?;
     let (mut changes, waker) = Changes::new();
     let wishes = Wishes::new(changes.wished(), waker.clone());
     let in_hand = InHand::default();
     let stopped = in_hand.clone();
     let guard = Guard::default();
-    guard.on_ctrl_c(move || {
+    let interrupt = guard.on_ctrl_c(move || {
         let _ = waker.send(Wake::Stop);
         let (render, build) = &*stopped.get();
         render.cancel();
         build.cancel();
     })?;
+    beat.on_stop(interrupt);
     changes.arm([args.file.as_path()]);
-    let audience = Audience::new(args, wishes)?;
+    let audience = Audience::new(args, wishes, beat, again.as_ref())?;
+    if let (Some(failure), Some(again)) = (&failure, &again)
+        && !is_saved_after(failure, again.watched(), args, (&audience, &mut changes, beat))
+    {
+        report::note(ENDED);
+        return Ok(Exit::Fine);
+    }
+    let plugins = opened.map_or_else(open, Ok)?;
     std::thread::scope(|scope| {
         let mut watching = Watching {
             args,
             scope,
             guard: &guard,
+            beat,
             audience: &audience,
-            attempts: Attempts::new(scope),
+            attempts: Attempts::new(scope, beat.clone()),
             in_hand,
             libraries: plugins.watched.clone(),
             plugins: Arc::new(plugins),
@@ -111,7 +127,7 @@ pub(super) fn watch(args: &Args) -> Result<Exit, Failure> {
             return if has_picture { Exit::Fine } else { Exit::Input };
         }
         audience.end();
-        report::note("watching has ended");
+        report::note(ENDED);
         Exit::Fine
     })
 }
@@ -125,6 +141,7 @@ struct Watching<'scope, 'env> {
     args: &'env Args,
     scope: &'scope Scope<'scope, 'env>,
     guard: &'env Guard,
+    beat: &'env Beat,
     audience: &'env Audience,
     attempts: Attempts<'scope, 'env>,
     in_hand: InHand,
@@ -186,6 +203,9 @@ impl<'scope> Watching<'scope, '_> {
         loop {
             let noticed = self.changes.within(STILL);
             let is_done = || self.shown.as_ref().is_some_and(Shown::is_done);
+            if noticed == Noticed::Nothing && (self.shown.is_none() || is_done()) {
+                self.beat.phase(Phase::Waiting);
+            }
             match noticed {
                 Noticed::Save => return Next::Read,
                 Noticed::Stop => return Next::End,
@@ -223,7 +243,8 @@ impl<'scope> Watching<'scope, '_> {
         let (form, begun) = (self.args.form(), Instant::now());
         let (line, known) = (!self.args.quiet, self.changes.known().clone());
         let kept = Some(self.kept.clone());
-        let course = load::Course { known, line, kept, ..load::Course::default() };
+        let beat = self.beat.clone();
+        let course = load::Course { beat, known, line, kept, ..load::Course::default() };
         self.is_good = false;
         self.asked = course.asked.clone();
         let text = match self.read(&course)? {
@@ -388,11 +409,13 @@ impl<'scope> Watching<'scope, '_> {
         let mut before = self.shown.take().map(|before| {
             before.control.supersede();
             before.sitting.pass();
+            let _waits = self.beat.overtaken();
             before.ended()
         });
         let control = Arc::new(Control::default());
+        self.beat.rendering(&control);
         self.in_hand.get().0.clone_from(&control);
-        let (args, guard, audience) = (self.args, self.guard, self.audience);
+        let (args, guard, audience, beat) = (self.args, self.guard, self.audience, self.beat);
         let (Subject { stage, read, .. }, ends) = (subject.clone(), control.clone());
         self.audience.page().inspect(|page| page.stands_at(&stage, &self.plugins.registry, &read));
         let of_samples = args.render.options().samples(&stage);
@@ -400,7 +423,7 @@ impl<'scope> Watching<'scope, '_> {
         let sitting = Arc::new(Sitting::new(stage.clone(), read.clone(), Some(edit)));
         let (sits, tray) = (sitting.clone(), self.press.tray().clone());
         let thread = self.scope.spawn(move || {
-            let course = Course { control: &ends, guard, beat: &Beat::silent() };
+            let course = Course { control: &ends, guard, beat };
             before.as_ref().filter(|_| goes_on).inspect(|before| sits.go_on_from(before));
             // Until it is seen, the coarse picture of a page has hardly any room of its own.
             before = before.filter(|_| args.preview);
@@ -444,8 +467,10 @@ impl<'scope> Watching<'scope, '_> {
         if self.libraries.iter().all(|(path, seen)| known.look(path) == *seen) {
             return Ok(());
         }
+        self.beat.phase(Phase::Opening);
         match session.refresh(args, surroundings) {
             Ok(renewed) => {
+                self.beat.opened(renewed.open(), &renewed.watched);
                 self.libraries.clone_from(&renewed.watched);
                 self.plugins = Arc::new(renewed);
                 self.kept = Arc::default();

@@ -4,6 +4,7 @@ mod after;
 mod apart;
 mod attempt;
 mod audience;
+mod begin;
 mod camera;
 mod changes;
 mod edit;
@@ -40,7 +41,7 @@ Examples:
   luxel watch scenes/cornell.scene --exec 'cp $LUXEL_PNG last.png'
   luxel watch scenes/cornell.scene --preview --editor 'vscode://file/{file}:{line}:{column}'
   luxel watch scenes/cornell.scene -o small --size 320x320 --spp 16
-  luxel watch scenes/cornell.scene --plugin-dir target/release --isolate")]
+  luxel watch scenes/cornell.scene --plugin-dir target/release --isolate --preview")]
 pub(crate) struct Args {
     /// The scene
     file: PathBuf,
@@ -53,7 +54,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     isolate: IsolateArgs,
     /// Serve a page that shows the picture as it grows, and print its address
-    #[arg(long, conflicts_with = "isolate")]
+    #[arg(long)]
     preview: bool,
     #[command(flatten)]
     page: PageArgs,
@@ -75,7 +76,7 @@ pub(crate) struct Args {
 struct ThenArgs {
     /// Run this command of the shell after each finished picture, with `LUXEL_SCENE`,
     /// `LUXEL_EXR` and `LUXEL_PNG` in its environment
-    #[arg(long, value_name = "COMMAND", conflicts_with = "isolate")]
+    #[arg(long, value_name = "COMMAND")]
     exec: Option<OsString>,
     /// Show every picture in tev too, which listens at this address
     #[arg(
@@ -83,13 +84,12 @@ struct ThenArgs {
         value_name = "HOST:PORT",
         num_args = 0..=1,
         require_equals = true,
-        default_missing_value = tev::ADDRESS,
-        conflicts_with = "isolate"
+        default_missing_value = tev::ADDRESS
     )]
     tev: Option<String>,
     /// Wait until there is a scene without mistakes and nothing is saved any more, and end with its
     /// picture
-    #[arg(long, conflicts_with = "isolate")]
+    #[arg(long)]
     once_stable: bool,
 }
 
@@ -102,10 +102,9 @@ impl Args {
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     match args.isolate.beat() {
         None => apart::watch(args),
-        Some(beat) if beat.is_silent() => here::watch(args),
         Some(beat) => {
             let _end = beat.until_the_end();
-            apart::one(args, &beat)
+            here::watch(args, &beat)
         }
     }
 }

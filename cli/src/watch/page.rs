@@ -20,6 +20,7 @@ use super::facts::{Facts, facts};
 use super::round::Read;
 use super::wishes::Wishes;
 use crate::exit::{Failure, blaming};
+use crate::isolate::Address;
 use crate::preview::{
     Command, Editor, Frame, PACE, PageArgs, Param, PixelReply, Preview, Problem, Screen,
 };
@@ -33,6 +34,7 @@ type About = Arc<Mutex<Option<(Arc<Stage>, Arc<Read>)>>>;
 
 /// A page that shows what is watched. Dropped, it is served no more.
 pub(super) struct Page {
+    address: Address,
     screen: Screen,
     about: About,
     wishes: Arc<Wishes>,
@@ -46,7 +48,8 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// Serves it, and tells where; what it asks for beyond the file is wished for.
+    /// Serves it, and tells where, unless it takes the place of another one; what it asks for beyond the
+    /// file is wished for.
     ///
     /// # Errors
     /// A port that is taken.
@@ -54,14 +57,17 @@ impl Page {
         file: &Path,
         args: &PageArgs,
         editor: Option<Editor>,
-        wishes: Wishes,
+        (wishes, again): (Wishes, Option<&Address>),
     ) -> Result<Self, Failure> {
         let title = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
-        let mut preview = Preview::start(args, &title)?;
-        report::note(&format!("preview: {}", preview.url()));
-        if !args.no_open && std::io::stderr().is_terminal() {
-            preview.open();
+        let mut preview = Preview::start(args, &title, again)?;
+        if again.is_none() {
+            report::note(&format!("preview: {}", preview.url()));
+            if !args.no_open && std::io::stderr().is_terminal() {
+                preview.open();
+            }
         }
+        let address = preview.address().clone();
         let (screen, about) = (preview.screen().clone(), About::default());
         let ended = Arc::new(AtomicBool::new(false));
         let (subject, over, wishes) = (about.clone(), ended.clone(), Arc::new(wishes));
@@ -70,7 +76,12 @@ impl Page {
         let (generation, broken, answering) =
             (AtomicU64::new(0), Mutex::default(), Some(answering));
         let standing = Arc::default();
-        Ok(Self { screen, about, wishes, generation, standing, broken, ended, answering })
+        Ok(Self { address, screen, about, wishes, generation, standing, broken, ended, answering })
+    }
+
+    /// Where it is served.
+    pub(super) fn address(&self) -> &Address {
+        &self.address
     }
 
     /// Tells that a save has been noticed, until it is known what it shows.

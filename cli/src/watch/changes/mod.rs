@@ -308,20 +308,6 @@ impl Changes {
     }
 }
 
-/// Whether one of these files becomes another while an editor may still be at it.
-pub(super) fn change_soon(files: &Watched) -> bool {
-    let until = Instant::now() + PATIENCE;
-    loop {
-        if files.iter().any(|(path, seen)| look(path) != *seen) {
-            return true;
-        }
-        if Instant::now() >= until {
-            return false;
-        }
-        std::thread::sleep(STEP);
-    }
-}
-
 /// The end is asked for.
 #[derive(Debug)]
 struct Stopped;

@@ -190,3 +190,4 @@ mod tests {
         assert!(!part(&text(PERFORMANCE), SPEED).unwrap().trim().is_empty());
     }
 }
+            "trials-skewed",

@@ -1,7 +1,7 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
 //! `cargo run --release -p luxel-bench -- [WHAT] [--luxel PATH] [--python PATH] [--embree LIBRARY]
-//! [--lean DIRECTORY] [--write DOCUMENT]`; a word that it does not know makes it tell what it measures. The
+//! [--lean DIRECTORY] [--write DOCUMENT] [--only beside]`; a word that it does not know makes it tell what it measures. The
 //! program under test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
@@ -36,6 +36,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use process::Luxel;
+use tables::Part;
 
 /// With which programs something is measured.
 struct Plan {
@@ -46,6 +47,8 @@ struct Plan {
     lean: Option<PathBuf>,
     /// The document that `errors` writes its tables into.
     document: Option<PathBuf>,
+    /// Which of the tables are wanted of `tables` and `tables-short`.
+    part: Part,
 }
 
 /// Something that can be measured.
@@ -112,17 +115,17 @@ fn usage() -> String {
     let names = names.join("|");
     format!(
         "usage: luxel-bench [all|{names}] [--luxel PATH] [--python PATH] [--embree LIBRARY] \
-         [--lean DIRECTORY] [--write DOCUMENT]"
+         [--lean DIRECTORY] [--write DOCUMENT] [--only beside]"
     )
 }
 
-/// What is to be measured, and with which programs.
-fn plan() -> Result<(&'static [Bench], Plan), String> {
+/// What is to be measured, and with which programs, as these words say.
+fn plan(mut words: impl Iterator<Item = String>) -> Result<(&'static [Bench], Plan), String> {
     const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 5).0;
     let mut benches = ALL;
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
     let (mut python, mut embree, mut lean, mut document) = (None, None, None, None);
-    let mut words = std::env::args().skip(1);
+    let mut part = Part::All;
     while let Some(word) = words.next() {
         match word.as_str() {
             "all" => benches = ALL,
@@ -130,6 +133,10 @@ fn plan() -> Result<(&'static [Bench], Plan), String> {
             "--lean" => lean = words.next().map(PathBuf::from),
             "--embree" => embree = words.next().map(PathBuf::from),
             "--write" => document = Some(words.next().ok_or_else(usage)?.into()),
+            "--only" => match words.next().as_deref() {
+                Some("beside") => part = Part::Beside,
+                other => return Err(format!("--only {}? {}", other.unwrap_or_default(), usage())),
+            },
             "--python" => python = words.next().map(PathBuf::from),
             name => match BENCHES.iter().position(|bench| bench.name == name) {
                 Some(i) => benches = &BENCHES[i..=i],
@@ -144,19 +151,46 @@ fn plan() -> Result<(&'static [Bench], Plan), String> {
     if document.is_some() && !benches.iter().any(|bench| bench.name == "errors") {
         return Err("--write: only `errors` writes into a document".to_owned());
     }
+    if part != Part::All && !benches.iter().all(|bench| bench.name.starts_with("tables")) {
+        return Err("--only: of `tables` and `tables-short` alone there are parts".to_owned());
+    }
     let luxel = Luxel { program: program.unwrap_or_default() };
-    Ok((benches, Plan { luxel, python, embree, lean, document }))
+    Ok((benches, Plan { luxel, python, embree, lean, document, part }))
 }
 
 fn main() -> ExitCode {
     if parse::once() || evaluate::once() {
         return ExitCode::SUCCESS;
     }
-    match plan().and_then(|(benches, plan)| benches.iter().try_for_each(|it| (it.run)(&plan))) {
+    let words = std::env::args().skip(1);
+    match plan(words).and_then(|(benches, plan)| benches.iter().try_for_each(|it| (it.run)(&plan)))
+    {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             println!("{message}");
             ExitCode::FAILURE
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_one_of_tables_and_has_a_name() {
+        // Any file stands for the program.
+        let here = std::env::current_exe().unwrap().display().to_string();
+        let part = |text: &str| {
+            let words =
+                text.split(' ').map(str::to_owned).chain(["--luxel".to_owned(), here.clone()]);
+            plan(words).map(|(benches, plan)| (benches.len(), benches[0].name, plan.part))
+        };
+        assert_eq!(part("tables"), Ok((1, "tables", Part::All)));
+        assert_eq!(part("tables --only beside"), Ok((1, "tables", Part::Beside)));
+        assert_eq!(part("--only beside tables-short"), Ok((1, "tables-short", Part::Beside)));
+        assert!(part("tables --only besides").unwrap_err().starts_with("--only besides? usage: "));
+        assert!(part("ply --only beside").unwrap_err().starts_with("--only: of `tables`"));
+        assert!(part("--only beside").unwrap_err().starts_with("--only: of `tables`"));
     }
 }

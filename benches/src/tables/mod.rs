@@ -9,7 +9,7 @@ mod readme;
 mod said;
 mod studied;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::process::{self, Luxel, has_mitsuba, here, read, scratch};
@@ -60,12 +60,52 @@ fn root() -> Result<&'static Path, String> {
     here().parent().ok_or_else(|| "the benches lie in the project's folder".to_owned())
 }
 
-/// Writes them all; what takes long last. Without another renderer its tables stay as they are.
+/// Which of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    All,
+    /// Those that another renderer is needed for.
+    Beside,
+}
+
+/// Where tables are written.
+struct Documents {
+    accuracy: PathBuf,
+    performance: PathBuf,
+    readme: PathBuf,
+}
+
+/// Writes them all; what takes long last. Without another renderer its tables stay as they are, which is
+/// an error where only they are wanted.
 ///
 /// # Errors
 /// What a command or the disk says.
 pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     let root = root()?;
+    if plan.part == Part::All {
+        alone(plan, root)?;
+    }
+    let [accuracy, performance, readme] = [ACCURACY, PERFORMANCE, README].map(|it| root.join(it));
+    let to = Documents { accuracy, performance, readme };
+    match (mitsuba(plan), plan.part) {
+        (Some(python), _) => beside(&plan.luxel, python, &to, Form::Whole),
+        (None, Part::Beside) => Err(MISSING.to_owned()),
+        (None, Part::All) => {
+            println!("{MISSING}: what is measured beside it stays as it is");
+            Ok(())
+        }
+    }
+}
+
+const MISSING: &str = "Mitsuba is not to be had (--python PATH of one that imports it)";
+
+/// The Python that has it.
+fn mitsuba(plan: &Plan) -> Option<&Path> {
+    plan.python.as_deref().filter(|python| has_mitsuba(python))
+}
+
+/// What Luxel alone is needed for.
+fn alone(plan: &Plan, root: &Path) -> Result<(), String> {
     let (luxel, place) = (&plan.luxel, root.join(ACCURACY));
     told(Command::new(&luxel.program).args(["verify", "--write"]).arg(&place))?;
     errors::run(Some(&place), errors::RAYS)?;
@@ -75,29 +115,33 @@ pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     }
     write(&place, MANY, &many(root, "1e9")?)?;
     renders(luxel, &place, Path::new(IMAGES), Form::Whole)?;
-    readme::alone(plan, &root.join(README), Form::Whole)?;
-    let Some(python) = plan.python.as_deref().filter(|python| has_mitsuba(python)) else {
-        println!(
-            "Mitsuba is not to be had (--python PATH of one that imports it): what is measured beside it stays as it is"
-        );
-        return Ok(());
-    };
-    write(&place, FURNACE, &furnace::tables(root, Some(python), Form::Whole)?)?;
-    let found = Found::measure(luxel, python)?;
-    write(&place, REGIONS, &found.regions()?)?;
-    write(&place, BLOCKS, &found.blocks()?)?;
-    write(&root.join(PERFORMANCE), SPEED, &found.speed()?)?;
-    readme::beside(&found, &root.join(README))
+    readme::alone(plan, &root.join(README), Form::Whole)
+}
+
+/// What is measured beside another renderer.
+fn beside(luxel: &Luxel, python: &Path, to: &Documents, form: Form) -> Result<(), String> {
+    write(&to.accuracy, FURNACE, &furnace::tables(root()?, Some(python), form)?)?;
+    let found = Found::measure(luxel, python, form)?;
+    write(&to.accuracy, REGIONS, &found.regions()?)?;
+    write(&to.accuracy, BLOCKS, &found.blocks()?)?;
+    write(&to.performance, SPEED, &found.speed()?)?;
+    readme::beside(&found, &to.readme)
 }
 
 /// Makes those tables of docs/accuracy.md that no test makes, and the rows of the README, of next to nothing
-/// and in copies; without another renderer what is measured beside it is left out.
+/// and in copies; what is measured beside another renderer is left out, unless it alone is wanted.
 ///
 /// # Errors
 /// What a command or the disk says.
 pub(crate) fn short(plan: &Plan) -> Result<(), String> {
-    let place = process::write("accuracy.md", &read(&root()?.join(ACCURACY))?)?;
-    let readme = process::write(README, &read(&root()?.join(README))?)?;
+    let copy = |document: &str, name| process::write(name, &read(&root()?.join(document))?);
+    let (place, readme) = (copy(ACCURACY, "accuracy.md")?, copy(README, README)?);
+    if plan.part == Part::Beside {
+        let python = mitsuba(plan).ok_or(MISSING)?;
+        let performance = copy(PERFORMANCE, "performance.md")?;
+        let to = Documents { accuracy: place, performance, readme };
+        return beside(&plan.luxel, python, &to, Form::Short);
+    }
     errors::run(Some(&place), 100)?;
     write(&place, MANY, &many(root()?, "1e6")?)?;
     write(&place, FURNACE, &furnace::tables(root()?, None, Form::Short)?)?;
@@ -173,6 +217,7 @@ mod tests {
             "coverage-asked",
             "trials-same",
             "trials-different",
+            "trials-skewed",
             CALIBRATION,
             SAID,
             ASKED,
@@ -190,4 +235,3 @@ mod tests {
         assert!(!part(&text(PERFORMANCE), SPEED).unwrap().trim().is_empty());
     }
 }
-            "trials-skewed",

@@ -4,11 +4,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use super::Form;
 use crate::peer::compare;
 use crate::process::{Luxel, read, scratch};
-
-/// Rounds of each program on each scene.
-const ROUNDS: &str = "9";
 
 /// Name, scene, and channel of the pictures whose means are compared.
 const CHANNELS: [(&str, &str, usize); 7] = [
@@ -54,12 +52,14 @@ const FAR: f64 = 3.5;
 pub(super) struct Found {
     accuracy: Value,
     speed: Value,
+    /// Of each program on each scene.
+    rounds: u32,
 }
 
 impl Found {
     /// # Errors
     /// The script failed.
-    pub(super) fn measure(luxel: &Luxel, python: &Path) -> Result<Self, String> {
+    pub(super) fn measure(luxel: &Luxel, python: &Path, form: Form) -> Result<Self, String> {
         let asked = |what: &str, words: &str| {
             let json = scratch()?.join(format!("{what}.json"));
             let mut all = vec![what, "--json", json.to_str().ok_or("a folder that is no text")?];
@@ -67,10 +67,15 @@ impl Found {
             compare(luxel, python, &all)?;
             serde_json::from_slice(&read(&json)?).map_err(|error| error.to_string())
         };
-        let accuracy = "--spp 128 --seeds 6 --res 256 --reference-spp 4096 --scenes cornell_grey \
-                        cornell_rgb cornell_spectral";
-        let speed = format!("--rounds {ROUNDS} --spp 16 --scenes cornell_rgb glass_metal waves");
-        Ok(Self { accuracy: asked("accuracy", accuracy)?, speed: asked("speed", &speed)? })
+        let amount = form.pick(
+            "--spp 128 --seeds 6 --res 256 --reference-spp 4096",
+            "--spp 4 --seeds 2 --res 128 --reference-spp 16",
+        );
+        let accuracy = format!("{amount} --scenes cornell_grey cornell_rgb cornell_spectral");
+        let (rounds, amount) = form.pick((9, "--spp 16"), (1, "--spp 1 --res 64"));
+        let speed = format!("--rounds {rounds} {amount} --scenes cornell_rgb glass_metal waves");
+        let (accuracy, speed) = (asked("accuracy", &accuracy)?, asked("speed", &speed)?);
+        Ok(Self { accuracy, speed, rounds })
     }
 
     /// The same figures everywhere, to try what is made of them.
@@ -86,7 +91,8 @@ impl Found {
         let programs = PROGRAMS.map(|(_, program)| (program.to_owned(), figures.clone()));
         let programs: Value = programs.into_iter().collect();
         let speed = TIMED.map(|(_, scene)| (scene.to_owned(), programs.clone()));
-        Self { accuracy: accuracy.into_iter().collect(), speed: speed.into_iter().collect() }
+        let (accuracy, speed) = (accuracy.into_iter().collect(), speed.into_iter().collect());
+        Self { accuracy, speed, rounds: 9 }
     }
 
     /// Luxel / Mitsuba − 1 of a region's mean, and its standard error.
@@ -195,7 +201,7 @@ impl Found {
             }
         }
         let tables = [rates, efficiencies, times].map(|rows| rows.join("\n")).join("\n\n");
-        Ok(format!("{ROUNDS} rounds of each.\n\n{tables}"))
+        Ok(format!("{} rounds of each.\n\n{tables}", self.rounds))
     }
 }
 

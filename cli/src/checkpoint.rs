@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use crate::args::MOST_SECONDS;
 use crate::exit::{Exit, Failure};
 use crate::load::Loaded;
-use crate::output::{Draft, Output, unwritable};
+use crate::output::{Draft, Output, sweep, unwritable};
 
 /// Whether and when what has been measured is kept.
 #[derive(clap::Args, Clone, Copy, Debug)]
@@ -130,6 +130,8 @@ impl Checkpoint {
         let mut from = BufReader::new(file.take(MOST_HEAD));
         let (mut magic, mut about) = (vec![], vec![]);
         let read = from.read_until(b'\n', &mut magic);
+        // Here too: a render may end before it keeps anything.
+        sweep(&kept.place);
         read.and_then(|_| from.read_until(b'\n', &mut about)).map_err(|e| self.wrong(&e))?;
         if magic != MAGIC {
             let message = format!("`{}` is in the way: no checkpoint", self.place.display());

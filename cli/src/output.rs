@@ -6,7 +6,7 @@ use std::io::{self, Write as _};
 use std::path::{Component, Path, PathBuf};
 
 use crate::exit::{Exit, Failure};
-use crate::files::DiskFiles;
+use crate::files::{DiskFiles, identity};
 
 /// The two files of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -121,6 +121,7 @@ pub(crate) fn replace(file: &Path, text: &str) -> io::Result<()> {
 /// So many drafts of one file may there be at a time, of this process or left by one of its number.
 const MOST_DRAFTS: u32 = 8;
 
+/// `.NAME.PROCESS.N.tmp`
 fn temporary(place: &Path, n: u32) -> OsString {
     let mut name = OsString::from(".");
     name.push(place.file_name().unwrap_or_default());
@@ -128,8 +129,56 @@ fn temporary(place: &Path, n: u32) -> OsString {
     name
 }
 
+/// Whether some process would give a draft of the file `of` this name.
+fn is_temporary(name: &OsStr, of: &OsStr) -> bool {
+    let rest = name.as_encoded_bytes().strip_prefix(b".");
+    let rest = rest.and_then(|rest| rest.strip_prefix(of.as_encoded_bytes()));
+    let numbers = rest.and_then(|rest| rest.strip_prefix(b".")?.strip_suffix(b".tmp"));
+    let is_number = |part: &[u8]| !part.is_empty() && part.iter().all(u8::is_ascii_digit);
+    let parts: Vec<_> = numbers.unwrap_or_default().split(|byte| *byte == b'.').collect();
+    parts.len() == 2 && parts.into_iter().all(is_number)
+}
+
+/// Removes what processes that were killed have left of drafts of a file. A draft that a process is
+/// still at work on is locked by it, and stays; so does everything where nothing can be locked.
+pub(crate) fn sweep(path: &Path) {
+    let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let (Some(folder), Some(of)) = (place.parent(), place.file_name()) else { return };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| is_temporary(&entry.file_name(), of)) {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        // What is no file, a pipe say, is not even opened.
+        let left = is_file.then(|| fs::OpenOptions::new().write(true).open(entry.path()));
+        // Removed while locked: who made it a moment ago finds out that it is gone.
+        if let Some(Ok(left)) = left
+            && left.try_lock().is_ok()
+            && is_at(&left, &entry.path())
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether a file is the one that stands there: it may have taken another's place since it was opened.
+fn is_at(file: &fs::File, path: &Path) -> bool {
+    let [opened, there] = [file.metadata(), fs::symlink_metadata(path)];
+    opened.is_ok_and(|opened| there.is_ok_and(|there| identity(&opened) == identity(&there)))
+}
+
+/// Makes the file, and locks it for as long as this process lives.
+fn make(temporary: &Path) -> io::Result<fs::File> {
+    let file = fs::OpenOptions::new().write(true).create_new(true).open(temporary)?;
+    let is_swept = matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock));
+    // Another process may have taken it for one that was left, before it was locked.
+    if is_swept || !is_at(&file, temporary) {
+        return Err(io::ErrorKind::AlreadyExists.into());
+    }
+    Ok(file)
+}
+
 impl Draft {
-    /// Opens a temporary file in the folder of `path`.
+    /// Opens a temporary file in the folder of `path`, and removes those that were left there.
     ///
     /// # Errors
     /// The system's; also when something other than a writable, regular file is in the place.
@@ -144,10 +193,10 @@ impl Draft {
                 return Err(io::Error::other("the file in its place is read-only"));
             }
         }
+        sweep(&place);
         let open = |n| {
             let temporary = place.with_file_name(temporary(&place, n));
-            let file = fs::OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-            Ok::<_, io::Error>((temporary, file))
+            make(&temporary).map(|file| (temporary, file))
         };
         // Whether a file can be written is asked while a picture before is being written to it.
         let mut opened = open(0);
@@ -217,6 +266,37 @@ mod tests {
         first.finish().unwrap();
         assert_eq!(folder.names(), ["a.exr"]);
         assert_eq!(bytes(&folder.path("a.exr")), b"first");
+    }
+
+    #[test]
+    fn what_killed_runs_left_is_removed_and_nothing_else() {
+        let folder = Folder::new("stale");
+        // Of numbers that a process had, that none can have, and that this one has.
+        let mine = format!(".a.exr.{}.7.tmp", std::process::id());
+        let left = [".a.exr.1.0.tmp", ".a.exr.99999999999.3.tmp", mine.as_str()];
+        let others = [
+            ".a.exr.tmp",
+            ".a.exr.1.tmp",
+            ".a.exr.1.0.2.tmp",
+            ".a.exr.1.x.tmp",
+            ".a.exr..0.tmp",
+            ".a.exr.1.0.tmp.bak",
+            ".ba.exr.1.0.tmp",
+            "a.exr.1.0.tmp",
+        ];
+        for name in left.iter().chain(&others) {
+            folder.write(name, b"half");
+        }
+        folder.write(".a.exr.2.0.tmp/inside", b"");
+        let live = Draft::begin(&folder.path("a.exr")).unwrap();
+        drop(Draft::begin(&folder.path("a.exr")).unwrap());
+        let mut expected: Vec<String> = others.map(String::from).into();
+        let name = live.temporary.file_name().unwrap();
+        expected.extend([".a.exr.2.0.tmp".into(), name.to_str().unwrap().into()]);
+        let mut found = folder.names();
+        found.sort();
+        expected.sort();
+        assert_eq!(found, expected);
     }
 
     #[test]

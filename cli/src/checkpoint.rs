@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use luxel_core::film::{Film, Rect};
-use luxel_core::render::{Options, can_go_on};
+use luxel_core::render::{Goal, Options, can_go_on};
 use luxel_core::stage::Stage;
 use serde_json::{Value, json};
 
@@ -22,7 +22,8 @@ use crate::output::{Draft, Output, sweep, unwritable};
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub(crate) struct CheckpointArgs {
     /// Go on with OUT.checkpoint, to the same picture as if nothing had come between; begin anew if it
-    /// is not there
+    /// is not there. --spp, --error and --time are as before if none is given, --time for what was left
+    /// of it; a --time that is given is that of this run alone
     #[arg(long)]
     pub(crate) resume: bool,
     /// Seconds between two checkpoints, or four times as long as one takes; each waits a few seconds
@@ -47,6 +48,10 @@ pub(crate) struct Checkpoint {
     about: Value,
     every: Option<Duration>,
     next: Option<Instant>,
+    /// Seconds that the runs before this one have rendered.
+    before: f64,
+    /// Seconds that this run was given.
+    given: Option<f64>,
 }
 
 /// What is there of an earlier render.
@@ -67,12 +72,33 @@ pub(crate) struct Asked {
     pub(crate) spp: Option<u32>,
     /// The error.
     pub(crate) error: Option<f64>,
+    /// Seconds: those of this run, or what is left of them for the next.
+    pub(crate) time: Option<f64>,
+}
+
+/// What an earlier run has left.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Before {
+    /// What it measured.
+    pub(crate) film: Film,
+    /// What it was to become.
+    pub(crate) asked: Asked,
+    /// Seconds that it took, with those of the runs before it.
+    pub(crate) seconds: f64,
 }
 
 impl Asked {
-    /// What these options ask for, beside a time.
+    /// What these options ask for.
     pub(crate) fn of(options: &Options) -> Self {
-        Self { spp: options.spp, error: options.goal.error }
+        let Goal { error, time } = options.goal;
+        Self { spp: options.spp, error, time: time.map(|time| time.as_secs_f64()) }
+    }
+
+    /// The same for another run. One that had an error to reach and no time left goes on until then.
+    pub(crate) fn ask(&self, options: &mut Options) {
+        (options.spp, options.goal.error) = (self.spp, self.error);
+        let time = self.time.filter(|left| *left > 0.0 || self.error.is_none());
+        options.goal.time = time.and_then(|left| Duration::try_from_secs_f64(left).ok());
     }
 }
 
@@ -102,8 +128,10 @@ impl Checkpoint {
         let every = Some(args.every).filter(|every| !every.is_zero() && can_go_on(stage));
         let next = every.and_then(|every| Instant::now().checked_add(every));
         let place = output.exr.with_extension("checkpoint");
-        let kept = Self { place, about, every, next };
+        let kept = Self { place, about, every, next, before: 0.0, given: asked.time };
         kept.head()?;
+        // Here too: a render may end before it keeps anything.
+        sweep(&kept.place);
         Ok(kept)
     }
 
@@ -130,8 +158,6 @@ impl Checkpoint {
         let mut from = BufReader::new(file.take(MOST_HEAD));
         let (mut magic, mut about) = (vec![], vec![]);
         let read = from.read_until(b'\n', &mut magic);
-        // Here too: a render may end before it keeps anything.
-        sweep(&kept.place);
         read.and_then(|_| from.read_until(b'\n', &mut about)).map_err(|e| self.wrong(&e))?;
         if magic != MAGIC {
             let message = format!("`{}` is in the way: no checkpoint", self.place.display());
@@ -164,11 +190,11 @@ impl Checkpoint {
         differences.find(|(key, _)| about[key] != self.about[key]).map(|(_, what)| *what)
     }
 
-    /// The film that was left and what it was to become; nothing if there is none.
+    /// What was left; nothing if there is none.
     ///
     /// # Errors
     /// A file that cannot be read, is damaged, or is of another picture.
-    pub(crate) fn read(&self) -> Result<Option<(Film, Asked)>, Failure> {
+    pub(crate) fn read(&self) -> Result<Option<Before>, Failure> {
         let wrong = |why: &str| self.wrong(&why);
         let Some(mut file) = self.open()? else { return Ok(None) };
         let mut bytes = vec![];
@@ -186,12 +212,21 @@ impl Checkpoint {
         }
         let film = Film::load(&body[end + 1..]).map_err(|unreadable| wrong(unreadable.0))?;
         let spp = about["spp"].as_u64().and_then(|spp| spp.try_into().ok());
-        Ok(Some((film, Asked { spp, error: about["error"].as_f64() })))
+        let [error, time, seconds] =
+            ["error", "time_left", "seconds"].map(|key| about[key].as_f64());
+        let asked = Asked { spp, error, time };
+        Ok(Some(Before { film, asked, seconds: seconds.unwrap_or(0.0) }))
     }
 
-    /// From now on this is asked for.
-    pub(crate) fn asks(&mut self, asked: Asked) {
+    /// From now on this is asked for, after so many seconds of other runs.
+    pub(crate) fn asks(&mut self, asked: Asked, before: f64) {
         (self.about["spp"], self.about["error"]) = (json!(asked.spp), json!(asked.error));
+        (self.given, self.before) = (asked.time, before);
+    }
+
+    /// Seconds that the runs before this one have rendered.
+    pub(crate) fn before(&self) -> f64 {
+        self.before
     }
 
     /// Whether it is time for the next.
@@ -199,12 +234,14 @@ impl Checkpoint {
         self.next.is_some_and(|next| Instant::now() >= next)
     }
 
-    /// Keeps the film, unless nothing is to be kept; returns whether.
+    /// Keeps the film after so many seconds of this run, unless nothing is to be kept; returns whether.
     ///
     /// # Errors
     /// A file that cannot be written; the one before stays.
-    pub(crate) fn keep(&mut self, film: &Film) -> Result<bool, Failure> {
+    pub(crate) fn keep(&mut self, film: &Film, seconds: f64) -> Result<bool, Failure> {
         let Some(every) = self.every else { return Ok(false) };
+        self.about["seconds"] = json!(self.before + seconds);
+        self.about["time_left"] = json!(self.given.map(|given| (given - seconds).max(0.0)));
         let start = Instant::now();
         let kept = self.write(film).map_err(|error| unwritable(&self.place, &error));
         self.next = Instant::now().checked_add(every.max(start.elapsed() * SHARE));
@@ -276,7 +313,8 @@ mod tests {
     fn checkpoint(folder: &Folder, seed: u32) -> Checkpoint {
         let place = folder.path("a.checkpoint");
         let every = Some(Duration::from_secs(60));
-        Checkpoint { place, about: json!({ "seed": seed }), every, next: None }
+        let about = json!({ "seed": seed });
+        Checkpoint { place, about, every, next: None, before: 0.0, given: None }
     }
 
     fn film() -> Film {
@@ -289,11 +327,12 @@ mod tests {
         let mut kept = checkpoint(&folder, 1);
         assert_eq!((kept.read().unwrap(), kept.left().unwrap()), (None, Left::Nothing));
         assert!(!kept.is_due());
-        let asked = Asked { spp: Some(7), error: Some(0.25) };
-        kept.asks(asked);
-        kept.keep(&film()).unwrap();
+        let asked = Asked { spp: Some(7), error: Some(0.25), time: Some(4.0) };
+        kept.asks(asked, 30.0);
+        kept.keep(&film(), 1.5).unwrap();
         assert_eq!(folder.names(), ["a.checkpoint"]);
-        assert_eq!(kept.read().unwrap(), Some((film(), asked)));
+        let asked = Asked { time: Some(2.5), ..asked };
+        assert_eq!(kept.read().unwrap(), Some(Before { film: film(), asked, seconds: 31.5 }));
         assert_eq!(kept.left().unwrap(), Left::Same);
         assert_eq!(checkpoint(&folder, 2).left().unwrap(), Left::Other);
         kept.remove();
@@ -301,10 +340,25 @@ mod tests {
     }
 
     #[test]
+    fn the_next_run_has_what_is_left_of_the_time_or_goes_on_until_the_error_is_reached() {
+        let time = |error, time| {
+            let mut options = Options::default();
+            Asked { spp: None, error, time }.ask(&mut options);
+            (options.goal.error, options.goal.time)
+        };
+        let half = Some(Duration::from_millis(500));
+        assert_eq!(time(None, Some(0.5)), (None, half));
+        assert_eq!(time(None, Some(0.0)), (None, Some(Duration::ZERO)));
+        assert_eq!(time(Some(0.25), Some(0.5)), (Some(0.25), half));
+        assert_eq!(time(Some(0.25), Some(0.0)), (Some(0.25), None));
+        assert_eq!(time(Some(0.25), None), (Some(0.25), None));
+    }
+
+    #[test]
     fn another_picture_and_a_damaged_file_are_refused() {
         let folder = Folder::new("checkpoint-bad");
         let mut kept = checkpoint(&folder, 1);
-        kept.keep(&film()).unwrap();
+        kept.keep(&film(), 1.0).unwrap();
         let why = |checkpoint: &Checkpoint| checkpoint.read().unwrap_err().message;
         assert!(why(&checkpoint(&folder, 2)).ends_with("it is of another seed"));
         #[expect(clippy::disallowed_methods, reason = "tests look at files")]

@@ -16,7 +16,8 @@ pub(crate) struct GoalArgs {
     #[arg(long, value_name = "SHARE", value_parser = share)]
     error: Option<f64>,
     /// Go on for this long, as in 30s or 5min; samples go where they lower the error most, or, with
-    /// --error, where that is not yet reached
+    /// --error, where that is not yet reached. It counts from the first sample of this run: with
+    /// --resume it is added to what was spent before
     #[arg(long, value_name = "DURATION", value_parser = duration)]
     time: Option<Duration>,
 }

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 use luxel_core::film::Film;
 use luxel_core::render::{Control, Options, Outcome, Reached, can_go_on, is_owned};
 use luxel_core::stage::Stage;
 
 use crate::args::{LoadArgs, PluginArgs, RenderArgs};
-use crate::checkpoint::{Asked, Checkpoint, CheckpointArgs, Left};
+use crate::checkpoint::{Asked, Before, Checkpoint, CheckpointArgs, Left};
 use crate::exit::{Exit, Failure};
 use crate::goal::GoalArgs;
 use crate::interrupt::Guard;
@@ -18,7 +19,7 @@ use crate::measure::{self, Measured};
 use crate::output::Output;
 use crate::picture;
 use crate::report::{self, Form, Stream};
-use crate::summary::Summary;
+use crate::summary::{Summary, Took};
 
 /// Render a scene to OUT.exr and OUT.png
 ///
@@ -116,7 +117,9 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let (film, options) = begin(args, stage, empty, &mut kept)?;
     beat.phase(Phase::Rendering);
     let of = (args.file.as_path(), stage);
-    let mut look = |film: &Film, _: Reached| keep_sometimes(&mut kept, film, (&guard, beat));
+    let start = Instant::now();
+    let mut look =
+        |film: &Film, _: Reached| keep_sometimes(&mut kept, (film, start), (&guard, beat));
     let measured = measure::measure(of, film, &options, &control, !args.quiet, &mut look)?;
     if measured.outcome == Outcome::Failed {
         // What was measured may be wrong: there is no picture of it.
@@ -126,7 +129,8 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
     let _whole = guard.saving();
     beat.phase(Phase::Saving);
     let Measured { film, outcome, seconds } = &measured;
-    let (of, took) = ((stage, &loaded.files, &loaded.origin), (*seconds, control.samples_done()));
+    let of = (stage, &loaded.files, &loaded.origin);
+    let took = Took { seconds: *seconds, before: kept.before(), samples: control.samples_done() };
     let summary = Summary::new(of, &options, (film, *outcome), took);
     save(args, (stage, &summary), &measured, &output, &mut kept)
 }
@@ -135,7 +139,7 @@ fn render(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
 fn save(
     args: &Args,
     (stage, summary): (&Stage, &Summary),
-    Measured { film, outcome, .. }: &Measured,
+    Measured { film, outcome, seconds }: &Measured,
     output: &Output,
     kept: &mut Checkpoint,
 ) -> Result<Exit, Failure> {
@@ -148,7 +152,7 @@ fn save(
     if is_whole && written.is_ok() {
         kept.remove();
     } else {
-        match kept.keep(film) {
+        match kept.keep(film, *seconds) {
             Ok(true) => report::aside("--resume goes on from here"),
             Ok(false) => {}
             Err(failure) => report::warning(&failure.message),
@@ -187,8 +191,8 @@ fn begin(
         let message = "this integrator owns the whole picture, and cannot go on with one";
         return Err(Failure::new(Exit::Input, message).help("render without --resume"));
     }
-    if let Some((film, before)) = kept.read()? {
-        return go_on((film, before), &empty, (stage, options), kept);
+    if let Some(before) = kept.read()? {
+        return go_on(before, &empty, (stage, options), kept);
     }
     report::warning(&format!("there is no `{}`: it begins anew", kept.place().display()));
     Ok((empty, options))
@@ -196,7 +200,7 @@ fn begin(
 
 /// A film that was left, and what it is to become: what it was to be, unless something is asked for.
 fn go_on(
-    (mut film, before): (Film, Asked),
+    Before { mut film, asked: before, seconds }: Before,
     empty: &Film,
     (stage, mut options): (&Stage, Options),
     kept: &mut Checkpoint,
@@ -208,7 +212,7 @@ fn go_on(
         return Err(Failure::new(Exit::Input, message));
     }
     if options.spp.is_none() && !options.goal.is_some() {
-        (options.spp, options.goal.error) = (before.spp, before.error);
+        before.ask(&mut options);
     }
     let (has, asked) = (film.most_samples(), options.samples(stage));
     if has > asked {
@@ -219,18 +223,22 @@ fn go_on(
     if Asked::of(&options) != before || options.goal.time.is_some() {
         film.ask_anew();
     }
-    kept.asks(Asked::of(&options));
+    kept.asks(Asked::of(&options), seconds);
     Ok((film, options))
 }
 
 /// Keeps the film if it is time for it. What cannot be kept is told, and nothing else is lost.
-fn keep_sometimes(kept: &mut Checkpoint, film: &Film, (guard, beat): (&Guard, &Beat)) {
+fn keep_sometimes(
+    kept: &mut Checkpoint,
+    (film, start): (&Film, Instant),
+    (guard, beat): (&Guard, &Beat),
+) {
     if !kept.is_due() {
         return;
     }
     let whole = guard.saving();
     beat.phase(Phase::Saving);
-    if let Err(failure) = kept.keep(film) {
+    if let Err(failure) = kept.keep(film, start.elapsed().as_secs_f64()) {
         report::warning(&failure.message);
     }
     guard.measuring();

@@ -32,9 +32,7 @@ pub(crate) struct Summary {
     sampler: String,
     filter: String,
     outcome: Outcome,
-    seconds: f64,
-    /// Of this run.
-    samples: u64,
+    took: Took,
     /// Of this run and those that it went on from.
     samples_in_all: u64,
     mean: DVec3,
@@ -48,6 +46,31 @@ pub(crate) struct Summary {
     names: Value,
     /// Samples that were not finite.
     pub(crate) bad: u64,
+    bad_places: BadPlaces,
+}
+
+/// What it cost.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Took {
+    /// Seconds of this run.
+    pub(crate) seconds: f64,
+    /// Seconds of the runs that it went on from.
+    pub(crate) before: f64,
+    /// Samples of this run.
+    pub(crate) samples: u64,
+}
+
+impl Took {
+    /// `12 s`, or `12 s (48 s in all)`.
+    fn words(self) -> String {
+        let now = duration(self.seconds);
+        let in_all = duration(self.before + self.seconds);
+        if self.before > 0.0 { format!("{now} ({in_all} in all)") } else { now }
+    }
+
+    fn rate(self) -> f64 {
+        self.samples as f64 / self.seconds.max(f64::MIN_POSITIVE)
+    }
 }
 
 impl Summary {
@@ -55,7 +78,7 @@ impl Summary {
         (stage, files, origin): (&Stage, &DiskFiles, &Origin),
         options: &Options,
         (film, outcome): (&Film, Outcome),
-        (seconds, samples): (f64, u64),
+        took: Took,
     ) -> Self {
         let hex = |hash| blake3::Hash::from_bytes(hash).to_hex().to_string();
         let integrator = stage.scene.integrator.map(|id| stage.scene.node(id).class.to_string());
@@ -78,9 +101,8 @@ impl Summary {
             sampler: stage.sampler.class().name.to_string(),
             filter: stage.filter.class().name.to_string(),
             outcome,
-            seconds,
-            samples,
-            samples_in_all: film.samples().max(samples),
+            took,
+            samples_in_all: film.samples().max(took.samples),
             mean: film.mean().0,
             error: Errors::of_film(film, goal.error.unwrap_or(f64::INFINITY)),
             scene: hex(stage.scene.hash()),
@@ -89,6 +111,7 @@ impl Summary {
             dropped: stage.scene.left_out().collect(),
             names: names(stage, film),
             bad: film.bad_samples(),
+            bad_places: BadPlaces::of(film.pixels().map(|(at, pixel)| (at, pixel.bad))),
         }
     }
 
@@ -107,6 +130,7 @@ impl Summary {
         if !self.dropped.is_empty() {
             settings["dropped"] = self.dropped.iter().map(|it| it.name()).collect();
         }
+        self.bad_places.say(&mut settings);
         settings
     }
 
@@ -156,9 +180,11 @@ impl Summary {
     /// One object with everything, and the files that were written.
     pub(crate) fn json(&self, output: &Output) -> Value {
         let mut all = self.settings();
-        all["seconds"] = json!(self.seconds);
-        all["samples"] = json!(self.samples);
-        all["samples_per_second"] = json!(self.rate());
+        all["seconds"] = json!(self.took.seconds);
+        all["seconds_in_all"] = json!(self.took.before + self.took.seconds);
+        all["samples"] = json!(self.took.samples);
+        all["samples_in_all"] = json!(self.samples_in_all);
+        all["samples_per_second"] = json!(self.took.rate());
         all["mean_radiance"] = json!(self.mean.to_array());
         all["exr"] = json!(output.exr);
         all["png"] = json!(output.png);
@@ -180,7 +206,7 @@ impl Summary {
             "wrote {exr} and {png}{done}\n\
              {size}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
              mean radiance ({:.4}, {:.4}, {:.4}) W/m²/sr\n\
-             {error}{reached}{dropped}",
+             {error}{reached}{bad}{dropped}",
             mean.x,
             mean.y,
             mean.z,
@@ -189,10 +215,11 @@ impl Summary {
             size = self.place(),
             spp = self.spp_words(),
             mode = self.mode,
-            time = duration(self.seconds),
-            rate = self.rate() / 1e6,
+            time = self.took.words(),
+            rate = self.took.rate() / 1e6,
             error = self.error_words(),
             reached = self.reached_words(),
+            bad = self.bad_places.words(),
             dropped = self.dropped_words(),
         )
     }
@@ -253,9 +280,50 @@ impl Summary {
     fn wanted(&self) -> u64 {
         u64::from(self.window[2]) * u64::from(self.window[3]) * u64::from(self.spp)
     }
+}
 
-    fn rate(&self) -> f64 {
-        self.samples as f64 / self.seconds.max(f64::MIN_POSITIVE)
+/// Pixels that samples were left out of, as they were not finite.
+#[derive(Clone, Debug, Default)]
+struct BadPlaces {
+    /// How many there are.
+    pixels: u64,
+    /// The first of them, row by row, and how many samples were left out of each.
+    first: Vec<(UVec2, u32)>,
+}
+
+/// So many pixels are named.
+const NAMED: usize = 5;
+
+impl BadPlaces {
+    /// Of pixels with as many such samples as stand beside them.
+    fn of(pixels: impl Iterator<Item = (UVec2, u32)>) -> Self {
+        let mut found = Self::default();
+        for (at, bad) in pixels.filter(|(_, bad)| *bad > 0) {
+            found.pixels += 1;
+            if found.first.len() < NAMED {
+                found.first.push((at, bad));
+            }
+        }
+        found
+    }
+
+    fn say(&self, all: &mut Value) {
+        let place = |(at, n): &(UVec2, u32)| json!({ "x": at.x, "y": at.y, "samples": n });
+        all["bad_pixels"] = json!(self.pixels);
+        all["first_bad_pixels"] = self.first.iter().map(place).collect();
+    }
+
+    /// Nothing if there are none.
+    fn words(&self) -> String {
+        let place = |(at, n): &(UVec2, u32)| format!("{n} at ({}, {})", at.x, at.y);
+        let places: Vec<_> = self.first.iter().map(place).collect();
+        let others = match self.pixels - self.first.len() as u64 {
+            0 if places.is_empty() => return String::new(),
+            0 => String::new(),
+            1 => ", and more at another pixel".into(),
+            n => format!(", and more at {n} other pixels"),
+        };
+        format!("samples that were not finite: {}{others}\n", places.join(", "))
     }
 }
 
@@ -284,4 +352,36 @@ fn counts(film: &Film) -> [u32; 2] {
     let of = film.pixels().map(|(_, pixel)| pixel.n + pixel.bad);
     let most = of.fold([u32::MAX, 0], |[least, most], n| [least.min(n), most.max(n)]);
     if most[0] == u32::MAX { [0, 0] } else { most }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_pixels_with_samples_that_were_not_finite_are_named() {
+        // Every other pixel of a row has one more than the one before.
+        let bad = |n: u32| {
+            BadPlaces::of(
+                (0..2 * n).map(|x| (UVec2::new(x, 3), if x % 2 == 0 { 0 } else { x / 2 + 1 })),
+            )
+        };
+        assert_eq!(bad(0).words(), "");
+        assert_eq!(bad(2).words(), "samples that were not finite: 1 at (1, 3), 2 at (3, 3)\n");
+        assert!(bad(6).words().ends_with("5 at (9, 3), and more at another pixel\n"));
+        assert!(bad(7).words().ends_with("5 at (9, 3), and more at 2 other pixels\n"));
+        let mut told = json!({});
+        bad(6).say(&mut told);
+        assert_eq!(told["bad_pixels"], 6);
+        assert_eq!(told["first_bad_pixels"][4], json!({ "x": 9, "y": 3, "samples": 5 }));
+        assert_eq!(told["first_bad_pixels"].as_array().map(Vec::len), Some(NAMED));
+    }
+
+    #[test]
+    fn the_time_of_this_run_stands_beside_that_of_all() {
+        let took = Took { seconds: 12.0, before: 0.0, samples: 24 };
+        assert_eq!(took.words(), "12 s");
+        assert!((took.rate() - 2.0).abs() < 1e-12);
+        assert_eq!(Took { before: 53.0, ..took }.words(), "12 s (1 min 05 s in all)");
+    }
 }

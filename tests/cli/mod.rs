@@ -103,6 +103,25 @@ fn json_tells_size_samples_and_files() {
 }
 
 #[test]
+fn pixels_with_samples_that_are_not_finite_are_named() {
+    let bright = SCENE.replace("scale = 1 ", "scale = 1e38 ");
+    let folder = Folder::new("bad").with("a.scene", &bright);
+    let done = folder.luxel(&["render", "a.scene", "--json", "--strict"]);
+    let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    let (first, bad) = (&told["first_bad_pixels"], told["bad_samples"].as_u64().unwrap());
+    assert_eq!((done.code, first.as_array().map(Vec::len)), (4, Some(5)), "{done:?}");
+    assert!(done.err.contains(&format!("{bad} samples were not finite and were left out")));
+    let exr = folder.read("a.exr");
+    assert!(String::from_utf8_lossy(&exr).contains(&format!("\"first_bad_pixels\":{first}")));
+    let text = folder.luxel(&["render", "a.scene"]).out;
+    let [n, x, y] = ["samples", "x", "y"].map(|key| first[0][key].as_u64().unwrap());
+    assert!(
+        text.contains(&format!("\nsamples that were not finite: {n} at ({x}, {y}), ")),
+        "{text}"
+    );
+}
+
+#[test]
 fn mistakes_of_the_scene_are_told_at_their_place_with_code_1_and_no_picture() {
     let camera_end = SCENE.find("film").unwrap();
     let faults = [

@@ -93,6 +93,50 @@ fn a_render_that_is_interrupted_leaves_a_picture_and_goes_on_to_the_same_as_an_u
     assert!(!folder.path("left.checkpoint").exists());
 }
 
+#[cfg(unix)]
+#[test]
+fn a_time_is_that_of_one_run_and_stands_beside_that_of_all() {
+    let folder = Folder::new("timed").with("a.scene", SCENE);
+    let number = |told: &serde_json::Value, name: &str| told[name].as_f64().unwrap();
+    let interrupted = |more: &[&str]| {
+        let args = ["render", "a.scene", "--json", "-o", "a", "--checkpoint", "0.02"];
+        let before = folder.read("a.checkpoint");
+        let mut running = folder.start(&[&args[..], more].concat());
+        until("a checkpoint", || ![&before[..], b""].contains(&&*folder.read("a.checkpoint")));
+        running.interrupt();
+        let done = running.end();
+        assert_eq!(done.code, 3, "{done:?}");
+        serde_json::from_str::<serde_json::Value>(&done.out).unwrap()
+    };
+    let first = interrupted(&["--time", "1h"]);
+    assert_eq!(
+        (&first["seconds_in_all"], &first["time_asked"]),
+        (&first["seconds"], &3600.0.into())
+    );
+    // What nobody says is as it was: so much is left of the hour.
+    let second = interrupted(&["--resume"]);
+    let left = 3600.0 - number(&first, "seconds");
+    assert!((number(&second, "time_asked") - left).abs() < 1e-6, "{first} {second}");
+    let in_all = |before: &serde_json::Value, told: &serde_json::Value| {
+        for name in ["seconds", "samples"] {
+            let all = format!("{name}_in_all");
+            let sum = number(before, &all) + number(told, name);
+            assert!((number(told, &all) - sum).abs() < 1e-6, "{name}: {before} {told}");
+        }
+    };
+    in_all(&first, &second);
+    // And so much for this run, whatever those before it had.
+    let resumed = ["render", "a.scene", "-o", "a", "--resume", "--time", "0.05s"];
+    let copy = folder.read("a.checkpoint");
+    let third = folder.luxel(&[&resumed[..], &["--json"]].concat());
+    let told = serde_json::from_str(&third.out).unwrap();
+    in_all(&second, &told);
+    assert_eq!((third.code, &told["time_asked"]), (0, &0.05.into()));
+    folder.write_bytes("a.checkpoint", &copy);
+    let text = folder.luxel(&resumed);
+    assert!(text.code == 0 && text.out.contains(" in all), "), "{text:?}");
+}
+
 /// Fog in which every path is scattered thousands of times: one sample of every pixel takes minutes.
 const SLOW: &str = r"scene 1
 camera perspective {

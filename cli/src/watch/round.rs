@@ -18,7 +18,7 @@ use crate::origin::Origin;
 use crate::output::Output;
 use crate::picture;
 use crate::report::{self, Stream};
-use crate::summary::Summary;
+use crate::summary::{Summary, Took};
 
 /// What a scene's last load left for messages and for what decides where pictures go.
 pub(super) struct Read {
@@ -284,7 +284,8 @@ impl Print {
         let (Measured { film, outcome, seconds }, samples) = &**done;
         let output = output((stage, read), args)?;
         beat.phase(Phase::Saving);
-        let (of, took) = ((&**stage, &read.files, &read.origin), (*seconds, *samples));
+        let of = (&**stage, &read.files, &read.origin);
+        let took = Took { seconds: *seconds, before: 0.0, samples: *samples };
         let summary = Summary::new(of, &args.render.options(), (film, *outcome), took);
         picture::write(&output, film, &stage.film, &summary.notes())?;
         if args.json {

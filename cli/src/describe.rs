@@ -148,7 +148,7 @@ fn section(page: &mut String, title: &str, params: &[Param]) {
     }
     page.extend(["\n", title, ":\n"]);
     for param in params {
-        page.extend(["  ", param.name, ": ", &facts(param).join(", "), "\n"]);
+        page.extend(["  ", param.name, ": ", &facts(param, params).join(", "), "\n"]);
         for line in param.doc.trim().lines() {
             page.extend(["      ", line.trim(), "\n"]);
         }
@@ -241,7 +241,12 @@ mod tests {
     }
 
     #[test]
-    fn the_films_size_and_choices_are_shown() {
+    fn sizes_choices_and_what_excludes_what_are_shown() {
+        let page = text(builtins().entry(Kind::Camera, "perspective").unwrap());
+        assert!(
+            page.contains("in m, more than 0, exactly one of fov, focal_length is given"),
+            "{page}"
+        );
         let page = text(builtins().entry(Kind::Film, "auto").unwrap());
         assert!(page.contains("resolution: two numbers, from 1 to 65536, default (640, 480)"));
         assert!(page.contains("one of srgb, linear, filmic, default srgb"), "{page}");

@@ -93,8 +93,8 @@ pub fn function(name: &str) -> Option<Function> {
     functions().find(|function| function.name == name)
 }
 
-/// Type, unit, range, default and the like, each in a few words.
-pub fn facts(param: &Param) -> Vec<String> {
+/// Type, unit, range, default and the like of one of a class's parameters, each in a few words.
+pub fn facts(param: &Param, of: &[Param]) -> Vec<String> {
     let mut facts = vec![what(param)];
     if !param.unit.is_empty() {
         facts.push(format!("in {}", said_unit(param)));
@@ -112,8 +112,9 @@ pub fn facts(param: &Param) -> Vec<String> {
         };
         facts.push(what.into());
     }
-    if !param.group.is_empty() {
-        facts.push(format!("exactly one `{}` is given", param.group));
+    let group: Vec<_> = of.iter().filter(|it| it.group == param.group).map(|it| it.name).collect();
+    if !param.group.is_empty() && group.len() > 1 {
+        facts.push(format!("exactly one of {} is given", group.join(", ")));
     }
     match default(param) {
         _ if param.required => facts.push("required".into()),

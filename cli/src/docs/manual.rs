@@ -114,7 +114,7 @@ fn message(code: &str, title: &str) -> String {
 /// Name, facts and manual of parameters.
 fn rows(params: &[Param]) -> Vec<[String; 3]> {
     let row = |param: &Param| {
-        [param.name.to_owned(), facts(param).join(", "), param.doc.trim().to_owned()]
+        [param.name.to_owned(), facts(param, params).join(", "), param.doc.trim().to_owned()]
     };
     params.iter().map(row).collect()
 }

@@ -314,7 +314,7 @@ impl Asked<'_> {
 
 /// Whether it is kept for old scenes alone.
 fn is_old(given: Given) -> bool {
-    matches!(given, Given::Param(param) if !param.deprecated.is_empty())
+    matches!(given, Given::Param(param, _) if !param.deprecated.is_empty())
 }
 
 /// Category and kind of an object.

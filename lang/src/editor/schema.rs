@@ -14,8 +14,8 @@ use crate::syntax::tokens;
 /// What an object may be given.
 #[derive(Clone, Copy)]
 pub(super) enum Given {
-    /// A parameter of its class or kind.
-    Param(&'static Param),
+    /// A parameter of its class or kind, and the class's.
+    Param(&'static Param, &'static [Param]),
     /// A field that the language reads.
     Field(&'static Field),
 }
@@ -23,7 +23,7 @@ pub(super) enum Given {
 impl Given {
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Param(param) => param.name,
+            Self::Param(param, _) => param.name,
             Self::Field((name, ..)) => name,
         }
     }
@@ -31,14 +31,14 @@ impl Given {
     /// Type, unit, range and default in a few words.
     pub(super) fn facts(self) -> String {
         match self {
-            Self::Param(param) => manual::facts(param).join(", "),
+            Self::Param(param, of) => manual::facts(param, of).join(", "),
             Self::Field((_, facts, _)) => (*facts).to_owned(),
         }
     }
 
     pub(super) fn doc(self) -> &'static str {
         match self {
-            Self::Param(param) => param.doc.trim(),
+            Self::Param(param, _) => param.doc.trim(),
             Self::Field((.., doc)) => doc,
         }
     }
@@ -65,7 +65,8 @@ pub(super) fn givens(around: Around<'_>, head: &Head) -> Vec<Given> {
         None => shared(around.registry, kind_of),
     };
     let fields = manual::fields_of(kind_of).iter().map(Given::Field);
-    own.into_iter().map(Given::Param).chain(fields).collect()
+    let of = class.map_or(&[][..], |class| class.params);
+    own.into_iter().map(|param| Given::Param(param, of)).chain(fields).collect()
 }
 
 /// The parameters that all classes of a kind have.

@@ -81,7 +81,7 @@ pub(super) fn expectations() -> Vec<Item> {
 
 /// A parameter of an object.
 pub(super) fn param(given: Given) -> Item {
-    let required = matches!(given, Given::Param(param) if param.required);
+    let required = matches!(given, Given::Param(param, _) if param.required);
     Item::new(given.name(), ItemKind::Param)
         .insert(format!("{} = $0", given.name()))
         .detail(given.facts())

@@ -15,7 +15,7 @@ pub(super) enum Said {
     /// A name of a catalogue: what the function of this name is given.
     Named(&'static str),
     /// A word that a parameter takes.
-    Word(&'static Param),
+    Word(&'static Param, &'static [Param]),
     /// A plugin library.
     Library,
     /// Versions of the plugin library of that name.
@@ -46,10 +46,10 @@ pub(super) fn said(around: Around<'_>, here: &Context<'_>) -> Said {
         _ => {}
     }
     match schema::given_to(around, here) {
-        Some(Given::Param(param)) if param.ty == Type::File => {
+        Some(Given::Param(param, _)) if param.ty == Type::File => {
             Said::File(ends(param, class_of(around, here)))
         }
-        Some(Given::Param(param)) => Said::Word(param),
+        Some(Given::Param(param, of)) => Said::Word(param, of),
         _ => Said::Other,
     }
 }

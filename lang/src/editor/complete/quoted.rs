@@ -23,7 +23,7 @@ impl Asked<'_> {
                 out.items = color::GLASSES.iter().map(|glass| value(glass.name)).collect();
             }
             Said::Named(_) => out.items = color::illuminant_names().map(value).collect(),
-            Said::Word(param) => out.items = param.words().map(value).collect(),
+            Said::Word(param, _) => out.items = param.words().map(value).collect(),
             Said::Library => {
                 let of = |(name, version): (&str, &str)| value(name).detail(version).rank(1);
                 out.items = libraries().map(of).collect();

@@ -73,7 +73,7 @@ impl Asked<'_> {
         let givens = objects.next().map(|head| schema::givens(self.around, head));
         let mut fitting = givens.into_iter().flatten().filter(|given| given.name() == back(1));
         match fitting.next() {
-            Some(Given::Param(param)) => (schema::dimension(param), Some(param)),
+            Some(Given::Param(param, _)) => (schema::dimension(param), Some(param)),
             _ => (None, None),
         }
     }

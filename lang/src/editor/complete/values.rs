@@ -11,7 +11,7 @@ use crate::manual;
 impl Asked<'_> {
     /// What may be a value at the place.
     pub(super) fn values(&self) -> Vec<Item> {
-        if let Some(Given::Param(param)) = schema::given_to(self.around, self.here) {
+        if let Some(Given::Param(param, _)) = schema::given_to(self.around, self.here) {
             return self.values_of(param);
         }
         let mut out = self.names(&[]);

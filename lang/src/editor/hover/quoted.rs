@@ -29,9 +29,9 @@ impl Asked<'_> {
                 let told = told(format!("{function}({})", token.text), String::new())?;
                 Some(Hover { value: Some(value), ..told })
             }
-            Said::Word(param) => {
-                let facts = Given::Param(param).facts();
-                told(format!("{}: {facts}", param.name), param.doc.trim().to_owned())
+            Said::Word(param, of) => {
+                let given = Given::Param(param, of);
+                told(format!("{}: {}", given.name(), given.facts()), given.doc().to_owned())
             }
             Said::Library => {
                 let mut loaded = self.around.registry.libraries();

@@ -22,6 +22,12 @@ function render(name, spp, seed) {
   return join(folder, `${name}.exr`);
 }
 
+const LAYERS = `scene 1
+camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }
+film rgb { resolution = (${SIZE.join(", ")}), normal = true, depth = true, material_id = true }
+light constant { scale = 0.5 }
+shape sphere { radius = 1 m, material = material diffuse { reflectance = 0.5 } }
+`;
 
 async function view(...args) {
   const child = spawn(luxel, ["view", ...args, "--no-open"], { stdio: ["ignore", "pipe", "inherit"] });
@@ -110,6 +116,42 @@ const tests = {
     assert.equal(await isHidden(page, "inspector"), true);
     assert.deepEqual(complaints, []);
     await close();
+  },
+
+  async "the layers of a file are shown, and a pixel tells their numbers"({ browser, folder }) {
+    const scene = join(folder, "layers.scene");
+    writeFileSync(scene, LAYERS);
+    execFileSync(luxel, ["render", scene, "-o", join(folder, "layers"), "--spp", 2, "-q"], { stdio: "inherit" });
+    const own = await view(join(folder, "layers.exr"));
+    const { page, complaints, close } = await open(browser, own.url);
+    const offered = await page.evaluate(() => [...document.getElementById("layer").options].map((it) => it.value));
+    assert.deepEqual(offered, ["", "coverage", "depth", "material", "normal"]);
+    await press(page, "z");
+    const colour = await readback(page);
+    const shown = async (choose, name) => {
+      const before = await readback(page);
+      await choose();
+      await until(name, async () => String((await readback(page)).data) !== String(before.data));
+      assert.equal(await page.evaluate(() => document.getElementById("layer").value), name);
+      return readback(page);
+    };
+    const at = ({ data, w, h }) => [...data.slice(4 * (w * (h >> 1) + (w >> 1))).slice(0, 3)];
+    const normal = at(await shown(() => page.locator("#layer").selectOption("normal"), "normal"));
+    // Towards the camera: half of red and of green, all of blue.
+    assert.ok(normal[2] === 255 && Math.abs(normal[0] - 188) <= 3 && Math.abs(normal[1] - 188) <= 3, normal);
+    const area = await readback(page, false);
+    await page.mouse.move(area.x + area.w / 2, area.y + area.h / 2);
+    const facts = () => page.evaluate(() => Object.fromEntries([...document.querySelectorAll("#facts dt")].map((dt) => [dt.textContent, dt.nextSibling.textContent])));
+    await until("what the file says", async () => (await facts()).material !== undefined);
+    const told = await facts();
+    assert.deepEqual([told.material, told.coverage, told.samples], ["1 (diffuse)", "1", "2"]);
+    assert.ok(Math.abs(Number(told.depth) - 4) < 0.01 && Math.abs(Number(told.normal.split(" ")[2]) - 1) < 0.01, told.depth);
+    await page.screenshot({ path: join(shots, "layer.png") });
+    assert.deepEqual((await shown(() => press(page, "l"), "")).data, colour.data);
+    assert.deepEqual(at(await shown(() => press(page, "l"), "coverage")), [255, 255, 255]);
+    assert.deepEqual(complaints, []);
+    await close();
+    own.end();
   },
 
   async "the wipe shows the first picture on its left and the second on its right"({ browser, two, folder }) {

@@ -14,6 +14,7 @@ pub(super) enum Topic {
     Problems,
     Params,
     Camera,
+    Layers,
     Pixel,
     PictureA,
     PictureB,
@@ -21,12 +22,13 @@ pub(super) enum Topic {
 
 impl Topic {
     /// In the order in which a page that has just come is told.
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 9] = [
         Self::Title,
         Self::Status,
         Self::Problems,
         Self::Params,
         Self::Camera,
+        Self::Layers,
         Self::Pixel,
         Self::PictureA,
         Self::PictureB,

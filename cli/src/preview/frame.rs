@@ -47,6 +47,8 @@ pub(crate) struct Frame {
     pub(crate) side: Side,
     /// What the page calls it.
     pub(crate) name: String,
+    /// Which of a file's layers it shows; none shows colour.
+    pub(crate) layer: Option<String>,
     /// Grows with each edit: the first picture of a new one makes the last the previous picture.
     pub(crate) generation: u64,
     /// The whole picture's size.
@@ -78,6 +80,7 @@ impl Frame {
         Self {
             side: Side::A,
             name: String::new(),
+            layer: None,
             generation: 0,
             size: film.size,
             window: film.window,
@@ -98,6 +101,7 @@ impl Frame {
         let mut head = json!({
             "side": self.side,
             "name": self.name,
+            "layer": self.layer,
             "generation": self.generation,
             "size": self.size.to_array(),
             "window": [window.min.x, window.min.y, window.size.x, window.size.y],

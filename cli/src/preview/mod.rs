@@ -173,6 +173,11 @@ impl Screen {
         self.0.tell(Topic::Params, &json!({ "params": params, "line": line }));
     }
 
+    /// Offers the layers of the files, and says which is shown; none shows colour.
+    pub(crate) fn layers(&self, names: &[&str], shown: Option<&str>) {
+        self.0.tell(Topic::Layers, &json!({ "layers": names, "layer": shown }));
+    }
+
     /// Tells where the camera stands; none cannot be moved.
     pub(crate) fn camera(&self, camera: Option<&Camera>) {
         self.0.tell(Topic::Camera, &json!({ "camera": camera }));

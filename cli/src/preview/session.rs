@@ -36,6 +36,11 @@ pub(crate) enum Command {
     },
     /// Every `param` as the file says.
     ResetParams,
+    /// Shows a layer of the files.
+    Layer {
+        /// Its name; none shows colour.
+        name: Option<String>,
+    },
 }
 
 /// Where the camera is to stand, in the world.

@@ -5,9 +5,15 @@ use glam::UVec2;
 use crate::picture::Picture;
 use crate::preview::{Frame, Pixels, Side};
 
-/// What the page shows.
-pub(super) fn frame(picture: &Picture) -> Frame {
-    let pixels = Pixels::new(picture.window.size, &picture.rgb, &picture.se, picture.n.clone());
+use super::layers::{Layer, layers};
+
+/// What the page shows: colour, or one of its layers.
+pub(super) fn frame(picture: &Picture, layer: Option<&Layer<'_>>) -> Frame {
+    let (size, n) = (picture.window.size, picture.n.clone());
+    let pixels = match layer {
+        Some(layer) => Pixels::new(size, &layer.rgb(picture), &[], n),
+        None => Pixels::new(size, &picture.rgb, &picture.se, n),
+    };
     let samples = picture.n.iter().copied().max().unwrap_or(0);
     let of_samples = picture.notes["spp"].as_u64().and_then(|spp| spp.try_into().ok());
     let settings = picture.settings();
@@ -15,10 +21,11 @@ pub(super) fn frame(picture: &Picture) -> Frame {
         side: Side::A,
         name: String::new(),
         generation: 0,
+        layer: layer.map(|layer| layer.name.to_owned()),
         size: picture.size,
         window: picture.window,
         pixels,
-        exposure: settings.exposure,
+        exposure: settings.exposure.filter(|_| layer.is_none_or(Layer::is_light)),
         display: settings.display,
         samples,
         of_samples: of_samples.unwrap_or(samples),
@@ -32,10 +39,12 @@ pub(super) fn facts(picture: &Picture, at: UVec2) -> Vec<(String, String)> {
     let three =
         |plane: &[f32]| plane.get(i * 3..i * 3 + 3).map(|v| format!("{} {} {}", v[0], v[1], v[2]));
     let n = picture.n.get(i).map(u32::to_string);
-    [("radiance", three(&picture.rgb)), ("standard error", three(&picture.se)), ("samples", n)]
-        .into_iter()
-        .filter_map(|(name, value)| Some((name.to_owned(), value?)))
-        .collect()
+    let own =
+        [("radiance", three(&picture.rgb)), ("standard error", three(&picture.se)), ("samples", n)];
+    let layers = layers(picture);
+    let of_layers = layers.iter().map(|layer| (layer.name, layer.fact(picture, at)));
+    let all = own.into_iter().chain(of_layers);
+    all.filter_map(|(name, value)| Some((name.to_owned(), value?))).collect()
 }
 
 /// A line about it.
@@ -68,7 +77,7 @@ mod tests {
         let json = r#"{"exposure":9.5,"display":"filmic","spp":7,"complete":false}"#.to_owned();
         picture::write(&output, &film, &stage::Film::default(), &picture::Notes { json }).unwrap();
         let picture = Picture::open(&output.exr).unwrap();
-        let frame = frame(&picture);
+        let frame = frame(&picture, None);
         assert_eq!((frame.size, frame.window), (film.size, film.window));
         assert_eq!((frame.exposure, frame.display), (Some(9.5), Display::Filmic));
         assert_eq!((frame.of_samples, frame.complete), (7, false));

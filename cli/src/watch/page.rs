@@ -261,7 +261,8 @@ impl Answering {
                     self.wishes.change(|wish| wish.set.clear());
                     continue;
                 }
-                Err(RecvTimeoutError::Timeout) => continue,
+                // Layers are those of files.
+                Ok(Command::Layer { .. }) | Err(RecvTimeoutError::Timeout) => continue,
                 Err(RecvTimeoutError::Disconnected) => return,
             };
             let scene = lock(&self.about).clone();

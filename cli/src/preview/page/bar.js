@@ -8,6 +8,7 @@ export function bar(state, pan, act) {
   $("ev").addEventListener("input", () => act.exposure(Number($("ev").value)));
   $("exposure").addEventListener("dblclick", () => act.exposure(0));
   $("tone").addEventListener("change", () => act.tone($("tone").value));
+  $("layer").addEventListener("change", () => act.layer($("layer").value || null));
   $("compare").addEventListener("change", () => act.compare($("compare").value));
   $("pin").addEventListener("click", act.pin);
   $("bins-on").addEventListener("click", act.histogram);
@@ -50,6 +51,12 @@ export function bar(state, pan, act) {
       const { samples, of_samples: of, complete } = state.a;
       $("progress").style.width = complete || !of ? "100%" : `${(100 * samples) / of}%`;
       $("progress").style.opacity = complete ? 0 : 1;
+    },
+    layers() {
+      const options = [["", "Picture"], ...state.layers.map((name) => [name, name])];
+      $("layer").replaceChildren(...options.map(([value, text]) => new Option(text, value)));
+      $("layer").value = state.layer ?? "";
+      $("layer").hidden = state.layers.length === 0;
     },
     title(text) {
       $("title").textContent = text || "Luxel";

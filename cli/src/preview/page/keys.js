@@ -5,7 +5,7 @@ export function keys(act) {
     1: () => act.view("colour"), 2: () => act.view("luminance"), 3: () => act.view("error"), 4: () => act.view("difference"),
     0: () => act.exposure(0), a: act.autoExposure, t: act.nextTone, c: act.nextCompare, p: act.pin,
     f: act.fit, z: act.oneToOne, "+": () => act.zoom(1.5), "=": () => act.zoom(1.5), "-": () => act.zoom(1 / 1.5),
-    h: act.histogram, o: act.camera, s: () => act.params(), "?": act.help, Escape: act.release,
+    h: act.histogram, l: act.nextLayer, o: act.camera, s: () => act.params(), "?": act.help, Escape: act.release,
   };
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;

@@ -17,6 +17,7 @@ const painter = withGl(canvas) ?? flat(canvas);
 
 const state = {
   a: null, b: null, previous: null, pinned: null,
+  layers: [], layer: null,
   view: "colour", tone: "srgb", ev: 0, compare: "off", wipe: 0.5, flipped: false, bins: false,
   hovered: null, held: null, reply: null,
   get other() { return this.compare === "off" ? null : this[this.compare]; },
@@ -150,6 +151,11 @@ const act = {
     const bright = all.sort((x, y) => x - y)[Math.floor(all.length * 0.98)];
     act.exposure(Math.round(-Math.log2(bright * state.a.scale) * 20) / 20);
   },
+  layer(name) { wire.ask({ layer: { name } }); },
+  nextLayer() {
+    const all = [null, ...state.layers];
+    if (state.layers.length) act.layer(all[(all.indexOf(state.layer) + 1) % all.length]);
+  },
   tone(tone) { state.tone = tone; redraw(); },
   nextTone() { act.tone({ srgb: "linear", linear: "filmic", filmic: "srgb" }[state.tone]); },
   compare(what) {
@@ -218,6 +224,10 @@ const wire = connect({
     if (message.status !== undefined) controls.status(message.status);
     if (message.problems) problems(message.problems);
     if (message.params) params(message.params, message.line, (command) => wire.ask(command));
+    if (message.layers) {
+      [state.layers, state.layer] = [message.layers, message.layer];
+      controls.layers();
+    }
     if (message.camera !== undefined) camera.tell(message.camera);
     if (message.pixel) {
       state.reply = { ...message.pixel, key: `${message.pixel.at} ${message.pixel.side}` };

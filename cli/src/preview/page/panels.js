@@ -37,6 +37,7 @@ export function inspect(state, at, side, reply, held) {
   const colour = show(rgb.map((x) => x * state.scaleOf()), state.tone).map(Math.round);
   $("swatch").style.background = `rgb(${colour.join()})`;
   const facts = [];
+  if (picture.layer) return tell((reply?.facts ?? []).map(([name, text]) => [name, text, name === picture.layer ? "line" : ""]), reply, held);
   const known = Object.fromEntries(reply?.facts ?? []);
   const split = (text, values, digits) => text?.split(" ") ?? values.map((v) => number(v, digits));
   split(known.radiance, rgb).forEach((text, c) => facts.push(["RGB"[c], text, "rgb"[c]]));
@@ -57,9 +58,13 @@ export function inspect(state, at, side, reply, held) {
   }
   const more = (reply?.facts ?? []).filter(([name]) => !["radiance", "standard error", "samples"].includes(name));
   more.forEach(([name, text], k) => facts.push([name, text, k ? "" : "line"]));
+  tell(facts, reply, held);
+}
+
+// What did not change stays, so that it can be clicked.
+function tell(facts, reply, held) {
   const places = new Map((reply?.places ?? []).map(([name, place, address]) => [name, { place, address }]));
   const key = JSON.stringify([facts, [...places], held]);
-  // What did not change stays, so that it can be clicked.
   if (key === $("facts").dataset.key) return;
   $("facts").dataset.key = key;
   $("facts").replaceChildren(...facts.flatMap(([name, text, kind]) => [element("dt", name, kind), fact(text, kind, places.get(name))]));
@@ -137,7 +142,7 @@ export function legend(state) {
   const white = 1 / state.scaleOf();
   const sigmas = a.hasError && other?.hasError;
   const [quantity, ticks] = {
-    luminance: () => ["Luminance, W/m²/sr", stops().map((stop) => number(white * 2 ** stop, 2))],
+    luminance: () => [a.layer ? `Luminance of ${a.layer} as it is shown` : "Luminance, W/m²/sr", stops().map((stop) => number(white * 2 ** stop, 2))],
     error: () => (a.hasError ? ["Relative standard error", decades()] : ["This picture does not say how wrong it may be", []]),
     difference: () => [sigmas ? "Difference, in standard errors" : "Difference of luminance", ends(sigmas)],
   }[view]();

@@ -245,7 +245,7 @@ impl<'s> Flight<'s> {
     #[inline(always)]
     fn take(&mut self, placement: u32, hit: Option<Hit>) -> bool {
         let Some(hit) = hit else { return false };
-        self.hit = Some(SceneHit { placement, hit });
+        self.hit = SceneHit { placement, hit }.or_before(self.hit);
         (self.walk.t_max, self.ray.t_max) = (hit.t, hit.t);
         true
     }

@@ -146,3 +146,13 @@ pub struct SceneHit {
     /// Where on it; `t` is along the world's ray.
     pub hit: Hit,
 }
+
+impl SceneHit {
+    /// This hit, which is no farther than the last one, but for one as near of a placement that comes
+    /// first: which of equal faces is seen does not depend on the order in which they are met.
+    #[inline(always)]
+    pub(super) fn or_before(self, last: Option<Self>) -> Option<Self> {
+        let is_tie = |last: &Self| last.hit.t <= self.hit.t && last.placement < self.placement;
+        last.filter(is_tie).or(Some(self))
+    }
+}

@@ -10,7 +10,8 @@ use super::geometry::{Approach, enter};
 use super::{Geometry, Leaving, Moment, Placement, SceneHit, Skin};
 
 impl Moment<'_> {
-    /// The nearest surface along a ray that leaves `from`. Counts nodes and primitives in `steps`.
+    /// The nearest surface along a ray that leaves `from`, of equally near ones that of the placement
+    /// that comes first. Counts nodes and primitives in `steps`.
     #[inline(always)]
     pub fn intersect(
         self,
@@ -35,7 +36,7 @@ impl Moment<'_> {
             let t_enter = local.entry(placement, geometry, t_enter);
             let approach = self.approach(processor, local, t_enter, from);
             if let Some(hit) = geometry.intersect(local.ray, approach, steps) {
-                found = Some(SceneHit { placement: index, hit });
+                found = SceneHit { placement: index, hit }.or_before(found);
                 (walk.t_max, ray.t_max) = (hit.t, hit.t);
             }
         }

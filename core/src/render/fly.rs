@@ -8,12 +8,12 @@ use super::arrival::Shader;
 use super::tile::Worker;
 use crate::accel::{Processor, Work};
 use crate::object::Site;
-use crate::stage::Leaving;
+use crate::stage::{Leaving, SceneHit};
 
 /// Whatever a scene may require.
 type Whole<'a, 's> = Shader<'a, 's, true, true>;
 
-/// Traces and shades all paths of a round.
+/// Shades all paths of a round, from what their rays meet first, and traces those that go on from there.
 pub(super) struct Fly<'a, 's>(pub(super) &'a mut Worker<'s>);
 
 impl Work for Fly<'_, '_> {
@@ -24,28 +24,32 @@ impl Work for Fly<'_, '_> {
 }
 
 impl Worker<'_> {
-    /// Traces and shades the paths of this round, one after the other.
+    /// Shades the paths of this round, one after the other.
     #[inline(always)]
     fn fly(&mut self) {
         for i in 0..self.now.rays.len() {
             let Onward { ray, lane } = self.now.rays[i];
             let lane = lane as usize;
             let mut samples = Samples::new(self.sampler, self.lanes[lane].numbers);
-            let glow = self.fly_one(ray, lane, &mut samples);
+            let glow = self.fly_one(ray, self.hits[i], lane, &mut samples);
             self.lanes[lane].at.glow = glow;
             self.lanes[lane].numbers = samples.at();
         }
     }
 
-    /// Gives the light of the media on its way.
+    /// Gives the light of the media on its way; `hit` is what the ray meets first, found in so many steps.
     #[inline(always)]
-    fn fly_one(&mut self, mut ray: Ray, lane: usize, samples: &mut Samples<'_>) -> Spectrum {
+    fn fly_one(
+        &mut self,
+        mut ray: Ray,
+        (mut hit, mut steps): (Option<SceneHit>, u32),
+        lane: usize,
+        samples: &mut Samples<'_>,
+    ) -> Spectrum {
         let stage = self.stage.at(self.paths[lane].time);
         let mut media = self.paths[lane].media_along(&ray);
-        let mut from = self.paths[lane].leaving();
-        let (mut steps, mut flight, mut glow) = (0, Spectrum::ONE, Spectrum::ZERO);
+        let (mut flight, mut glow) = (Spectrum::ONE, Spectrum::ZERO);
         loop {
-            let hit = stage.intersect(self.processor, &ray, from, &mut steps);
             let t_max = hit.map_or(ray.t_max, |hit| hit.hit.t);
             let path = &mut self.paths[lane];
             let arrival = &mut self.lanes[lane].at;
@@ -72,20 +76,20 @@ impl Worker<'_> {
             }
             path.media = media;
             let shader = Whole { stage, wants, path, samples, scratch, flight };
-            let Some(hit) = hit else {
+            let Some(met) = hit else {
                 shader.escaped(&ray, steps, arrival);
                 return glow;
             };
-            let crossing = stage.crossing(self.processor, &media, &ray, &hit);
+            let crossing = stage.crossing(self.processor, &media, &ray, &met);
             if let Some(met) = crossing.met {
                 shader.boundary((&ray, &met, steps), &crossing, arrival);
                 return glow;
             }
-            from = Some(Leaving::from(&hit));
             media = crossing.beyond;
             let surface = &crossing.surface;
             let o = offset_origin(surface.p, surface.p_err, surface.ng, ray.d);
-            ray = Ray { o, t_max: ray.t_max - hit.hit.t, ..ray };
+            ray = Ray { o, t_max: ray.t_max - met.hit.t, ..ray };
+            hit = stage.intersect(self.processor, &ray, Some(Leaving::from(&met)), &mut steps);
         }
     }
 }

@@ -45,7 +45,8 @@ pub(super) struct Worker<'s> {
     /// What the running round answers, and what it asks for.
     pub(super) now: Requests,
     next: Requests,
-    hits: Vec<(Option<SceneHit>, u32)>,
+    /// What the rays of this round meet first, and in how many steps that was found.
+    pub(super) hits: Vec<(Option<SceneHit>, u32)>,
     shadowed: Vec<bool>,
     /// Whether rays meet more on their way than surfaces that end them: media, open or nested ones.
     goes_through: bool,
@@ -199,6 +200,7 @@ impl<'s> Worker<'s> {
             self.next.clear();
             if self.goes_through {
                 self.processor.run(Shadows::<true>(self));
+                self.processor.run(Trace(self));
                 self.processor.run(Fly(self));
             } else {
                 self.processor.run(Shadows::<false>(self));

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::soup::{Arrays, Rng, icosphere};
-use super::{MeshBvh, Precision};
+use super::{Direction, MeshBvh, Precision, Processor, Query, Watch};
 
 /// What promises that no ray gets through.
 const WATERTIGHT: [Precision; 2] = [Precision::Standard, Precision::Exact];
@@ -137,4 +137,35 @@ fn slivers_of_a_million_to_one_close_a_prism() {
         }
     }
     assert!(shot > 1000, "{shot}");
+}
+
+#[test]
+fn no_ray_leaves_a_closed_mesh_while_it_moves() {
+    let (arrays, _) = scaled(3, 0);
+    let to = |p: &Vec3| Vec3::new(1.3, 0.8, 1.0) * *p + Vec3::new(0.3, -0.2, 0.1);
+    let last: Vec<Vec3> = arrays.0.iter().map(to).collect();
+    let points = (&*arrays.0, &*last);
+    let tree = MeshBvh::build_moving(points, &arrays.1, [0.0, 1.0], &Watch::default()).unwrap();
+    let mut rng = Rng(15);
+    for i in 0..4000 {
+        let share = [0.0, 1.0, rng.next()][i % 3];
+        let p = target(&arrays, i, &mut rng);
+        let at = |p: Vec3| p + (to(&p) - p) * share;
+        let o = at(rng.point() * 0.3);
+        let direction = Direction::new((at(p) - o).as_dvec3()).unwrap();
+        for (precision, processor) in
+            WATERTIGHT.into_iter().flat_map(|it| Processor::all().into_iter().map(move |p| (it, p)))
+        {
+            let query = Query {
+                o: o.as_dvec3(),
+                direction: &direction,
+                t_max: f64::INFINITY,
+                skip: None,
+                precision,
+                share,
+            };
+            let hit = tree.intersect(processor, &query).0;
+            assert!(hit.is_some(), "{precision:?}, {}: o {o} p {p} at {share}", processor.name());
+        }
+    }
 }

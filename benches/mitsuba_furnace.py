@@ -15,7 +15,7 @@ import numpy as np
 
 DEPTH, SIDE = 64, 8
 # Distance from the origin and size, metres.
-CELLS = [(away, 1) for away in (1e3, 1e4, 1e5, 1e6, 1e7)]
+CELLS = [(away, 1) for away in (0, 1e3, 1e4, 1e5, 1e6, 1e7)]
 CELLS += [(0, size) for size in (1e-9, 1e-6, 1e-4, 1e-3, 1e3, 1e6, 1e9)]
 
 

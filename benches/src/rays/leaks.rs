@@ -5,13 +5,15 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 use libloading::Library;
-use luxel_core::accel::{MeshBvh, Precision, Processor};
+use luxel_core::accel::{Precision, Processor};
+use luxel_sdk::num::Ray;
 
 use super::embree::{Embree, Flags};
 use super::knot::Soup;
-use super::peers::{Single, Tracer, Turns};
+use super::peers::Tracer;
 use super::self_hits;
 use super::shots::{Landing, Random, Shot};
+use super::staged::{Staged, Way};
 
 /// Scale and translation of the mesh, written into its single-precision points.
 const CASES: [(f64, f64); 11] = [
@@ -33,51 +35,58 @@ const RINGS: u32 = 200;
 const SEGMENTS: u32 = 205;
 
 /// Prints how many of `n` rays for each case meet the triangle that they leave, and how many of as many
-/// others get out.
+/// others get out: by every precision, on every processor, one by one and in turns.
 pub(crate) fn run(library: Option<&Library>, n: usize) {
     let cases = CASES.map(|(scale, by)| case(scale, by, n));
     println!("\n== self-hits: rays of {n} from a closed mesh that meet it where they leave it");
     heads();
-    for precision in [Precision::Standard, Precision::Exact] {
-        for processor in Processor::all() {
-            let name = format!("{}, {}", precision.word(), processor.name());
-            let with = (precision, processor);
-            row(&name, &cases, |soup, _| {
-                Some(self_hits::count(soup, with, n).expect("a ball of triangles is a scene"))
-            });
-        }
-    }
+    rows(&[Precision::Standard, Precision::Exact], &cases, |staged, precision, with, _| {
+        self_hits::count(staged, precision, with, n)
+    });
     println!("\n== leaks: rays of {n} aimed at corners and edges of a closed mesh that get out");
     heads();
-    let build = |soup: &Soup| MeshBvh::build(&soup.points, &soup.indices).expect("it is finite");
-    for precision in Precision::ALL {
-        for processor in Processor::all() {
-            let name = format!("{}, {}", precision.word(), processor.name());
-            let tracer = |soup: &Soup| Single { tree: build(soup), processor, precision };
-            row(&name, &cases, |soup, shots| Some(count(&tracer(soup), shots)));
-        }
-    }
-    let processor = Processor::widest();
-    let turns = |soup: &Soup| Turns { tree: build(soup), processor };
-    row("standard, in turns", &cases, |soup, shots| Some(count(&turns(soup), shots)));
+    rows(&Precision::ALL, &cases, |staged, _, with, shots| {
+        let ray = |shot: &Shot| Ray::new(shot.o.as_dvec3(), shot.d.as_dvec3());
+        staged.count(with, n, |i| (ray(&shots[i]), None), |_, hit| hit.is_none())
+    });
     let Some(library) = library else { return };
     for (name, flags) in [("Embree", Flags::Default), ("Embree, robust", Flags::Robust)] {
         row(name, &cases, |soup, shots| Some(count(&Embree::new(library, soup, flags)?, shots)));
     }
 }
 
+type Case = (Soup, Vec<Shot>);
+
+/// A row for each way through the stage: what is counted of the rays of each case.
+fn rows(
+    precisions: &[Precision],
+    cases: &[Case],
+    counted: impl Fn(&Staged, Precision, (Processor, Way), &[Shot]) -> usize,
+) {
+    for precision in precisions {
+        for (processor, way) in Processor::all().into_iter().flat_map(|p| Way::ALL.map(|w| (p, w)))
+        {
+            let name = format!("{}, {}{}", precision.word(), processor.name(), way.suffix());
+            row(&name, cases, |soup, shots| {
+                let staged = Staged::new(soup, *precision).expect("a ball of triangles is a scene");
+                Some(counted(&staged, *precision, (processor, way), shots))
+            });
+        }
+    }
+}
+
 fn heads() {
-    print!("{:<24}", "scale / translation");
+    print!("{:<34}", "scale / translation");
     for (scale, by) in CASES {
         print!("{:>11}", format!("{scale:.0e}/{by:.0e}"));
     }
     println!();
 }
 
-fn row(name: &str, cases: &[(Soup, Vec<Shot>)], leaks: impl Fn(&Soup, &[Shot]) -> Option<usize>) {
-    print!("{name:<24}");
+fn row(name: &str, cases: &[Case], counted: impl Fn(&Soup, &[Shot]) -> Option<usize>) {
+    print!("{name:<34}");
     for (soup, shots) in cases {
-        let n = leaks(soup, shots).map_or_else(|| "–".to_owned(), |n| n.to_string());
+        let n = counted(soup, shots).map_or_else(|| "–".to_owned(), |n| n.to_string());
         print!("{n:>11}");
     }
     println!();
@@ -90,7 +99,7 @@ fn count(tracer: &dyn Tracer, shots: &[Shot]) -> usize {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "points are kept in single precision")]
-fn case(scale: f64, by: f64, n: usize) -> (Soup, Vec<Shot>) {
+fn case(scale: f64, by: f64, n: usize) -> Case {
     let offset = glam::DVec3::new(by, 0.7 * by, -0.3 * by);
     let mut soup = ball();
     for p in &mut soup.points {

@@ -7,6 +7,7 @@ mod leaks;
 mod peers;
 mod self_hits;
 mod shots;
+mod staged;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -7,7 +7,9 @@
 pixels that lie whole on one surface, and for the grey box the relative MSE of 32 x 32 blocks at
 growing sample counts. `speed` interleaves the programs and counts processor time (user + system):
 Luxel's is that of the whole process, with reading the scene and writing the picture; Mitsuba's that
-of the render call alone, after a first one that compiles its kernels. relMSE is the mean of
+of the render call alone, after a first one that compiles its kernels. `luxel_alone` is Luxel without
+reading and writing, as Mitsuba is measured: the time that its samples took by the clock on all cores,
+which is no less than the processor time that they took. relMSE is the mean of
 (I - R)^2 / (R^2 + 0.01) less the reference's own variance, and efficiency 1 / (relMSE * seconds),
 with seconds of processor time over the number of cores. The last column is Luxel's time over the
 other's, round by round: median, least and greatest. `--json FILE` writes the same figures for
@@ -58,20 +60,21 @@ def scene_file(args, scene):
 
 
 def luxel(args, scene, res, spp, seed):
-    """Picture, and the processor time of the whole process."""
+    """Picture, the processor time of the whole process, and at most that of the samples alone."""
     import mitsuba as mi
 
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
         before = cpu(resource.RUSAGE_CHILDREN)
-        command = [args.luxel, "render", str(scene_file(args, scene)), "--quiet", "-o", str(out)]
+        command = [args.luxel, "render", str(scene_file(args, scene)), "--json", "-o", str(out)]
         command += ["--size", f"{res}x{res}", "--spp", str(spp), "--seed", str(seed)]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        ran = subprocess.run(command, check=True, capture_output=True)
         seconds = cpu(resource.RUSAGE_CHILDREN) - before
+        alone = min(seconds, json.loads(ran.stdout)["seconds"] * CORES)
         bitmap = mi.Bitmap(str(out) + ".exr")
         names = [field.name for field in bitmap.struct_()]
         pixels = np.array(bitmap, dtype=float)
-        return pixels[..., [names.index(c) for c in "RGB"]], seconds
+        return pixels[..., [names.index(c) for c in "RGB"]], seconds, alone
 
 
 def mitsuba(scene, spp, seed):
@@ -175,15 +178,17 @@ def speed(args):
             ready[variant] = scenes.load(mi, scene, args.res, args.spp, ply(args))
             if variant.startswith("llvm"):
                 mitsuba(ready[variant], args.spp, 1)
-        rows = {name: [] for name in ["luxel", *args.variants]}
+        rows = {name: [] for name in ["luxel", "luxel_alone", *args.variants]}
         for i in range(args.rounds):
-            picture, seconds = luxel(args, scene, args.res, args.spp, 500 + i)
-            rows["luxel"].append((seconds, relative_mse(picture, stack)))
+            picture, seconds, alone = luxel(args, scene, args.res, args.spp, 500 + i)
+            error = relative_mse(picture, stack)
+            rows["luxel"].append((seconds, error))
+            rows["luxel_alone"].append((alone, error))
             for variant in args.variants:
                 mi.set_variant(variant)
                 picture, seconds = mitsuba(ready[variant], args.spp, 500 + i)
                 rows[variant].append((seconds, relative_mse(picture, stack)))
-        tables[scene] = table = {name: figures(args, rows["luxel"], found) for name, found in rows.items()}
+        tables[scene] = table = {name: figures(args, rows, found) for name, found in rows.items()}
         print(f"\n{scene}: {args.res}^2, {args.spp} spp, {args.rounds} rounds interleaved, {CORES} cores")
         print(f"  {'':14}{'cpu s':>8}{'spread':>9}{'Mpaths/cpu-s':>14}{'relMSE':>11}{'spread':>9}{'efficiency':>12}{'Luxel is':>10}{'its time, of each round':>26}")
         for name, it in table.items():
@@ -194,12 +199,13 @@ def speed(args):
     return tables
 
 
-def figures(args, ours, found):
-    """Of the seconds and relMSE of a program's rounds, beside those of Luxel's."""
+def figures(args, rows, found):
+    """Of the seconds and relMSE of a program's rounds, beside those of Luxel's, whole and alone."""
     times, errors = zip(*found)
     seconds, relmse = statistics.median(times), statistics.median(errors)
     spread = lambda x: (max(x) - min(x)) / statistics.median(x)
-    of_time = [luxel[0] / theirs for luxel, theirs in zip(ours, times)]
+    of_time = lambda name: [luxel[0] / theirs for luxel, theirs in zip(rows[name], times)]
+    ends = lambda x: [min(x), statistics.median(x), max(x)]
     return {
         "seconds": seconds,
         "spread": spread(times),
@@ -207,7 +213,8 @@ def figures(args, ours, found):
         "relmse": relmse,
         "relmse_spread": spread(errors),
         "efficiency": 1 / (relmse * seconds / CORES),
-        "of_time": [min(of_time), statistics.median(of_time), max(of_time)],
+        "of_time": ends(of_time("luxel")),
+        "of_time_alone": ends(of_time("luxel_alone")),
     }
 
 

@@ -45,6 +45,9 @@ const PROGRAMS: [(&str, &str); 3] = [
     ("Mitsuba, llvm_ad_rgb", "llvm_ad_rgb"),
 ];
 
+/// Luxel without reading and writing, as Mitsuba is measured.
+const ALONE: (&str, &str) = ("luxel, the render alone", "luxel_alone");
+
 /// Standard errors beyond which a difference is named.
 const FAR: f64 = 3.5;
 
@@ -88,8 +91,9 @@ impl Found {
         let accuracy =
             CHANNELS.map(|(_, scene, _)| (scene.to_owned(), json!({ "regions": regions })));
         let figures = json!({ "rate": 1.5, "efficiency": 250.0 });
-        let programs = PROGRAMS.map(|(_, program)| (program.to_owned(), figures.clone()));
-        let programs: Value = programs.into_iter().collect();
+        let programs = PROGRAMS.into_iter().chain([ALONE]);
+        let programs = programs.map(|(_, program)| (program.to_owned(), figures.clone()));
+        let programs: Value = programs.collect();
         let speed = TIMED.map(|(_, scene)| (scene.to_owned(), programs.clone()));
         let (accuracy, speed) = (accuracy.into_iter().collect(), speed.into_iter().collect());
         Self { accuracy, speed, rounds: 9 }
@@ -119,12 +123,15 @@ impl Found {
         Ok([of(a)?, of(b)?, of(c)?])
     }
 
-    /// 1 / (relMSE · second) of each of the programs, in three digits.
+    /// 1 / (relMSE · second) of each of the programs, in three digits; of Luxel that of the whole process,
+    /// and of its render alone.
     ///
     /// # Errors
     /// It was not measured.
     pub(super) fn efficiencies(&self, scene: &str) -> Result<Vec<String>, String> {
-        Ok(self.of_programs(scene, "efficiency")?.map(three_digits).to_vec())
+        let alone = number(&self.speed, &format!("/{scene}/{}/efficiency", ALONE.1))?;
+        let [ours, theirs @ ..] = self.of_programs(scene, "efficiency")?.map(three_digits);
+        Ok([format!("{ours} · {}", three_digits(alone))].into_iter().chain(theirs).collect())
     }
 
     /// Differences of means, in thousandths, and which of them are far from nothing.
@@ -185,19 +192,27 @@ impl Found {
         let mut rates = table("Mpaths per CPU-second (spread)", &scenes);
         let mut efficiencies = table("1 / (relMSE · second), two cores", &scenes);
         let mut times = table("time of luxel over that of: median (least to greatest)", &scenes);
-        for (name, program) in PROGRAMS {
-            let (mut rate, mut efficiency, mut time) = (vec![], vec![], vec![]);
+        let [ours, theirs @ ..] = PROGRAMS;
+        for (name, program) in [ours, ALONE].into_iter().chain(theirs) {
+            let (mut rate, mut efficiency) = (vec![], vec![]);
             for scene in TIMED {
                 let of = |what: &str| figure(scene, program, what);
                 rate.push(format!("{:.3} ({:.0} %)", of("rate")?, of("spread")? * 100.0));
                 efficiency.push(three_digits(of("efficiency")?));
-                let [least, middle, most] = [of("of_time/0")?, of("of_time/1")?, of("of_time/2")?];
-                time.push(format!("{middle:.3} ({least:.3} to {most:.3})"));
             }
             rates.push(row(name, &rate));
             efficiencies.push(row(name, &efficiency));
-            if program != "luxel" {
-                times.push(row(name, &time));
+        }
+        for (name, program) in theirs {
+            for (of_what, what) in [("", "of_time"), (", the render alone", "of_time_alone")] {
+                let mut time = vec![];
+                for scene in TIMED {
+                    let [least, middle, most] = [0, 1, 2].map(|i| format!("{what}/{i}"));
+                    let of = |what: &str| figure(scene, program, what);
+                    let [least, middle, most] = [of(&least)?, of(&middle)?, of(&most)?];
+                    time.push(format!("{middle:.3} ({least:.3} to {most:.3})"));
+                }
+                times.push(row(&format!("{name}{of_what}"), &time));
             }
         }
         let tables = [rates, efficiencies, times].map(|rows| rows.join("\n")).join("\n\n");

@@ -91,7 +91,7 @@ const BESIDE: [Row<Found>; 7] = [
         },
     },
     Row {
-        label: "1 / (relMSE · second) on two cores, Cornell 512²",
+        label: "1 / (relMSE · second) on two cores, whole · render alone, Cornell 512²",
         cells: |found, _| found.efficiencies("cornell_rgb"),
     },
     Row {
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(cells(&text, BESIDE[0].label)[0], "−0.200 % ± 0.100 %");
         assert_eq!(cells(&text, BESIDE[2].label), ["1.50 M", "1.50 M", "1.50 M"]);
         for row in &BESIDE[3..6] {
-            assert_eq!(cells(&text, row.label), ["250", "250", "250"], "{}", row.label);
+            assert_eq!(cells(&text, row.label), ["250 · 250", "250", "250"], "{}", row.label);
         }
         for row in &ALONE {
             assert_eq!(cells(&text, row.label), cells(README, row.label));

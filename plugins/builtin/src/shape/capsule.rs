@@ -185,13 +185,13 @@ impl Capsule {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::shape::testing::{
         Profile, check_against, check_convex, check_sampling, check_solid_angle, visible_area,
     };
 
-    fn capsule(base: DVec3, radius: f64, height: f64) -> Capsule {
+    pub(in crate::shape) fn capsule(base: DVec3, radius: f64, height: f64) -> Capsule {
         let (axis, frame) = (DVec3::new(2.0, 6.0, -3.0), [DVec3::ZERO; 3]);
         let mut c = Capsule { base, axis, radius, height, frame };
         c.prepare();

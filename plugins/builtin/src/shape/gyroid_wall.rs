@@ -6,10 +6,10 @@ use std::sync::OnceLock;
 use glam::DVec3;
 use luxel_sdk::Params;
 use luxel_sdk::kind::{Hit, Shape, Surface};
-use luxel_sdk::num::{Bounds3, Ray};
+use luxel_sdk::num::{Bounds3, Ray, sphere_roots};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::implicit::{Field, area_by_lines, march, surface_of};
+use super::implicit::{Field, Look, Way, area_by_lines, march, surface_of};
 
 /// A wall in the form of a gyroid, cut out by a ball: closed. It divides space into two mazes that
 /// are each other's mirror image and never meet.
@@ -55,6 +55,10 @@ impl Build<OnceLock<f64>> for GyroidWall<'_> {
 /// sin y) and (cos z, sin z) in turn, the three squares add up to no more than all cos² and sin²
 /// together: 3. At the origin it is that.
 const STEEPEST: f64 = 1.7320508075688774;
+/// What the second derivative of the flattened function along a unit direction never exceeds, times
+/// cell / 2π: sin x cos y is (sin(x + y) + sin(x − y)) / 2, whose second derivative along d is at most
+/// ((dx + dy)² + (dx − dy)²) / 2 = dx² + dy². The three together: 2.
+const BEND: f64 = 2.0 / STEEPEST;
 /// A typical steepness on the wall's middle, where it is from 0.86 to `STEEPEST`: thickness is
 /// counted by it.
 const TYPICAL: f64 = 1.4;
@@ -110,6 +114,8 @@ impl Shape for GyroidWall<'_> {
 }
 
 impl Field for GyroidWall<'_> {
+    type Known = ();
+
     fn value(&self, p: DVec3) -> f64 {
         let q = p - self.center;
         let (g, _) = self.gyroid(q);
@@ -125,6 +131,37 @@ impl Field for GyroidWall<'_> {
         }
         slope * g.signum()
     }
+
+    /// Along a line the gyroid's function bends by no more than `BEND`, so that its value and its slope
+    /// bound it ahead; the ball's chord is known.
+    fn look(&self, way: &Way, s: f64, (): &mut ()) -> Look {
+        let q = way.at(s) - self.center;
+        let (g, slope) = self.gyroid(q);
+        let (half, ball) = (self.half(), q.length() - self.radius);
+        let value = (g.abs() - half).max(ball);
+        let (rise, bend) = (slope.dot(way.d), BEND * TAU / self.cell());
+        let above = |gap: f64, rise: f64| if gap > 0.0 { stays(gap, rise, bend) } else { 0.0 };
+        let roots = sphere_roots(q, way.d, self.radius);
+        // In the wall both of its sides bound it, outside of it the nearer one.
+        let free = if value > 0.0 {
+            let before = roots.map_or(f64::INFINITY, |(enter, leave)| {
+                if leave < 0.0 { f64::INFINITY } else { enter - way.error }
+            });
+            let wall = above(g.abs() - half, rise * g.signum());
+            if ball > 0.0 { wall.max(before) } else { wall }
+        } else {
+            let wall = above(half - g, -rise).min(above(half + g, rise));
+            wall.min(roots.map_or(0.0, |(_, leave)| leave - way.error))
+        };
+        Look { value, free: free.max(value.abs()), met: false }
+    }
+}
+
+/// How far ahead a gap stays open that grows at a rate, where that changes by `bend` a metre at most:
+/// the positive root of gap + rise·s − bend·s² / 2.
+fn stays(gap: f64, rise: f64, bend: f64) -> f64 {
+    let root = (rise * rise + 2.0 * bend * gap).sqrt();
+    if rise > 0.0 { (rise + root) / bend } else { 2.0 * gap / (root - rise) }
 }
 
 impl GyroidWall<'_> {

@@ -1,8 +1,10 @@
 //! Surfaces that are told by a distance alone: f vanishes on them and changes by no more than the
-//! way. A step of |f| along a ray cannot pass them.
+//! way. A step of |f| along a ray cannot pass them; a field may know of longer ones that cannot
+//! either. No other step is made.
 //!
 //! # Source
-//! Hart 1996, "Sphere Tracing".
+//! Hart 1996, "Sphere Tracing": steps of |f|. Galin et al. 2020, "Segment Tracing using Local
+//! Lipschitz Bounds": a bound for what lies ahead on the line instead of for all directions.
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Hit, Surface};
@@ -11,13 +13,46 @@ use luxel_sdk::sampling::sobol_owen_2d;
 
 use super::axial::length_of;
 
-/// A function with |f(p) − f(q)| ≤ |p − q|, negative inside, found to within `error`.
+/// A function with |f(p) − f(q)| ≤ |p − q|, negative inside, found to within `Way::error`.
 pub(super) trait Field {
+    /// What is remembered along one line.
+    type Known: Default;
+
     /// f at a point, metres.
     fn value(&self, p: DVec3) -> f64;
 
     /// The gradient of f; where it comes from differences, they are over `step` metres.
     fn gradient(&self, p: DVec3, step: f64) -> DVec3;
+
+    /// f at a place of a line, and what is known to lie ahead. Places are asked for in order.
+    fn look(&self, way: &Way, s: f64, _known: &mut Self::Known) -> Look {
+        let value = self.value(way.at(s));
+        Look { value, free: value.abs(), met: false }
+    }
+}
+
+/// A line of unit direction.
+pub(super) struct Way {
+    o: DVec3,
+    pub(super) d: DVec3,
+    /// How far a value of the field may be off along it, metres.
+    pub(super) error: f64,
+}
+
+impl Way {
+    pub(super) fn at(&self, s: f64) -> DVec3 {
+        self.o + self.d * s
+    }
+}
+
+/// What a field tells at a place of a line.
+pub(super) struct Look {
+    /// f there, metres.
+    pub(super) value: f64,
+    /// For how many metres ahead f keeps its sign: a lower bound.
+    pub(super) free: f64,
+    /// Whether f is known to change its sign at the end of these.
+    pub(super) met: bool,
 }
 
 /// The gradient of a function, by differences.
@@ -38,22 +73,22 @@ pub(super) fn box_distance(bounds: &Bounds3, p: DVec3) -> f64 {
     out.max(DVec3::ZERO).length() + out.max_element().min(0.0)
 }
 
-/// Steps after which the least step is doubled, and the most steps.
-const PATIENCE: u32 = 32;
-const MOST_STEPS: u32 = 64 * PATIENCE;
+/// The most steps of one ray.
+///
+/// A ray that leaves a flat surface at an angle θ takes ln(size / error) / θ of them, 32 / θ; one that
+/// passes a ball of radius R at a height h π·√(R / 2h). More is needed by what crawls along a surface.
+const MOST_STEPS: u32 = 1 << 16;
 /// So near to the surface, in sizes of the box, a ray steps to where its last steps say that it is.
 /// Crossings nearer to each other than `FORWARD` such lengths may count as one.
 const NEAR: f64 = 1.0 / (1u64 << 30) as f64;
 const FORWARD: f64 = 64.0;
 
-/// A line of unit direction through a field, from where it enters the box.
+/// A line through a field, from where it enters the box.
 struct Line<'f, F> {
     field: &'f F,
-    o: DVec3,
-    d: DVec3,
+    way: Way,
     /// Where the box is left, metres.
     end: f64,
-    error: f64,
     near: f64,
 }
 
@@ -64,10 +99,10 @@ pub(super) fn march<F: Field>(field: &F, bounds: &Bounds3, ray: &Ray) -> Option<
     let (enter, leave) = through(bounds, ray.o, d)?;
     let near = NEAR * bounds.diagonal().length();
     // From where it enters: from afar the ray's own parameter is too coarse to march by.
-    let line =
-        Line { field, o: ray.o + d * enter, d, end: leave - enter, error: error(bounds), near };
+    let way = Way { o: ray.o + d * enter, d, error: error(bounds) };
     // Beyond the ray's end by what rounds, at most.
-    let stop = ray.t_max * length * (1.0 + gamma64(16)) - enter + line.error;
+    let stop = ray.t_max * length * (1.0 + gamma64(16)) - enter + way.error;
+    let line = Line { field, way, end: leave - enter, near };
     let t = (enter + line.root(stop)?) / length;
     (t > 0.0 && t <= ray.t_max).then_some(Hit { t, at: DVec2::ZERO, face: 0 })
 }
@@ -82,48 +117,56 @@ fn through(bounds: &Bounds3, o: DVec3, d: DVec3) -> Option<(f64, f64)> {
 
 impl<F: Field> Line<'_, F> {
     fn at(&self, s: f64) -> f64 {
-        self.field.value(self.o + self.d * s)
+        self.field.value(self.way.at(s))
     }
 
     /// The first change of sign before `stop`.
     ///
-    /// Steps are as long as f allows. The shortest step, that of f's own error, grows twofold for
-    /// each `PATIENCE` steps: a ray that crawls along a surface comes to an end, and what it may
-    /// then miss is thinner than a step.
+    /// Steps are as long as the field allows, and no shorter than f's own error: what that skips
+    /// cannot be told from nothing. A ray that has not come through after `MOST_STEPS` is said to meet
+    /// the surface that it crawls along, where it is nearest to it in the second half of these: no
+    /// farther than its way over their number. So a touch may be made up, but never a gap.
     fn root(&self, stop: f64) -> Option<f64> {
-        let (mut s, mut f) = (0.0, self.at(0.0));
-        let outside = f > 0.0;
-        let mut least = self.error;
-        for i in 1..MOST_STEPS {
+        let mut known = F::Known::default();
+        let mut s = 0.0;
+        let mut here = self.field.look(&self.way, s, &mut known);
+        let outside = here.value > 0.0;
+        let mut nearest = (f64::INFINITY, 0.0);
+        for i in 0..MOST_STEPS {
             if !(s < self.end && s <= stop) {
                 return None;
             }
-            if i.is_multiple_of(PATIENCE) {
-                least *= 2.0;
+            let step = here.free.max(self.way.error);
+            if here.met {
+                return Some(s + step);
             }
-            let step = f.abs().max(least);
             let next = (s + step).min(self.end);
-            let g = self.at(next);
+            let step = next - s;
+            let there = self.field.look(&self.way, next, &mut known);
+            let (f, g) = (here.value, there.value);
             if (g > 0.0) != outside {
                 return Some(self.between((s, f), (next, g)));
             }
             if g.abs() < self.near && g.abs() < f.abs() {
                 // As straight as it came, and a quarter farther.
-                let rest = 1.25 * g.abs() * step / (f - g).abs() + self.error;
+                let rest = 1.25 * g.abs() * step / (f - g).abs() + self.way.error;
                 let beyond = next + rest.min(FORWARD * self.near);
                 let h = self.at(beyond);
                 if (h > 0.0) != outside && beyond <= self.end {
                     return Some(self.between((next, g), (beyond, h)));
                 }
             }
-            (s, f) = (next, g);
+            if i >= MOST_STEPS / 2 && g.abs() < nearest.0 {
+                nearest = (g.abs(), next);
+            }
+            (s, here) = (next, there);
         }
-        None
+        Some(nearest.1)
     }
 
     /// The root between two places where the sign differs: by secants, halves where one end stays.
     fn between(&self, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
-        let width = 0.25 * self.error;
+        let width = 0.25 * self.way.error;
         for i in 0..128 {
             if !(b.0 - a.0 > width) {
                 break;

@@ -297,13 +297,13 @@ impl Line {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::shape::testing::{Profile, check_against, check_sampling, visible_area};
     use luxel_sdk::num::offset_origin;
     use luxel_sdk::sampling::Rng;
 
-    fn torus(center: DVec3, radius: f64, tube: f64) -> Torus {
+    pub(in crate::shape) fn torus(center: DVec3, radius: f64, tube: f64) -> Torus {
         let (axis, frame) = (DVec3::new(2.0, 6.0, -3.0), [DVec3::ZERO; 3]);
         let mut t = Torus { center, axis, radius, tube, minor: 0.0, frame };
         t.prepare();

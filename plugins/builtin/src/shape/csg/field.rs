@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use luxel_sdk::kind::{Shape, ShapeRef};
-use luxel_sdk::num::Bounds3;
+use luxel_sdk::num::{Bounds3, Ray};
 
-use super::super::implicit::{Field, box_distance, differences};
+use super::super::implicit::{Field, Look, Way, box_distance, differences};
 use super::Op;
 
 /// The distance of a solid whose parts flow into each other.
@@ -14,6 +14,11 @@ use super::Op;
 /// negative, together 1. So its gradient is a mean of those of a and b, and where these change by no
 /// more than the way, so does it. It is less than the minimum by k / 4 at most. The smooth maximum
 /// is −smin(−a, −b), and cutting b away is the maximum of a and −b.
+///
+/// Where either part is as far as k, the other one alone is the surface: with a > 0 and b ≥ k,
+/// smin(a, b) ≥ smin(0⁺, k) > 0, and it vanishes with a. So a line is followed from crossing to
+/// crossing of the parts themselves, however near to them it runs, and marches by |f| only where both
+/// are nearer than k and neither is negative.
 ///
 /// # Source
 /// Quilez, "Smooth minimum", the quadratic one.
@@ -63,21 +68,114 @@ fn distance_of((part, bounds): &(ShapeRef<'_>, Bounds3), p: DVec3) -> Option<f64
 }
 
 /// The same of a part that has been checked to know it.
-fn known(part: &(ShapeRef<'_>, Bounds3), p: DVec3) -> f64 {
+fn checked(part: &(ShapeRef<'_>, Bounds3), p: DVec3) -> f64 {
     distance_of(part, p).expect("only parts that know their distance are blended")
 }
 
+/// What is known of both parts along a line.
+#[derive(Default)]
+pub(super) struct Known {
+    /// Where each is crossed next.
+    crossings: [Option<f64>; 2],
+}
+
+impl Blend<'_> {
+    /// The signs with which the parts go into the smooth minimum: what is below in it is inside of a
+    /// union and outside of the other two.
+    fn signs(&self) -> [f64; 2] {
+        match self.op {
+            Op::Union => [1.0, 1.0],
+            Op::Intersection => [-1.0, -1.0],
+            Op::Difference => [-1.0, 1.0],
+        }
+    }
+
+    fn joined(&self, [a, b]: [f64; 2]) -> f64 {
+        smooth_min(a, b, self.k).0
+    }
+
+    fn part(&self, i: usize) -> &(ShapeRef<'_>, Bounds3) {
+        if i == 0 { &self.a } else { &self.b }
+    }
+
+    /// For how many metres ahead a part, `apart` metres away now, is farther than k: by its distance,
+    /// or as long as the line is not in its grown box.
+    fn beyond(&self, i: usize, apart: f64, way: &Way, s: f64) -> f64 {
+        let room = apart - self.k - way.error;
+        if self.signs()[i] < 0.0 {
+            return room;
+        }
+        let bounds = &self.part(i).1;
+        let grown = DVec3::splat(self.k + way.error);
+        let zone = Bounds3 { min: bounds.min - grown, max: bounds.max + grown };
+        let enter = zone.intersect_ray(way.at(s), way.d.recip(), f64::INFINITY);
+        enter.map_or(f64::INFINITY, |(enter, _)| room.max(enter - way.error))
+    }
+
+    /// Where a part is crossed next; `None` if that is nearer than its distance says that it can be.
+    fn crossing(
+        &self,
+        (i, apart): (usize, f64),
+        way: &Way,
+        s: f64,
+        known: &mut Known,
+    ) -> Option<f64> {
+        let t = known.crossings[i].filter(|t| *t > s).unwrap_or_else(|| {
+            let hit = self.part(i).0.intersect(&Ray::new(way.at(s), way.d));
+            hit.map_or(f64::INFINITY, |hit| s + hit.t)
+        });
+        known.crossings[i] = Some(t);
+        (t - s >= apart.abs() - 2.0 * way.error).then_some(t)
+    }
+
+    /// For how many metres the smooth minimum keeps its sign, and whether it is known to vanish then:
+    /// of what both parts say, of which the lesser one is `near`. `None` if nothing is known but f.
+    fn ahead(&self, apart: [f64; 2], way: &Way, s: f64, known: &mut Known) -> Option<(f64, bool)> {
+        let near = usize::from(apart[1] < apart[0]);
+        let far = 1 - near;
+        // Only a part whose side is told for certain is crossed where it says.
+        if !(apart[near].abs() > way.error) {
+            return None;
+        }
+        if apart[near] > 0.0 {
+            let (f, room) = (self.joined(apart), self.beyond(far, apart[far], way, s));
+            if f <= 0.0 || room <= f {
+                return None;
+            }
+            let t = self.crossing((near, apart[near]), way, s, known)?;
+            let met = t.is_finite() && t - s <= room;
+            return Some(if met { (t - s, true) } else { (room, false) });
+        }
+        // Below in one is below in both.
+        let t = self.crossing((near, apart[near]), way, s, known).filter(|t| t.is_finite())?;
+        let other = self.signs()[far] * checked(self.part(far), way.at(t));
+        Some((t - s, other >= self.k))
+    }
+}
+
 impl Field for Blend<'_> {
+    type Known = Known;
+
     fn value(&self, p: DVec3) -> f64 {
-        self.of(known(&self.a, p), known(&self.b, p))
+        self.of(checked(&self.a, p), checked(&self.b, p))
+    }
+
+    fn look(&self, way: &Way, s: f64, known: &mut Known) -> Look {
+        let p = way.at(s);
+        let (a, b) = (checked(&self.a, p), checked(&self.b, p));
+        let value = self.of(a, b);
+        let [of_a, of_b] = self.signs();
+        let (free, met) =
+            self.ahead([of_a * a, of_b * b], way, s, known).unwrap_or((value.abs(), false));
+        Look { value, free, met }
     }
 
     /// Of each part by itself: differences do not see across the edge between them.
     fn gradient(&self, p: DVec3, step: f64) -> DVec3 {
-        let (of_a, of_b) = self.weights(known(&self.a, p), known(&self.b, p));
+        let (of_a, of_b) = self.weights(checked(&self.a, p), checked(&self.b, p));
         let part = |weight: f64, part| {
             if weight.abs() > 0.0 {
-                differences(|q| known(part, q), p, step) * weight
+                differences(|q| checked(part, q), p, step) * weight
             } else {
                 DVec3::ZERO
             }

@@ -1,3 +1,5 @@
+mod marched;
+
 use std::f64::consts::TAU;
 
 use luxel_sdk::num::{gamma64, offset_origin, sphere_roots};

@@ -5,11 +5,11 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, Surface};
 use luxel_sdk::num::{Bounds3, Ray, sphere_roots};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::implicit::{Field, Look, Way, area_by_lines, march, surface_of};
+use super::implicit::{Field, Look, Way, area_by_lines, march, surface_of, turns_of};
 
 /// A wall in the form of a gyroid, cut out by a ball: closed. It divides space into two mazes that
 /// are each other's mirror image and never meet.
@@ -111,6 +111,10 @@ impl Shape for GyroidWall<'_> {
     fn distance(&self, p: DVec3) -> Option<f64> {
         Some(self.value(p))
     }
+
+    fn normal_derivatives(&self, _hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        turns_of(self, &self.bounds(), at)
+    }
 }
 
 impl Field for GyroidWall<'_> {
@@ -130,6 +134,22 @@ impl Field for GyroidWall<'_> {
             return q.normalize();
         }
         slope * g.signum()
+    }
+
+    fn bend(&self, p: DVec3, d: DVec3, _size: f64, _error: f64) -> Option<DVec3> {
+        let q = p - self.center;
+        let (g, _) = self.gyroid(q);
+        let far = q.length();
+        if far - self.radius > g.abs() - self.half() {
+            let n = q / far;
+            return Some((d - n * n.dot(d)) / far);
+        }
+        let k = TAU / self.cell();
+        let (s, c) = ((q * k).map(f64::sin), (q * k).map(f64::cos));
+        let (xy, yz, zx) = (-c.x * s.y, -c.y * s.z, -c.z * s.x);
+        let own = -DVec3::new(s.x * c.y + s.z * c.x, s.y * c.z + s.x * c.y, s.z * c.x + s.y * c.z);
+        let across = DVec3::new(xy * d.y + zx * d.z, xy * d.x + yz * d.z, zx * d.x + yz * d.y);
+        Some((own * d + across) * (k / STEEPEST * g.signum()))
     }
 
     /// Along a line the gyroid's function bends by no more than `BEND`, so that its value and its slope

@@ -7,7 +7,7 @@
 //! Lipschitz Bounds": a bound for what lies ahead on the line instead of for all directions.
 
 use glam::{DVec2, DVec3};
-use luxel_sdk::kind::{Hit, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64, offset_origin};
 use luxel_sdk::sampling::sobol_owen_2d;
 
@@ -23,6 +23,10 @@ pub(super) trait Field {
 
     /// The gradient of f; where it comes from differences, they are over `step` metres.
     fn gradient(&self, p: DVec3, step: f64) -> DVec3;
+
+    /// The derivative of the gradient along `d`, metres; where it comes from differences, of a function
+    /// known to `error` in a box of `size`, both metres. `None` where the gradient jumps.
+    fn bend(&self, p: DVec3, d: DVec3, size: f64, error: f64) -> Option<DVec3>;
 
     /// f at a place of a line, and what is known to lie ahead. Places are asked for in order.
     fn look(&self, way: &Way, s: f64, _known: &mut Self::Known) -> Look {
@@ -59,6 +63,39 @@ pub(super) struct Look {
 pub(super) fn differences(f: impl Fn(DVec3) -> f64, p: DVec3, step: f64) -> DVec3 {
     let along = |axis: DVec3| (f(p + axis * step) - f(p - axis * step)) / (2.0 * step);
     DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
+}
+
+/// How often `bend` tries, with steps a quarter as long each time.
+const TRIES: u32 = 4;
+/// By how much of them two second differences may disagree: by more, one of them is across an edge.
+const AGREE: f64 = 1e-3;
+
+/// The derivative along `d` of the gradient of a function that is known to `error` in a box of `size`.
+///
+/// Second differences over h and 2h leave out h² times a fourth derivative, which both together
+/// tell, and then h⁴; they round by error / h². The first step balances these. Near an edge of the
+/// function they disagree, until the step is short enough not to reach it.
+pub(super) fn bend(
+    f: impl Fn(DVec3) -> f64,
+    p: DVec3,
+    d: DVec3,
+    (size, error): (f64, f64),
+) -> Option<DVec3> {
+    let length = d.length();
+    let over = |step: f64| {
+        let gradient = |side: f64| differences(&f, p + d * (side * step / length), step);
+        (gradient(1.0) - gradient(-1.0)) / (2.0 * step)
+    };
+    let mut step = size * (error / size).powf(1.0 / 6.0);
+    for _ in 0..TRIES {
+        let (wide, narrow) = (over(2.0 * step), over(step));
+        let rounds = 8.0 * error / (step * step);
+        if (wide - narrow).length() <= AGREE * narrow.length() + rounds {
+            return Some((narrow + (narrow - wide) / 3.0) * length);
+        }
+        step *= 0.25;
+    }
+    None
 }
 
 /// How far a value may be off inside these bounds, metres: what `Shape::distance` promises of each
@@ -216,6 +253,25 @@ pub(super) fn surface_of<F: Field>(field: &F, bounds: &Bounds3, ray: &Ray, hit: 
     let p_err = DVec3::splat(2.0 * error / steep + field.value(p).abs() / steep);
     let (uv, dp_du, dp_dv) = flat_coordinates(p, ng, size);
     Surface { p, p_err, ng, ns: ng, uv, dp_du, dp_dv }
+}
+
+/// How the normal turns at a point that `surface_of` found: that of ∇f / |∇f| along the coordinates.
+///
+/// # Source
+/// Goldman 2005, "Curvature formulas for implicit curves and surfaces".
+pub(super) fn turns_of<F: Field>(
+    field: &F,
+    bounds: &Bounds3,
+    at: &Surface,
+) -> Option<NormalDerivatives> {
+    let (size, error) = (bounds.diagonal().length(), error(bounds));
+    let steep = field.gradient(at.p, size * (error / size).cbrt()).length();
+    let along = |d: DVec3| {
+        let bend = field.bend(at.p, d, size, error)?;
+        let turn = (bend - at.ns * at.ns.dot(bend)) / steep;
+        turn.is_finite().then_some(turn)
+    };
+    Some(NormalDerivatives { dn_du: along(at.dp_du)?, dn_dv: along(at.dp_dv)? })
 }
 
 /// The two coordinates across which the surface is flattest, in lengths of `scale`.

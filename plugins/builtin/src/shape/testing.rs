@@ -76,6 +76,48 @@ fn check_leaving(shape: &dyn Shape, at: &Surface, rng: &mut Rng) {
     }
 }
 
+/// Checks how normals turn against those of hits beside a hit, and returns how many were compared.
+///
+/// Over a step of a hundred-thousandth of the size, central differences leave its square times a few
+/// hundred, for parts as small as a twentieth; `blur` is what a normal itself may be off.
+pub(super) fn check_turning(shape: &dyn Shape, seed: u64, blur: f64) -> u32 {
+    let mut rng = Rng::new(seed);
+    let b = shape.bounds();
+    let (centre, size) = (b.centre(), b.diagonal().length());
+    let step = 1e-5 * size;
+    let mut n = 0;
+    for _ in 0..600 {
+        let d = direction(&mut rng);
+        let ray = Ray::new(centre + direction(&mut rng) * (0.3 * size * rng.f64()) - d * size, d);
+        let Some(hit) = shape.intersect(&ray) else { continue };
+        let at = shape.surface(&ray, &hit);
+        let Some(turns) = shape.normal_derivatives(&hit, &at) else { continue };
+        let beside = |offset: DVec3| {
+            let ray = Ray::new(ray.o + offset, d);
+            let near = shape.surface(&ray, &shape.intersect(&ray)?);
+            let same = near.p.distance(at.p) < 10.0 * step && near.ng.dot(at.ng) > 0.999;
+            let seam = (near.uv - at.uv).abs().max_element() > 0.01;
+            (same && !seam).then_some(near)
+        };
+        for across in <[DVec3; 2]>::from(d.any_orthonormal_pair()) {
+            let (Some(a), Some(b)) = (beside(across * step), beside(across * -step)) else {
+                continue;
+            };
+            // At the ends of strands coordinates say nothing of the place.
+            if at.ng.dot(d).abs() < 0.3 || at.dp_du.length() < step {
+                continue;
+            }
+            let moved = b.uv - a.uv;
+            let told = turns.dn_du * moved.x + turns.dn_dv * moved.y;
+            let off = (b.ns - a.ns - told).length();
+            let slack = 1e-4 * told.length() + 1e-9 + blur;
+            assert!(off <= slack, "{ray:?}: {hit:?}: {told}, not {}: {off:e}", b.ns - a.ns);
+            n += 1;
+        }
+    }
+    n
+}
+
 /// Checks that each sample lies on the shape and has the density that `pdf` states.
 pub(super) fn check_sampling(shape: &dyn Shape, from: Option<DVec3>, seed: u64) {
     let mut rng = Rng::new(seed);

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeSample, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64, sphere_roots};
 use luxel_sdk::params::Fault;
 
@@ -143,5 +143,10 @@ impl Shape for Orb {
 
     fn distance(&self, p: DVec3) -> Option<f64> {
         Some((p - self.center).length() - self.radius)
+    }
+
+    fn normal_derivatives(&self, _hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        let (dn_du, dn_dv) = (at.dp_du / self.radius, at.dp_dv / self.radius);
+        Some(NormalDerivatives { dn_du, dn_dv })
     }
 }

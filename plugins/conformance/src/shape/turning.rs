@@ -9,6 +9,9 @@ use luxel_sdk::sampling::Rng;
 use super::Look;
 use crate::report::Judge;
 
+/// The check of how normals turn.
+pub(super) const TURNS: &str = "dn/du is the derivative";
+
 /// Neighbours lie at most this share of the shape's radius away, of its least radius of curvature,
 /// and of one unit of its coordinates.
 const STEP: f64 = 1e-4;
@@ -81,7 +84,7 @@ impl Look<'_> {
             // The transforms stretch what rounds by their condition of four.
             let slack = BEYOND * size + 4.0 * rounds * (1.0 + dn_du.length() + dn_dv.length());
             let here = || format!("{}: {hit:?}, over {moved}, {transform:?}", self.at(ray));
-            judge.within("dn/du is the derivative", off / slack, 1.0, here);
+            judge.within(TURNS, off / slack, 1.0, here);
         }
     }
 

@@ -261,8 +261,8 @@ pub trait Shape: Send + Sync {
 
     /// How the shading normal turns at a point that `surface` found by this hit, in the shape's frame.
     ///
-    /// Exact to rounding, and finite. `None` where the shape does not know it, or where the normal has
-    /// no derivative, as at an apex.
+    /// Exact to rounding, or of a normal that comes from differences to a millionth; finite. `None`
+    /// where the shape does not know it, or where the normal has no derivative, as at an apex.
     fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
         let _ = (hit, at);
         None

@@ -13,11 +13,11 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 use luxel_sdk::Params;
-use luxel_sdk::kind::{Hit, Shape, ShapeRef, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeRef, Surface};
 use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared};
 
-use super::implicit::{area_by_lines, march, surface_of};
+use super::implicit::{area_by_lines, march, surface_of, turns_of};
 use field::Blend;
 
 /// What is inside the whole, given what is inside its parts.
@@ -122,6 +122,13 @@ impl<'s> Pair<'s> {
         walk::surface(self, ray, hit)
     }
 
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        if self.smooth > 0.0 {
+            return turns_of(&self.blend(), &self.bounds, at);
+        }
+        walk::normal_derivatives(self, hit, at)
+    }
+
     fn area(&self) -> f64 {
         area_by_lines(&self.bounds, |ray| {
             let hit = self.intersect(ray)?;
@@ -207,6 +214,10 @@ macro_rules! solid {
 
             fn distance(&self, p: DVec3) -> Option<f64> {
                 self.pair().distance(p)
+            }
+
+            fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+                self.pair().normal_derivatives(hit, at)
             }
         }
     };

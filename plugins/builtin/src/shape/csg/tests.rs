@@ -41,6 +41,9 @@ impl Shape for Solid<'_> {
     fn distance(&self, p: DVec3) -> Option<f64> {
         self.0.distance(p)
     }
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        self.0.normal_derivatives(hit, at)
+    }
 }
 
 /// Every crossing, each found by a ray that leaves the last one.

@@ -5,8 +5,8 @@
 //! inside a part, the outer normal of the first crossing says. The whole is crossed where what is
 //! inside of both parts changes what is inside of it.
 
-use glam::DVec3;
-use luxel_sdk::kind::{Hit, Shape, ShapeRef, Surface};
+use glam::{DVec2, DVec3};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeRef, Surface};
 use luxel_sdk::num::{Ray, gamma64, offset_origin};
 
 use super::{Op, Pair};
@@ -129,18 +129,44 @@ pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
     None
 }
 
+/// The part that was met, its hit, and the other part.
+fn met<'s>(pair: &Pair<'s>, hit: &Hit) -> (ShapeRef<'s>, Hit, ShapeRef<'s>) {
+    let own = Hit { face: hit.face / 2, ..*hit };
+    if is_of_b(hit) { (pair.b, own, pair.a) } else { (pair.a, own, pair.b) }
+}
+
+fn is_of_b(hit: &Hit) -> bool {
+    !hit.face.is_multiple_of(2)
+}
+
+/// Seen from where it was taken away: turned over, and the texture stands on its head. Twice is as
+/// it was.
+fn turned_over(s: &Surface) -> Surface {
+    let uv = DVec2::new(s.uv.x, 1.0 - s.uv.y);
+    Surface { ng: -s.ng, ns: -s.ns, dp_dv: -s.dp_dv, uv, ..*s }
+}
+
 /// The point that a hit names.
 pub(super) fn surface(pair: &Pair<'_>, ray: &Ray, hit: &Hit) -> Surface {
-    let (part, other) =
-        if hit.face.is_multiple_of(2) { (pair.a, pair.b) } else { (pair.b, pair.a) };
-    let mut found = part.surface(ray, &Hit { face: hit.face / 2, ..*hit });
+    let (part, own, other) = met(pair, hit);
+    let mut found = part.surface(ray, &own);
     found.p_err = clear_of(&found, &other);
-    if pair.op == Op::Difference && !hit.face.is_multiple_of(2) {
-        // Seen from where it was taken away: turned over, and the texture stands on its head.
-        (found.ng, found.ns, found.dp_dv) = (-found.ng, -found.ns, -found.dp_dv);
-        found.uv.y = 1.0 - found.uv.y;
+    if pair.op == Op::Difference && is_of_b(hit) { turned_over(&found) } else { found }
+}
+
+/// How the normal of the part that was met turns. Turned over, both the normal and `v` run the other
+/// way.
+pub(super) fn normal_derivatives(
+    pair: &Pair<'_>,
+    hit: &Hit,
+    at: &Surface,
+) -> Option<NormalDerivatives> {
+    let (part, own, _) = met(pair, hit);
+    if pair.op == Op::Difference && is_of_b(hit) {
+        let NormalDerivatives { dn_du, dn_dv } = part.normal_derivatives(&own, &turned_over(at))?;
+        return Some(NormalDerivatives { dn_du: -dn_du, dn_dv });
     }
-    found
+    part.normal_derivatives(&own, at)
 }
 
 /// The error bound of a point, grown where the other part's surface lies in this one: a ray that

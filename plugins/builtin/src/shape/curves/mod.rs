@@ -10,7 +10,7 @@ mod tube;
 use std::sync::Arc;
 
 use glam::DVec2;
-use luxel_sdk::kind::{Hit, Shape, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, Surface};
 use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, Shared, Table};
 use luxel_sdk::{Choice, Params};
@@ -145,6 +145,15 @@ impl Shape for Curves<'_> {
         match self.form {
             Form::Round => tube::surface(strand, ray, (segment, hit.face & 1 == 1), hit.at.x),
             Form::Ribbon => ribbon::surface(strand, segment, hit.at),
+        }
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        let strand = self.table.of_segment(hit.face / 2);
+        let segment = (hit.face / 2).saturating_sub(strand.first).min(strand.count() - 1);
+        match self.form {
+            Form::Round => tube::normal_derivatives(strand, segment, hit.at.x, at),
+            Form::Ribbon => ribbon::normal_derivatives(strand, segment, hit.at, at),
         }
     }
 

@@ -6,7 +6,7 @@
 //! sign (Farin, ch. 5), in halves until there is one.
 
 use glam::{DVec2, DVec3, Vec3Swizzles as _, Vec4Swizzles as _};
-use luxel_sdk::kind::Surface;
+use luxel_sdk::kind::{NormalDerivatives, Surface};
 
 use super::cubic::{Cubic, eval, falling_root, halves};
 use super::strand::{Line, ROUNDING, Segment, Strand};
@@ -162,4 +162,21 @@ pub(super) fn surface(strand: &Strand, number: u32, at: DVec2) -> Surface {
     let dp_du = if dp_du.length_squared() > 0.0 { dp_du } else { ng.any_orthonormal_vector() };
     let uv = DVec2::new((f64::from(number) + at.x) / n, 0.5 * (1.0 + at.y));
     Surface { p, p_err, ng, ns: ng, uv, dp_du, dp_dv }
+}
+
+/// How the normal of the strip turns: that of N / |N|, N = ∂p/∂s × ∂p/∂v.
+pub(super) fn normal_derivatives(
+    strand: &Strand,
+    number: u32,
+    at: DVec2,
+    surface: &Surface,
+) -> Option<NormalDerivatives> {
+    let segment = &strand.segments[number as usize];
+    let ((_, c1, c2), (w, w1, w2)) = (eval(&segment.curve, at.x), eval(&segment.across, at.x));
+    let (p_s, p_ss) = (c1.xyz() + w1 * at.y, c2.xyz() + w2 * at.y);
+    let length = p_s.cross(w).length();
+    let turn = |change: DVec3| (change - surface.ns * surface.ns.dot(change)) / length;
+    let dn_du = turn(p_ss.cross(w) + p_s.cross(w1)) * f64::from(strand.count());
+    let dn_dv = turn(w1.cross(w)) * 2.0;
+    (dn_du.is_finite() && dn_dv.is_finite()).then_some(NormalDerivatives { dn_du, dn_dv })
 }

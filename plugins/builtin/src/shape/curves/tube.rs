@@ -14,7 +14,7 @@
 //! most and that R is real in one range at most; then Newton's steps find it.
 
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles as _};
-use luxel_sdk::kind::Surface;
+use luxel_sdk::kind::{NormalDerivatives, Surface};
 use luxel_sdk::num::Ray;
 
 use super::cubic::{Cubic, Range, eval, falling_root, halves};
@@ -351,6 +351,27 @@ pub(super) fn surface(
     Surface { p, p_err, ng, ns: ng, uv, dp_du, dp_dv }
 }
 
+/// How the normal turns. At an end or a corner, which are of a ball, as that of a ball does; there
+/// `dp_du` of the surface is next to nothing.
+pub(super) fn normal_derivatives(
+    strand: &Strand,
+    number: u32,
+    s: f64,
+    at: &Surface,
+) -> Option<NormalDerivatives> {
+    let segment = &strand.segments[number as usize];
+    let (c, c1, c2) = eval(&segment.curve, s);
+    let around = Around::of((c1, c2), eval(&segment.across, s), at.ns);
+    let (dn_du, dn_dv) = if let Some((_, n1)) = around.rates(c.w, (c1, c2), at.ns) {
+        let whole = around.forward * (std::f64::consts::TAU * around.cos);
+        (n1 * f64::from(strand.count()), whole)
+    } else {
+        let radius = c.w * strand.unit;
+        (at.dp_du / radius, at.dp_dv / radius)
+    };
+    (dn_du.is_finite() && dn_dv.is_finite()).then_some(NormalDerivatives { dn_du, dn_dv })
+}
+
 /// Where a normal stands about the curve.
 struct Around {
     /// Unit tangent of the curve, and how it turns.
@@ -387,16 +408,30 @@ impl Around {
         Self { t, t1, e, e1, turn, cos, forward }
     }
 
-    /// ∂p/∂s of c + r n at a fixed angle, n = −a t + √(1 − a²) (e cos + f sin) with a = r′/|c′|. At an
-    /// end or a corner, where the curve stands still, the direction alone.
-    fn along(&self, r: f64, (c1, c2): (DVec4, DVec4), ng: DVec3) -> DVec3 {
+    /// ∂p/∂s of c + r n at a fixed angle. At an end or a corner, where the curve stands still, the
+    /// direction alone.
+    fn along(&self, r: f64, rates: (DVec4, DVec4), ng: DVec3) -> DVec3 {
+        let stands = self.forward.cross(ng) * (r.max(f64::MIN_POSITIVE) * f64::EPSILON);
+        self.rates(r, rates, ng).map_or(stands, |(along, _)| along)
+    }
+
+    /// ∂p/∂s of c + r n and ∂n/∂s at a fixed angle; `None` where the curve stands still.
+    fn rates(&self, r: f64, (c1, c2): (DVec4, DVec4), ng: DVec3) -> Option<(DVec3, DVec3)> {
+        let n1 = self.turn_along((c1, c2), ng)?;
+        let along = c1.xyz() + ng * c1.w + n1 * r;
+        let along = along - ng * ng.dot(along);
+        let forward = along.is_finite() && along.dot(self.forward.cross(ng)) > 0.0;
+        forward.then_some((along, n1 - ng * ng.dot(n1)))
+    }
+
+    /// ∂n/∂s at a fixed angle of n = −a t + √(1 − a²) (e cos + f sin) with a = r′/|c′|; `None` at an
+    /// end or a corner.
+    fn turn_along(&self, (c1, c2): (DVec4, DVec4), ng: DVec3) -> Option<DVec3> {
         let Self { t, t1, e, e1, turn, .. } = *self;
         let speed = c1.xyz().length();
-        let tip = self.forward.cross(ng);
-        let stands = tip * (r.max(f64::MIN_POSITIVE) * f64::EPSILON);
         let a = c1.w / speed;
         if !((ng.dot(t) + a).abs() <= LEAN && a.abs() < 1.0) {
-            return stands;
+            return None;
         }
         let a1 = c2.w / speed - a * t.dot(c2.xyz()) / speed;
         let b = (1.0 - a * a).sqrt();
@@ -404,9 +439,6 @@ impl Around {
         let (sin, cos) = turn.sin_cos();
         let out = e * cos + e.cross(t) * sin;
         let out1 = e1 * cos + f1 * sin;
-        let n1 = out1 * b - t1 * a - t * a1 - out * (a * a1 / b);
-        let along = c1.xyz() + ng * c1.w + n1 * r;
-        let along = along - ng * ng.dot(along);
-        if along.is_finite() && along.dot(tip) > 0.0 { along } else { stands }
+        Some(out1 * b - t1 * a - t * a1 - out * (a * a1 / b))
     }
 }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::shape::capsule::tests::capsule;
 use crate::shape::gyroid_wall::GyroidWall;
+use crate::shape::testing::check_turning;
 use crate::shape::torus::tests::torus;
 
 #[test]
@@ -120,5 +121,37 @@ fn a_gyroid_is_met_where_its_sign_changes_first() {
         assert!(n_hits > 10, "{n_hits}");
         let block = Box { center: DVec3::X * 0.7, size: DVec3::splat(0.9) };
         check_rays(&pair(Op::Intersection, &wall, &block, 0.05), 196);
+    }
+}
+
+#[test]
+fn normals_of_solids_turn_as_those_beside_them() {
+    let (a, b) = (ball(-0.3, 0.1, 0.7), torus(DVec3::X * 0.3, 0.6, 0.2));
+    for op in OPS {
+        let (sharp, blended) = (pair(op, &a, &b, 0.0), pair(op, &a, &b, 0.2));
+        let n = (check_turning(&sharp, 197, 0.0), check_turning(&blended, 198, 1e-9));
+        assert!(n.0 > 100 && n.1 > 100, "{op:?}: {n:?}");
+        assert!(check_turning(&pair(Op::Union, &sharp, &blended, 0.0), 199, 1e-9) > 100);
+    }
+    let area = OnceLock::new();
+    let area = Shared::new(&area);
+    let wall = GyroidWall { center: DVec3::ONE, radius: 1.0, cell: 0.6, thickness: 0.05, area };
+    assert!(check_turning(&wall, 200, 0.0) > 300);
+}
+
+#[test]
+fn a_ball_in_a_blend_that_does_not_reach_it_is_as_round_as_alone() {
+    let (a, b) = (ball(0.0, 0.0, 2.0), ball(3.0, 0.0, 0.5));
+    for smooth in [0.0, 0.3] {
+        let solid = pair(Op::Union, &a, &b, smooth);
+        let ray = Ray::new(DVec3::new(-9.0, 0.2, 0.3), DVec3::X);
+        let hit = solid.intersect(&ray).unwrap();
+        let s = solid.surface(&ray, &hit);
+        let turns = solid.normal_derivatives(&hit, &s).unwrap();
+        // Of a sphere of radius r each tangent turns by 1/r of itself; second differences over a
+        // two-hundredth of the size leave a few times its fourth power.
+        for (dn, dp) in [(turns.dn_du, s.dp_du), (turns.dn_dv, s.dp_dv)] {
+            assert!((dn - 0.5 * dp).length() <= 1e-6 * dp.length(), "{smooth}: {dn} {dp}");
+        }
     }
 }

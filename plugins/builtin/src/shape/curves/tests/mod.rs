@@ -12,7 +12,7 @@ use luxel_sdk::params::{Build as _, BuildContext, Shared, Table};
 use luxel_sdk::sampling::Rng;
 
 use super::{Basis, Curves, Form, Strand, Strands};
-use crate::shape::testing::direction;
+use crate::shape::testing::{check_turning, direction};
 
 struct Nothing;
 
@@ -242,4 +242,14 @@ fn strands_are_parts_and_the_whole_is_the_nearest_of_them() {
         assert!(curves.intersect_part(60, &Ray::new(DVec3::ZERO, DVec3::X)).is_none());
         assert!(curves.part_bounds(60).is_empty());
     });
+}
+
+#[test]
+fn normals_of_strands_turn_as_those_beside_them() {
+    let points = [[0.0, 0.0, 0.0], [0.4, 0.3, 0.0], [0.7, 0.5, 0.5], [1.0, 0.1, 0.6]];
+    for form in [Form::Round, Form::Ribbon] {
+        let given = Given { form, ..Given::new(&points, &[0.2, 0.25, 0.1, 0.15]) };
+        let n = given.ask(|curves| check_turning(&curves, 801, 0.0));
+        assert!(n > 50, "{n}");
+    }
 }

@@ -19,15 +19,16 @@ const USUAL: &str = "spp,depth,rr,sampler,integrator,precision,color";
 ///
 /// Renders the scene small, with one setting after another changed, several times with independent
 /// random numbers, and takes apart what scatters and what is wrong however many samples there are.
-/// Tells how the error falls, what each setting costs, which reaches the target soonest, renders that
-/// to verify it, and prints the lines to paste. Errors are of luminance, relative to the pixel or to a
+/// Tells how the error falls, what each setting costs, which reaches the target soonest, renders that 16
+/// to 128 times to verify it, and prints the lines to paste. Errors are of luminance, relative to the pixel or to a
 /// tenth of the picture's mean, root mean square. They are against the scene as it is with 64 times the
 /// samples, or against --truth; what the scene as it is gets wrong by itself only the latter tells.
 ///
 /// `--drop FEATURE` measures what leaving a feature out adds to the error and saves of the time.
 ///
 /// Begins by measuring two scenes whose variance and bias are known exactly. Ctrl-C keeps what has been
-/// measured (exit code 3); an error more than 10 % above its target also ends with 3.
+/// measured (exit code 3); an error that is not for certain within 10 % of its target or below it, by two
+/// standard errors, also ends with 3.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Examples:

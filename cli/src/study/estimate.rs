@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-6;
 
 impl Number {
     /// Mean of independent values, of which there are two at least.
-    fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+    pub(super) fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
         let n = values.clone().count() as f64;
         let value = values.clone().sum::<f64>() / n;
         let squares: f64 = values.map(|x| (x - value) * (x - value)).sum();
@@ -49,6 +49,8 @@ pub(super) struct Reference {
     variance: Vec<f64>,
     /// What errors are divided by.
     scale: Vec<f64>,
+    /// Pictures that it is the mean of; infinitely many where it is the truth.
+    pictures: f64,
 }
 
 impl Reference {
@@ -58,18 +60,38 @@ impl Reference {
         let pixel = |i: usize| Number::of(pictures.iter().map(move |p| f64::from(p[i])));
         let pixels: Vec<Number> = (0..n_pixels).map(pixel).collect();
         let variance = pixels.iter().map(|pixel| pixel.error * pixel.error).collect();
-        Self::new(pixels.iter().map(|pixel| pixel.value).collect(), variance)
+        let mean = pixels.iter().map(|pixel| pixel.value).collect();
+        Self::new(mean, variance, pictures.len() as f64)
     }
 
     /// A truth that is the same everywhere.
     pub(super) fn flat(luminance: f64, n_pixels: usize) -> Option<Self> {
-        Self::new(vec![luminance; n_pixels], vec![0.0; n_pixels])
+        Self::new(vec![luminance; n_pixels], vec![0.0; n_pixels], f64::INFINITY)
     }
 
-    fn new(mean: Vec<f64>, variance: Vec<f64>) -> Option<Self> {
+    fn new(mean: Vec<f64>, variance: Vec<f64>, pictures: f64) -> Option<Self> {
         let dark = DARK * mean.iter().sum::<f64>() / mean.len() as f64;
         let scale = mean.iter().map(|x| x.max(dark)).collect();
-        (dark > 0.0).then_some(Self { mean, variance, scale })
+        (dark > 0.0).then_some(Self { mean, variance, scale, pictures })
+    }
+
+    /// Squared relative error of a picture, mean over the pixels, without what the reference adds.
+    pub(super) fn squared_error(&self, picture: &[f32]) -> f64 {
+        let error = |i: usize| (f64::from(picture[i]) - self.mean[i]) / self.scale[i];
+        let squares: f64 = (0..self.mean.len()).map(|i| error(i) * error(i)).sum();
+        squares / self.mean.len() as f64 - self.error() * self.error()
+    }
+
+    /// Standard error of what the squared errors of all pictures have in common, as they are against
+    /// the same reference: the square of its noise, about the variance that is taken off.
+    ///
+    /// Of normal noise of variance s, known from K pictures: the square scatters by 2 s², the variance
+    /// by 2 s² / (K − 1).
+    pub(super) fn common_error(&self) -> f64 {
+        let share = |(v, s): (&f64, &f64)| (v / (s * s)).powi(2);
+        let squares: f64 = self.variance.iter().zip(&self.scale).map(share).sum();
+        let known = 1.0 + 1.0 / (self.pictures - 1.0);
+        (2.0 * squares * known).sqrt() / self.mean.len() as f64
     }
 
     /// Its own relative error, root mean square.
@@ -86,23 +108,20 @@ pub(super) struct Estimate {
     pub(super) variance: Number,
     /// What does not; may come out below zero where it is none.
     pub(super) bias2: Number,
-    /// Both.
-    pub(super) total: Number,
 }
 
 impl Estimate {
     /// Of two pictures or more.
     pub(super) fn of(pictures: &[&[f32]], reference: &Reference) -> Self {
         let n = pictures.len() as f64;
-        let Reference { mean, variance, scale } = reference;
-        let (mut of_picture, mut common, mut total) = (vec![0.0; pictures.len()], vec![], vec![]);
+        let Reference { mean, variance, scale, .. } = reference;
+        let (mut of_picture, mut common) = (vec![0.0; pictures.len()], vec![]);
         for i in 0..mean.len() {
             let errors = pictures.iter().map(|p| (f64::from(p[i]) - mean[i]) / scale[i]);
             let (sum, squares) = errors.clone().fold((0.0, 0.0), |(s, q), e| (s + e, q + e * e));
             let own = variance[i] / (scale[i] * scale[i]);
             // Each pixel is an independent witness, also of the reference's noise.
             common.push((sum * sum - squares) / (n * (n - 1.0)) - own);
-            total.push(squares / n - own);
             for (of_picture, error) in of_picture.iter_mut().zip(errors) {
                 let from_mean = error - sum / n;
                 *of_picture += from_mean * from_mean * n / (n - 1.0) / mean.len() as f64;
@@ -111,7 +130,6 @@ impl Estimate {
         Self {
             variance: Number::of(of_picture.iter().copied()),
             bias2: Number::of(common.iter().copied()),
-            total: Number::of(total.iter().copied()),
         }
     }
 
@@ -175,10 +193,13 @@ mod tests {
         let reference = Reference::of(&refs(&reference)).unwrap();
         // 0.09 / 3 over 16 pictures, relative to 2.
         assert!((reference.error() - (0.03_f64 / 16.0).sqrt() / 2.0).abs() < 1e-3);
-        let estimate = Estimate::of(&refs(&noise.pictures(16, 2.1)), &reference);
+        let pictures = noise.pictures(16, 2.1);
+        let estimate = Estimate::of(&refs(&pictures), &reference);
         near(estimate.variance, 0.03 / 4.0);
         near(estimate.bias2, 0.05 * 0.05);
-        near(estimate.total, 0.03 / 4.0 + 0.05 * 0.05);
+        let both = Number::of(pictures.iter().map(|picture| reference.squared_error(picture)));
+        let error = both.error.hypot(reference.common_error());
+        near(Number { error, ..both }, 0.03 / 4.0 + 0.05 * 0.05);
         assert!(estimate.is_biased() && estimate.unseen() < 0.05, "{estimate:?}");
         let right = Estimate::of(&refs(&noise.pictures(16, 2.0)), &reference);
         near(right.bias2, 0.0);

@@ -11,7 +11,7 @@ pub(super) struct Fit {
     /// Variance of a picture with one sample per pixel, if the line held so far down.
     v: f64,
     /// p, as it is used: 1 where it may well be 1.
-    power: f64,
+    pub(super) power: f64,
     /// p, as it was measured.
     pub(super) measured: Number,
     /// Logarithm of the samples in whose middle the line was laid.
@@ -51,6 +51,11 @@ impl Fit {
     /// Samples at which the variance is that; not whole.
     pub(super) fn samples(&self, variance: f64) -> f64 {
         (self.v / variance).powf(1.0 / self.power)
+    }
+
+    /// Variance with so many samples.
+    pub(super) fn variance(&self, samples: f64) -> f64 {
+        self.v / samples.powf(self.power)
     }
 
     /// Relative standard error of so many samples, if they were found by `samples`: of the line's height,

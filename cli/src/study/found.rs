@@ -8,9 +8,9 @@ use glam::UVec2;
 use serde_json::{Value, json};
 
 use super::calibrate::Reading;
-use super::choose::Verified;
 use super::outcome::Outcome;
 use super::svg::{Marks, svg};
+use super::verify::{Verdict, Verified};
 use super::{data, table};
 use crate::exit::Failure;
 use crate::output::{Draft, unwritable};
@@ -107,9 +107,13 @@ impl Found {
             let verified = advice.verified.map(|verified| {
                 json!({
                     "rmse": data::number(verified.rmse),
-                    "samples": verified.choice.samples,
+                    "off": data::number(verified.off(self.target)),
+                    "off_bounds": verified.bounds(self.target),
+                    "samples": verified.samples,
+                    "pictures": verified.pictures,
+                    "seen_at": verified.seen_at,
                     "seconds": verified.seconds,
-                    "is_within_tenth": verified.is_near(self.target),
+                    "is_within_tenth": verified.verdict(self.target) == Verdict::Near,
                 })
             });
             json!({

@@ -16,6 +16,7 @@ mod subjects;
 mod svg;
 mod sweep;
 mod table;
+mod verify;
 
 use std::path::Path;
 use std::time::Instant;
@@ -147,20 +148,20 @@ fn advise(
     (reference, left): (&Reference, Option<f64>),
 ) -> Result<Advice, Failure> {
     let needed = 2.0 * f64::from(choice.samples) * outcome.cost;
-    let is_time = left.is_none_or(|left| needed <= left) && run.interrupted().is_none();
     let mut verified = None;
-    if is_time {
+    if run.interrupted().is_none() {
         let of = (outcome, &subject.stage);
-        match choose::verify(choice, of, reference, args.target, lab) {
-            Ok(found) => verified = Some(found),
+        match choose::verify(choice, of, reference, (args.target, left), lab) {
+            Ok(found) => verified = found,
             Err(failure) if failure.exit == Exit::Incomplete => {}
             Err(failure) => return Err(failure),
         }
-    } else if let Some(left) = left {
+    }
+    if let Some(left) = left.filter(|left| needed > *left) {
         let [needed, left] = [needed, left].map(progress::duration);
         report::warning(&format!("verifying would take {needed}, and {left} are left"));
     }
-    let samples = verified.map_or(choice.samples, |verified| verified.choice.samples);
+    let samples = verified.map_or(choice.samples, |verified| verified.samples);
     let registry = &run.plugins.registry;
     let sources = &subjects.loaded.sources;
     let lines =

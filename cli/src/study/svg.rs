@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::choose::Verified;
 use super::outcome::Outcome;
 use super::table::percent;
+use super::verify::Verified;
 use crate::progress::duration;
 
 const WIDTH: f64 = 760.0;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::choose::Verified;
 use super::estimate::{Estimate, Number};
 use super::outcome::Outcome;
+use super::verify::{Verdict, Verified, WITHIN};
 use crate::progress::duration;
 
 /// What the columns are.
@@ -94,42 +94,57 @@ pub(super) fn percent(share: f64) -> String {
 
 /// Whether the recommended settings keep what they promise.
 pub(super) fn verdict(verified: &Verified, target: f64) -> String {
-    let Verified { choice, rmse, seconds } = verified;
-    let off = (rmse.value / target - 1.0) * 100.0;
-    let word = match verified.is_near(target) {
-        true => "within 10 %",
-        false if verified.is_met(target) => "better than asked",
-        false => "MISSED",
+    let Verified { samples, seen_at: [least, most], pictures, rmse, seconds } = verified;
+    let off = verified.off(target);
+    let [low, high] = verified.bounds(target).map(|bound| bound * 100.0);
+    let word = match verified.verdict(target) {
+        Verdict::Near => "within 10 %".to_owned(),
+        Verdict::Better => "better than asked".to_owned(),
+        Verdict::Missed => "MISSED".to_owned(),
+        Verdict::Unsure => {
+            format!("not certain, from {low:+.1} % to {high:+.1} % by {WITHIN} of them")
+        }
     };
+    let at = if least == most { format!("{least}") } else { format!("{least} to {most}") };
     format!(
-        "verified by a render with fresh random numbers: {} at {} spp in {}, {off:+.1} % off the target \
-         of {}: {word}",
+        "verified by {pictures} pictures with fresh random numbers at {at} spp: {} at {samples} spp in {} \
+         each, {:+.1} % ± {:.1} off the target of {}: {word}",
         with_error(*rmse),
-        choice.samples,
         duration(*seconds),
+        off.value * 100.0,
+        off.error * 100.0,
         percent(target),
     )
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::choose::Choice;
     use super::*;
 
     #[test]
     fn a_miss_is_told_as_one() {
-        let told = |value: f64| {
-            let choice = Choice { of: 0, samples: 208 };
+        let told = |value: f64, most: u32| {
             let rmse = Number { value, error: 0.0004 };
-            verdict(&Verified { choice, rmse, seconds: 1.5 }, 0.02)
+            let (pictures, seconds) = (24, 1.5);
+            let seen_at = [200, most];
+            verdict(&Verified { samples: 208, seen_at, pictures, rmse, seconds }, 0.02)
         };
         assert_eq!(
-            told(0.0205),
-            "verified by a render with fresh random numbers: 2.05 % ± 0.04 at 208 spp in 1.50 s, +2.5 % \
-             off the target of 2.00 %: within 10 %"
+            told(0.0205, 208),
+            "verified by 24 pictures with fresh random numbers at 200 to 208 spp: 2.05 % ± 0.04 at 208 spp \
+             in 1.50 s each, +2.5 % ± 2.0 off the target of 2.00 %: within 10 %"
         );
-        assert!(told(0.0225).ends_with("+12.5 % off the target of 2.00 %: MISSED"));
-        assert!(told(0.0158).ends_with("-21.0 % off the target of 2.00 %: better than asked"));
+        assert!(told(0.0205, 200).contains(" numbers at 200 spp: "));
+        assert!(told(0.0230, 200).ends_with("+15.0 % ± 2.0 off the target of 2.00 %: MISSED"));
+        assert!(
+            told(0.0158, 200)
+                .ends_with("-21.0 % ± 2.0 off the target of 2.00 %: better than asked")
+        );
+        let unsure = told(0.0215, 200);
+        assert!(
+            unsure.ends_with("%: not certain, from +3.5 % to +11.5 % by 2 of them"),
+            "{unsure}"
+        );
     }
 
     #[test]

@@ -117,6 +117,7 @@ impl Checkpoint {
         let asked = Asked::of(options);
         let about = json!({
             "luxel": env!("CARGO_PKG_VERSION"),
+            "build": env!("LUXEL_BUILD"),
             "scene": blake3::Hash::from_bytes(stage.scene.measured_hash()).to_hex().to_string(),
             "files": loaded.files.hash_besides(&loaded.sources).to_hex().to_string(),
             "libraries": libraries,
@@ -276,8 +277,9 @@ fn seconds(text: &str) -> Result<Duration, String> {
 }
 
 /// What two renders may differ by, in the order in which it is told.
-const DIFFERENCES: [(&str, &str); 6] = [
+const DIFFERENCES: [(&str, &str); 7] = [
     ("luxel", "another version"),
+    ("build", "another build of the program"),
     ("scene", "another scene, or of one that has been edited since"),
     ("files", "other textures or meshes"),
     ("libraries", "other plugin libraries"),
@@ -352,6 +354,22 @@ mod tests {
         assert_eq!(time(Some(0.25), Some(0.5)), (Some(0.25), half));
         assert_eq!(time(Some(0.25), Some(0.0)), (Some(0.25), None));
         assert_eq!(time(Some(0.25), None), (Some(0.25), None));
+    }
+
+    #[test]
+    fn one_of_another_build_is_refused_and_one_of_before_builds_had_names() {
+        let folder = Folder::new("checkpoint-build");
+        let of = |about: Value| Checkpoint { about, ..checkpoint(&folder, 1) };
+        let build = |build: &str| json!({ "seed": 1, "luxel": "0.1.0", "build": build });
+        for before in [build("0123456789abcdef"), json!({ "seed": 1, "luxel": "0.1.0" })] {
+            of(before).keep(&film(), 1.0).unwrap();
+            let now = of(build("fedcba9876543210"));
+            let why = now.read().unwrap_err().message;
+            assert!(why.ends_with("it is of another build of the program"), "{why}");
+            assert_eq!(now.left().unwrap(), Left::Other);
+        }
+        of(build("fedcba9876543210")).keep(&film(), 1.0).unwrap();
+        assert!(of(build("fedcba9876543210")).read().unwrap().is_some());
     }
 
     #[test]

@@ -51,11 +51,14 @@ use crate::exit::{Exit, Failure};
 
 /// A scene written as text becomes a picture that obeys physics and says how wrong it may be.
 #[derive(Parser)]
-#[command(name = "luxel", version, after_help = EXIT_CODES)]
+#[command(name = "luxel", version = VERSION, after_help = EXIT_CODES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
+
+/// Two builds of one version may make different pictures.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (build ", env!("LUXEL_BUILD"), ")");
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 fine, 1 the input is at fault, 2 usage, 3 incomplete (interrupted), 4 our fault.

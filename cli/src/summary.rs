@@ -152,6 +152,7 @@ impl Summary {
     fn common_settings(&self) -> Value {
         json!({
             "luxel": env!("CARGO_PKG_VERSION"),
+            "build": env!("LUXEL_BUILD"),
             "scene_hash": self.scene,
             "files_hash": self.files,
             "size": self.size.to_array(),

@@ -54,6 +54,16 @@ fn a_picture_says_what_was_set_its_settings_and_its_libraries_and_names_no_folde
 }
 
 #[test]
+fn a_picture_says_which_build_made_it_as_the_program_does() {
+    let (folder, told, exr) = rendered("built");
+    let version = folder.luxel(&["--version"]).out;
+    let build = told["build"].as_str().unwrap();
+    assert_eq!(version, format!("luxel {} (build {build})\n", env!("CARGO_PKG_VERSION")));
+    assert!(build.len() == 16 && build.chars().all(|c| c.is_ascii_hexdigit()), "{build}");
+    assert_eq!(attribute(&exr)["build"], build);
+}
+
+#[test]
 fn the_same_in_another_folder_has_the_same_bytes() {
     let [(one, _, first), (other, _, second)] = ["origin", "elsewhere"].map(rendered);
     assert_ne!(one.path(""), other.path(""));

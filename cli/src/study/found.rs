@@ -125,6 +125,7 @@ impl Found {
         });
         json!({
             "version": env!("CARGO_PKG_VERSION"),
+            "build": env!("LUXEL_BUILD"),
             "machine": {
                 "os": std::env::consts::OS,
                 "arch": std::env::consts::ARCH,

@@ -60,7 +60,8 @@ pub(crate) struct Args {
     /// Seed of the first picture
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(super) seed: u32,
-    /// Keep all of it within this time, as in 60s or 5min, by fewer seeds and samples
+    /// Keep all of it within this time, as in 60s or 5min, by fewer samples, then by leaving out what was
+    /// named last, and only then by fewer than 16 seeds
     #[arg(long, value_name = "DURATION", value_parser = goal::duration)]
     pub(super) time: Option<Duration>,
     /// The luminance that every pixel truly has, instead of a measured reference

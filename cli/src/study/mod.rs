@@ -64,11 +64,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 fn study(file: &Path, args: &Args, run: &Run, start: Instant) -> Result<Found, Failure> {
-    let subjects = subjects::subjects(file, args, run)?;
+    let mut subjects = subjects::subjects(file, args, run)?;
     let readings = calibrate::readings(run, args.seed)?;
     let mut lab = Lab::new(run, file, args.seed);
     let steps = Steps::new();
     let plan = plan(args, &subjects, &mut lab)?;
+    subjects.all.truncate(plan.subjects);
     let mut series = lab::measure(&mut lab, &subjects.all, &plan, args.truth.is_some(), &steps)?;
     let reference = reference(args, &series)?;
     let names: Vec<String> = subjects.all.iter().map(Subject::name).collect();
@@ -118,11 +119,12 @@ fn study(file: &Path, args: &Args, run: &Run, start: Instant) -> Result<Found, F
 
 /// As much as there is time for.
 fn plan(args: &Args, subjects: &Subjects, lab: &mut Lab<'_>) -> Result<Plan, Failure> {
-    let plan = Plan::whole(args.sweep().spp, args.seeds);
+    let plan = Plan::whole(args.sweep().spp, args.seeds, subjects.all.len());
     let Some(time) = args.time else { return Ok(plan) };
     let spp = plan.most();
     let cost = lab.shot(&subjects.all[0].stage, spp)?.seconds / f64::from(spp);
-    Ok(plan.within(time, subjects.all.len(), cost))
+    let names: Vec<String> = subjects.all.iter().map(Subject::name).collect();
+    Ok(plan.within(time, &names, cost))
 }
 
 fn reference(args: &Args, series: &Series) -> Result<Reference, Failure> {

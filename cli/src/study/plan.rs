@@ -6,6 +6,9 @@ use crate::progress;
 
 /// Fewer random seeds than this tell nothing of what scatters.
 pub(super) const LEAST_SEEDS: u32 = 4;
+/// Seeds that a short time does not take away while anything else can be left out: so many tell a standard
+/// error to a fifth (1 in √(2 · 15)), four to two fifths.
+pub(super) const SEEDS: u32 = 16;
 /// Samples of the reference for one of the largest number that is swept.
 const REFERENCE: u32 = 64;
 /// Share of a time that is for measuring; the rest is for the render that verifies.
@@ -18,14 +21,16 @@ pub(super) struct Plan {
     pub(super) spp: Vec<u32>,
     /// Rounds, each with random numbers of its own.
     pub(super) seeds: u32,
+    /// Configurations, the first so many.
+    pub(super) subjects: usize,
     /// What was left out, in words.
     pub(super) notes: Vec<String>,
 }
 
 impl Plan {
     /// Everything.
-    pub(super) fn whole(spp: Vec<u32>, seeds: u32) -> Self {
-        Self { spp, seeds, notes: vec![] }
+    pub(super) fn whole(spp: Vec<u32>, seeds: u32, subjects: usize) -> Self {
+        Self { spp, seeds, subjects, notes: vec![] }
     }
 
     /// Samples of the reference in each round.
@@ -38,21 +43,14 @@ impl Plan {
         self.spp.last().copied().unwrap_or(1)
     }
 
-    /// As much of it as fits a time, where one sample of each pixel takes `cost` seconds: fewer seeds,
-    /// then fewer samples.
-    pub(super) fn within(mut self, time: Duration, subjects: usize, cost: f64) -> Self {
+    /// As much of it as fits a time, where one sample of each pixel takes `cost` seconds: seeds beyond
+    /// `SEEDS` go first, then samples, then the configurations that were named last, and seeds below
+    /// `SEEDS` at the end. `names` are those of all configurations.
+    pub(super) fn within(mut self, time: Duration, names: &[String], cost: f64) -> Self {
         let (wanted, seconds) = (self.clone(), SHARE * time.as_secs_f64());
-        let fits = |plan: &Self| plan.samples(subjects) * cost <= seconds;
-        while !fits(&self) && (self.seeds > LEAST_SEEDS || self.spp.len() > 2) {
-            if self.seeds > LEAST_SEEDS {
-                self.seeds -= 1;
-            } else {
-                self.spp.pop();
-                self.seeds = wanted.seeds;
-            }
-        }
+        while self.samples() * cost > seconds && self.lessen(&wanted) {}
         let time = progress::duration(time.as_secs_f64());
-        if self != wanted {
+        if (self.seeds, self.most()) != (wanted.seeds, wanted.most()) {
             self.notes.push(format!(
                 "{} seeds up to {} spp instead of {} up to {}, to stay within {time}",
                 self.seeds,
@@ -61,17 +59,39 @@ impl Plan {
                 wanted.most(),
             ));
         }
-        if !fits(&self) {
-            let needed = progress::duration(self.samples(subjects) * cost / SHARE);
+        if let Some(left_out @ [_, ..]) = names.get(self.subjects..) {
+            let left_out = left_out.join(", ");
+            self.notes.push(format!("left out to stay within {time}: {left_out}"));
+        }
+        if self.samples() * cost > seconds {
+            let needed = progress::duration(self.samples() * cost / SHARE);
             self.notes.push(format!("the least that tells anything takes {needed}, not {time}"));
         }
         self
     }
 
+    /// Takes away what is missed least; returns whether there was anything.
+    fn lessen(&mut self, wanted: &Self) -> bool {
+        if self.seeds > SEEDS {
+            self.seeds -= 1;
+        } else if self.spp.len() > 2 {
+            self.spp.pop();
+            self.seeds = wanted.seeds;
+        } else if self.subjects > 1 {
+            self.subjects -= 1;
+            self.seeds = wanted.seeds;
+        } else if self.seeds > LEAST_SEEDS {
+            self.seeds -= 1;
+        } else {
+            return false;
+        }
+        true
+    }
+
     /// Samples of one pixel, in all.
-    fn samples(&self, subjects: usize) -> f64 {
+    fn samples(&self) -> f64 {
         let each: f64 = self.spp.iter().map(|n| f64::from(*n)).sum();
-        f64::from(self.seeds) * (subjects as f64 * each + f64::from(self.reference()))
+        f64::from(self.seeds) * (self.subjects as f64 * each + f64::from(self.reference()))
     }
 }
 
@@ -79,24 +99,36 @@ impl Plan {
 mod tests {
     use super::*;
 
-    fn within(seconds: u64) -> Plan {
-        // 84 samples in each of 16 rounds for each of 10, and 64 times 64: 17536 in all.
-        Plan::whole(vec![4, 16, 64], 16).within(Duration::from_secs(seconds), 10, 0.001)
+    fn within(milliseconds: u64) -> Plan {
+        let names: Vec<String> = (0..10).map(|i| format!("depth={i}")).collect();
+        // 84 samples in each of 20 rounds for each of 10, and 64 times 64: some 20900 in all.
+        let whole = Plan::whole(vec![4, 16, 64], 20, names.len());
+        whole.within(Duration::from_millis(milliseconds), &names, 0.001)
     }
 
     #[test]
-    fn a_short_time_costs_seeds_then_samples_and_what_it_costs_is_told() {
-        assert_eq!(within(30), Plan::whole(vec![4, 16, 64], 16));
-        let fewer = within(20);
-        assert_eq!((fewer.seeds, fewer.most(), fewer.reference()), (9, 64, 456));
+    fn a_short_time_costs_what_is_missed_least_and_that_is_told() {
+        assert_eq!(within(36_000), Plan::whole(vec![4, 16, 64], 20, 10));
+        let fewer = within(30_000);
+        assert_eq!((fewer.seeds, fewer.most(), fewer.reference()), (16, 64, 256));
         assert_eq!(
             fewer.notes,
-            ["9 seeds up to 64 spp instead of 16 up to 64, to stay within 20 s"]
+            ["16 seeds up to 64 spp instead of 20 up to 64, to stay within 30 s"]
         );
-        let few = within(4);
-        assert_eq!((few.seeds, few.most(), few.notes.len()), (6, 16, 1));
-        let short = within(1);
-        assert_eq!((short.seeds, short.most()), (LEAST_SEEDS, 16));
-        assert_eq!(short.notes[1], "the least that tells anything takes 3.04 s, not 1.00 s");
+        // Samples before seeds below sixteen: 20 in each of 20 rounds for each of 10, and 64 times 16.
+        let few = within(10_000);
+        assert_eq!((few.seeds, few.most(), few.subjects, few.notes.len()), (20, 16, 10, 1));
+        // Then configurations.
+        let some = within(5_000);
+        assert_eq!((some.seeds, some.most(), some.subjects), (16, 16, 6));
+        assert_eq!(
+            some.notes[1],
+            "left out to stay within 5.00 s: depth=6, depth=7, depth=8, depth=9"
+        );
+        let alone = within(2_000);
+        assert_eq!((alone.seeds, alone.most(), alone.subjects), (8, 16, 1));
+        let short = within(1_000);
+        assert_eq!((short.seeds, short.most(), short.subjects), (LEAST_SEEDS, 16, 1));
+        assert_eq!(short.notes[2], "the least that tells anything takes 1.84 s, not 1.00 s");
     }
 }

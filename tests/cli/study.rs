@@ -60,7 +60,8 @@ fn a_furnace_that_is_cut_off_is_told_as_biased_by_exactly_that_and_the_whole_one
 #[test]
 fn every_setting_is_swept_and_only_one_that_leaves_light_out_is_biased() {
     let sweep = "integrator,precision,color,filter,rr,sampler,spp=16,64";
-    let (_, done) = study(FURNACE, &["--sweep", sweep, "--truth", "2", "--target", "10%", "--json"]);
+    let (_, done) =
+        study(FURNACE, &["--sweep", sweep, "--truth", "2", "--target", "10%", "--json"]);
     let found = json(&done);
     let all = found["configurations"].as_array().unwrap();
     let names: Vec<&str> = all.iter().map(|it| it["name"].as_str().unwrap()).collect();
@@ -158,6 +159,29 @@ shape sphere {
         found["notes"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
     assert_eq!(notes[0], "drop=motion was left out: the scene does not require it");
     assert!(notes[1].starts_with("drop=media adds an error of 64.9 % ± 0.00 and "), "{notes:?}");
+}
+
+#[test]
+fn a_mean_that_the_scene_expects_tells_what_the_scene_itself_gets_wrong() {
+    // Cut off after two corners it lacks 0.5³ of the light, which its own pictures cannot tell.
+    let cut = FURNACE.replace("path { ", "path { max_depth = 2, ") + "expect mean = 2 ± 1e-3\n";
+    let args = ["--sweep", "depth=5,spp=16,64", "--size", "16x16", "--target", "20%", "--json"];
+    let found = json(&study(&cut, &args).1);
+    assert_eq!(found["expected_mean"]["luminance"], 2.0);
+    for (i, bias) in [(0, 0.125), (1, 0.5_f64.powi(6))] {
+        let configuration = &found["configurations"][i];
+        // Four standard errors, and a digit of pictures in single precision.
+        let [off, error] = number(&configuration["mean_off"]);
+        assert!((off + bias).abs() <= 4.0 * error + 1e-7 && error < 5e-3, "{configuration:#}");
+    }
+    assert_eq!(found["configurations"][0]["points"][1]["is_biased"], false);
+    let notes: Vec<&str> =
+        found["notes"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    let told = "bias of the mean, against the 2 that the scene expects: as it is -12.";
+    assert!(notes.iter().any(|note| note.starts_with(told)), "{notes:?}");
+    // Nothing is expected of others.
+    let found = json(&study(FURNACE, &args).1);
+    assert_eq!(found["configurations"][0]["mean_off"], Value::Null);
 }
 
 #[test]

@@ -22,7 +22,8 @@ const USUAL: &str = "spp,depth,rr,sampler,integrator,precision,color";
 /// Tells how the error falls, what each setting costs, which reaches the target soonest, renders that 16
 /// to 128 times to verify it, and prints the lines to paste. Errors are of luminance, relative to the pixel or to a
 /// tenth of the picture's mean, root mean square. They are against the scene as it is with 64 times the
-/// samples, or against --truth; what the scene as it is gets wrong by itself only the latter tells.
+/// samples, or against --truth; what the scene as it is gets wrong by itself only the latter tells, or,
+/// of its mean, the scene's own `expect mean`.
 ///
 /// `--drop FEATURE` measures what leaving a feature out adds to the error and saves of the time.
 ///

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde_json::{Value, json};
 
 use super::estimate::Number;
+use super::expected::Expected;
 use super::outcome::{Outcome, Point};
 
 const HEAD: &str = "configuration,spp,rmse,variance,variance_standard_error,bias_squared,\
@@ -32,7 +33,9 @@ pub(super) fn csv(outcomes: &[Outcome]) -> String {
 }
 
 /// The configurations as a JSON array.
-pub(super) fn json(outcomes: &[Outcome], target: f64) -> Value {
+///
+/// With how far off their means are where one is expected.
+pub(super) fn json(outcomes: &[Outcome], target: f64, expected: Option<Expected>) -> Value {
     let Some(base) = outcomes.first() else { return json!([]) };
     let one = |outcome: &Outcome| {
         json!({
@@ -43,6 +46,7 @@ pub(super) fn json(outcomes: &[Outcome], target: f64) -> Value {
             "time_ratio_quartiles": outcome.slower,
             "efficiency": outcome.fit.map(|_| outcome.efficiency(base)),
             "spp_for_target": outcome.samples_for(target),
+            "mean_off": expected.map(|expected| number(expected.off(outcome))),
             "samples_not_finite": outcome.bad,
         })
     };

@@ -8,6 +8,7 @@ use glam::UVec2;
 use serde_json::{Value, json};
 
 use super::calibrate::Reading;
+use super::expected::Expected;
 use super::outcome::Outcome;
 use super::svg::{Marks, svg};
 use super::verify::{Verdict, Verified};
@@ -40,6 +41,8 @@ pub(super) struct Found {
     /// What errors are against, in words.
     pub(super) against: String,
     pub(super) reference_error: f64,
+    /// What the scene says of its mean.
+    pub(super) expected: Option<Expected>,
     pub(super) readings: [Reading; 2],
     pub(super) notes: Vec<String>,
     pub(super) outcomes: Vec<Outcome>,
@@ -139,7 +142,8 @@ impl Found {
             "first_seed": self.first_seed,
             "reference": { "what": self.against, "rmse": self.reference_error },
             "calibration": self.readings.map(|reading| reading.json()),
-            "configurations": data::json(&self.outcomes, self.target),
+            "configurations": data::json(&self.outcomes, self.target, self.expected),
+            "expected_mean": self.expected.map(|expected| expected.json()),
             "recommended": advice,
             "notes": self.notes,
             "is_interrupted": self.is_interrupted,

@@ -5,6 +5,7 @@ mod calibrate;
 mod choose;
 mod data;
 mod estimate;
+mod expected;
 mod fit;
 mod found;
 mod lab;
@@ -25,6 +26,7 @@ use luxel_core::render::Options;
 
 use self::choose::Choice;
 use self::estimate::Reference;
+use self::expected::Expected;
 use self::found::{Advice, Found};
 use self::lab::{Lab, Series, Subject};
 use self::outcome::Outcome;
@@ -76,6 +78,8 @@ fn study(file: &Path, args: &Args, run: &Run, start: Instant) -> Result<Found, F
     let outcomes = outcome::outcomes(&names, &series, &reference);
     let mut notes = [&subjects.notes[..], &plan.notes].concat();
     let dropped = subjects.all.iter().zip(&outcomes).filter(|(subject, _)| subject.drops());
+    let expected = Expected::of(&subjects.scene);
+    notes.extend(expected.map(|expected| expected.note(&outcomes)));
     notes.extend(dropped.map(|(_, outcome)| table::dropped(outcome)));
     let mut advice = None;
     if let Some(choice) = choose::choose(&outcomes, args.target) {
@@ -109,6 +113,7 @@ fn study(file: &Path, args: &Args, run: &Run, start: Instant) -> Result<Found, F
         first_seed: args.seed,
         against,
         reference_error: reference.error(),
+        expected,
         readings,
         notes,
         outcomes,

@@ -20,6 +20,8 @@ pub(super) struct Outcome {
     /// By number of samples.
     pub(super) points: Vec<Point>,
     pub(super) fit: Option<Fit>,
+    /// Mean luminance of the pictures with the most samples.
+    pub(super) mean: Number,
     /// Time for a sample of every pixel, seconds.
     pub(super) cost: f64,
     /// The same as a share of that of the scene as it is: lower quartile, median, upper quartile.
@@ -85,9 +87,13 @@ pub(super) fn outcomes(names: &[String], series: &Series, reference: &Reference)
         // Of each round by itself: what slowed it slowed both.
         let slower = rates(shots, &series.spp).into_iter().zip(&base).map(|(own, base)| own / base);
         let slower = quartiles(slower.collect());
+        let mean = |shot: &Shot| {
+            shot.picture.iter().map(|y| f64::from(*y)).sum::<f64>() / shot.picture.len() as f64
+        };
         Outcome {
             name: name.clone(),
             fit: Fit::of(&falling),
+            mean: Number::of(shots.iter().rev().take(1).flatten().map(mean)),
             cost: slower[1] * quartiles(base.clone())[1],
             slower,
             rounds: shots.last().map_or(1, Vec::len),

@@ -82,6 +82,12 @@ fn with_error(Number { value, error }: Number) -> String {
     format!("{} ± {:.2}", percent(value), error * 100.0)
 }
 
+/// `-12.5 % ± 0.03`
+pub(super) fn signed(number: Number) -> String {
+    let sign = if number.value < 0.0 { '-' } else { '+' };
+    format!("{sign}{}", with_error(Number { value: number.value.abs(), ..number }))
+}
+
 /// Three digits.
 pub(super) fn percent(share: f64) -> String {
     let percent = share * 100.0;

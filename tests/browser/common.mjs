@@ -60,9 +60,11 @@ export async function press(page, key) {
   await settled(page);
 }
 
-export async function open(browser, url, options = {}) {
+// `before` is given the page before it loads anything.
+export async function open(browser, url, { before = () => {}, ...options } = {}) {
   const context = await browser.newContext({ viewport: WINDOW, ...options });
   const page = await context.newPage();
+  await before(page);
   const complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));

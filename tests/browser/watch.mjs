@@ -1,99 +1,9 @@
 // `luxel watch --preview` in a real browser: as `view.mjs`.
 
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
-import { writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
-import {
-  attacked, decoded, folder, isHidden, luxel, mean, open, press, readback, root, run, settled, shots, text, until,
-} from "./common.mjs";
-
-const SIZE = [48, 32];
-// Wide enough for panels beside the picture.
-const WINDOW = { width: 900, height: 560 };
-const FEW = ["--spp", "4", "--seed", "7"];
-
-const scene = ({ grey = "0.5", params = "", radius = "1 m", camera = CAMERA } = {}) => `scene 1
-${params}
-${camera}
-film rgb { resolution = (${SIZE.join(", ")}) }
-light constant { scale = 0.8 }
-let grey = material diffuse { reflectance = ${grey} }
-shape sphere "ball" { radius = ${radius}, material = grey }
-`;
-const CAMERA = "camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }";
-
-let made = 0;
-async function watch(content, ...args) {
-  const name = `w${made++}`, file = join(folder, `${name}.scene`), out = join(folder, name);
-  const save = (text) => writeFileSync(file, text);
-  if (content) save(content);
-  const words = ["watch", content ? file : args.shift(), "-o", out, "--preview", "--no-open", "-q", ...FEW, ...args];
-  const child = spawn(luxel, words, { stdio: ["ignore", "ignore", "pipe"], cwd: folder });
-  let said = "";
-  const url = await new Promise((done, failed) => {
-    child.stderr.on("data", (text) => {
-      said += text;
-      const url = /http:\/\/\S+/.exec(said)?.[0];
-      if (url) done(url);
-    });
-    child.once("exit", (code) => failed(new Error(`luxel watch ended with ${code}: ${said}`)));
-  });
-  const token = new URL(url).searchParams.get("token");
-  const end = () => new Promise((done) => {
-    child.once("exit", done);
-    child.kill("SIGINT");
-  });
-  return { url, token, port: new URL(url).port, file, out, save, end };
-}
-
-// The PNG of a scene as another run of the program renders it.
-function rendered(text, ...args) {
-  const name = join(folder, `r${made++}`);
-  writeFileSync(`${name}.scene`, text);
-  execFileSync(luxel, ["render", `${name}.scene`, "-o", name, "-q", ...FEW, ...args], { stdio: "inherit" });
-  return `${name}.png`;
-}
-
-const worst = (a, b) => (a.length === b.length ? a.reduce((worst, v, i) => Math.max(worst, Math.abs(v - b[i])), 0) : Infinity);
-// Whether the page shows that picture, but for the rounding of halves.
-async function shows(page, png) {
-  const wanted = await decoded(page, png);
-  let drawn;
-  await until("the picture", async () => {
-    drawn = await readback(page);
-    return drawn && worst(drawn.data, wanted) <= 1;
-  });
-  return drawn.data;
-}
-const done = (page) => until("the last sample", async () => /done/.test(await text(page, "status")));
-const facts = (page) => page.evaluate(() => Object.fromEntries([...document.querySelectorAll("#facts dt")].map((dt) => [dt.textContent, dt.nextElementSibling.textContent])));
-const slide = (page, name, value) => page.evaluate(({ name, value }) => {
-  const input = document.querySelector(`#rows input[name=${name}]`);
-  input.value = value;
-  input.dispatchEvent(new Event("input", { bubbles: true }));
-}, { name, value });
-// As a shell reads it.
-const words = (line) => execFileSync("sh", ["-c", `printf '%s\\n' ${line}`]).toString().trim().split("\n");
-
-// The corner of the canvas, and of the picture on it.
-async function corner(page) {
-  const { x, y } = await page.locator("#picture").boundingBox(), area = await readback(page, false);
-  return [x + area.x, y + area.y];
-}
-
-async function begun(browser, content, options = { viewport: WINDOW }, ...args) {
-  const one = await watch(content, ...args);
-  const { page, complaints, close } = await open(browser, one.url, options);
-  await done(page);
-  await press(page, "z");
-  const end = async () => {
-    assert.deepEqual(complaints, []);
-    await close();
-    await one.end();
-  };
-  return { ...one, page, end };
-}
+import { attacked, isHidden, mean, open, press, readback, root, run, shots, text, until } from "./common.mjs";
+import { begun, CAMERA, coarse, corner, done, facts, isWiped, rendered, scene, shows, SIZE, slide, watch, WINDOW, wiped, words, worst } from "./watching.mjs";
 
 const tests = {
   async "after twelve saves 60 ms apart the last is shown"({ browser }) {
@@ -150,13 +60,57 @@ const tests = {
     await shows(page, now);
     await done(page);
     await page.locator("#compare").selectOption("previous");
-    await until("the wipe", async () => !(await isHidden(page, "wipe")));
-    const drawn = await readback(page), [a, b] = [await decoded(page, now), await decoded(page, past)];
-    const split = Math.round(0.5 * WINDOW.width) - drawn.x;
-    for (let i = 0; i < drawn.data.length; i++) {
-      const x = Math.floor(i / 4) % SIZE[0];
-      if (Math.abs(x - split) > 1) assert.ok(Math.abs(drawn.data[i] - (x < split ? a : b)[i]) <= 1, `at ${x} of ${split}`);
+    await wiped(page, now, past);
+    await end();
+  },
+
+  async "a picture that never became whole is not the previous one"({ browser }) {
+    const one = await watch(scene());
+    const { page, complaints, close } = await open(browser, one.url, { viewport: WINDOW, before: coarse });
+    await done(page);
+    await press(page, "z");
+    const generation = () => page.evaluate(() => Number(document.getElementById("picture").dataset.generation));
+    const first = await generation();
+    // A coarse picture is missed now and then when the next one is there before it is sent.
+    await page.evaluate(() => (window.isCoarse = true));
+    for (let i = 0; (await generation()) === first; i++) {
+      assert.ok(i < 40, "no coarse picture came");
+      one.save(scene({ grey: `0.${20 + i}` }));
+      await page.waitForTimeout(250);
     }
+    assert.ok((await generation()) > first);
+    await page.evaluate(() => (window.isCoarse = false));
+    one.save(scene({ grey: "0.1" }));
+    const [now, past] = [rendered(scene({ grey: "0.1" })), rendered(scene())];
+    await shows(page, now);
+    await done(page);
+    await page.locator("#compare").selectOption("previous");
+    await wiped(page, now, past);
+    assert.deepEqual(complaints, []);
+    await close();
+    await one.end();
+  },
+
+  async "a picture that was pinned stays to be compared with"({ browser }) {
+    const { page, save, end } = await begun(browser, scene());
+    const pinned = () => page.evaluate(() => [document.getElementById("compare").value, document.getElementById("pin").getAttribute("aria-pressed")]);
+    assert.deepEqual(await pinned(), ["off", "false"]);
+    await press(page, "p");
+    assert.deepEqual(await pinned(), ["pinned", "true"]);
+    const [first, second, third] = [scene(), scene({ grey: "0.1" }), scene({ grey: "0.9" })].map((it) => rendered(it));
+    await wiped(page, first, first);
+    for (const [grey, png] of [["0.1", second], ["0.9", third]]) {
+      save(scene({ grey }));
+      await until(`grey ${grey}`, () => isWiped(page, png, first));
+    }
+    assert.equal(await text(page, "right"), "pinned");
+    await done(page);
+    await page.locator("#pin").click();
+    await wiped(page, third, third);
+    save(scene({ grey: "0.1" }));
+    await until("the pinned picture", () => isWiped(page, second, third));
+    await press(page, "c");
+    await shows(page, second);
     await end();
   },
 

@@ -208,7 +208,8 @@ const wire = connect({
       state.b = picture;
       if (state.compare === "off") state.compare = "b";
     } else {
-      if (state.a && state.a.generation !== picture.generation) state.previous = state.a;
+      // A picture that was overtaken while it was coarse is none to compare with.
+      if (state.a?.step === 1 && state.a.generation !== picture.generation) state.previous = state.a;
       state.a = picture;
       if (first) state.tone = picture.display;
       pan.resize(picture.size);

@@ -1,6 +1,7 @@
 // What the browser tests share.
 
 import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
@@ -72,6 +73,16 @@ export async function open(browser, url, { before = () => {}, ...options } = {})
   await until("a picture", () => isHidden(page, "empty"));
   await settled(page);
   return { page, complaints, close: () => context.close() };
+}
+
+// `luxel view` of these pictures.
+export async function view(...args) {
+  const child = spawn(luxel, ["view", ...args, "--no-open"], { stdio: ["ignore", "pipe", "inherit"] });
+  const url = await new Promise((done, failed) => {
+    child.stdout.once("data", (text) => done(String(text).trim()));
+    child.once("exit", (code) => failed(new Error(`luxel view ended with ${code}`)));
+  });
+  return { url, port: new URL(url).port, token: new URL(url).searchParams.get("token"), end: () => child.kill("SIGINT") };
 }
 
 // What a page of elsewhere tries, which knows the port and has stolen the token.

@@ -7,11 +7,11 @@
 // chooses the tests whose names hold it.
 
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import { copyFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
-  WINDOW, attacked, decoded, folder, isHidden, luxel, mean, open, press, readback, root, run, settled, shots, text, until,
+  WINDOW, attacked, decoded, folder, isHidden, luxel, mean, open, press, readback, root, run, settled, shots, text, until, view,
 } from "./common.mjs";
 
 const SIZE = [96, 64];
@@ -28,15 +28,6 @@ film rgb { resolution = (${SIZE.join(", ")}), normal = true, depth = true, mater
 light constant { scale = 0.5 }
 shape sphere { radius = 1 m, material = material diffuse { reflectance = 0.5 } }
 `;
-
-async function view(...args) {
-  const child = spawn(luxel, ["view", ...args, "--no-open"], { stdio: ["ignore", "pipe", "inherit"] });
-  const url = await new Promise((done, failed) => {
-    child.stdout.once("data", (text) => done(String(text).trim()));
-    child.once("exit", (code) => failed(new Error(`luxel view ended with ${code}`)));
-  });
-  return { url, port: new URL(url).port, token: new URL(url).searchParams.get("token"), end: () => child.kill("SIGINT") };
-}
 
 const tests = {
   async "a pixel of the page is the pixel of the PNG, in every tone"({ browser, one, folder }) {

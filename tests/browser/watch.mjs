@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { basename, join } from "node:path";
-import { attacked, isHidden, mean, open, press, readback, root, run, shots, text, until } from "./common.mjs";
+import { attacked, isHidden, mean, open, press, readback, root, run, shots, text, until, view } from "./common.mjs";
 import { begun, CAMERA, coarse, corner, done, facts, isWiped, rendered, scene, shows, SIZE, slide, watch, WINDOW, wiped, words, worst } from "./watching.mjs";
 
 const tests = {
@@ -51,6 +51,34 @@ const tests = {
     await until("a button", () => bare.page.evaluate(() => document.querySelectorAll("#facts dd button").length === 2));
     assert.equal(await bare.page.evaluate(() => document.querySelectorAll("#facts a").length), 0);
     await bare.end();
+  },
+
+  async "a pixel tells what is written to the file, to the last bit"({ browser }) {
+    const { page, out, end } = await begun(browser, scene());
+    const own = await view(`${out}.exr`);
+    const file = await open(browser, own.url, { viewport: WINDOW });
+    await press(file.page, "z");
+    const values = async (of, at) => {
+      const [x, y] = await corner(of);
+      await of.mouse.move(x + at[0] + 0.5, y + at[1] + 0.5);
+      // The page's own, which stand there first, have four digits.
+      const isTold = async () => (await text(of, "where")) === at.join(", ") && !/^0\.0*[1-9]\d{3}$/.test((await facts(of)).R);
+      await until("exact values", isTold);
+      const { R, G, B, luminance, relative, samples, "standard error": error } = await facts(of);
+      return { R, G, B, luminance, relative, samples, error };
+    };
+    let differ = 0;
+    for (const at of [[24, 16], [17, 12], [14, 16], [30, 9], [2, 3]]) {
+      const [here, there] = [await values(page, at), await values(file.page, at)];
+      assert.deepEqual(here, there, `at ${at}`);
+      assert.equal(here.samples, "4");
+      assert.ok(Math.abs(0.2126 * here.R + 0.7152 * here.G + 0.0722 * here.B - here.luminance) < 1e-3 * here.luminance, "its own luminance");
+      differ += here.error.split(" ").some((v) => Number(v) > 0);
+    }
+    assert.ok(differ > 0, "some pixel has an error");
+    await file.close();
+    own.end();
+    await end();
   },
 
   async "the wipe shows this picture and the previous one"({ browser }) {

@@ -188,7 +188,11 @@ fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
         let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
         let settings = stage::Film::default();
         let seen = luxel_core::render::Reached { step: 1, samples: 1, left: 0, is_whole: true };
-        Frame { generation, pixels, ..Frame::of_film(&film, &settings, (seen, 1)) }
+        Frame {
+            generation,
+            pixels,
+            ..Frame::of_exact(&Exact::of_film(&film, 1), &settings, (seen, 1))
+        }
     };
     preview.screen().status("busy");
     preview.screen().show(&frame(1));

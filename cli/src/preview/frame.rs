@@ -7,7 +7,7 @@
 use glam::UVec2;
 use half::f16;
 use half::slice::HalfFloatSliceExt;
-use luxel_core::film::{Film, Rect};
+use luxel_core::film::Rect;
 use luxel_core::registry::Display;
 use luxel_core::render::Reached;
 use luxel_core::stage;
@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::board::Topic;
+use super::exact::Exact;
 use crate::picture;
 
 /// Which of two pictures that are compared.
@@ -71,19 +72,20 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// What a film holds by now, seen so far; `complete` if it has all of `of_samples`.
-    pub(crate) fn of_film(
-        film: &Film,
+    pub(crate) fn of_exact(
+        exact: &Exact,
         settings: &stage::Film,
         (seen, of_samples): (Reached, u32),
     ) -> Self {
-        let pixels = Pixels::of_film(film, seen.step);
+        let (size, n) = (exact.pixels(), exact.n.clone());
+        let pixels = Pixels { step: exact.step, ..Pixels::new(size, &exact.rgb, &exact.se, n) };
         Self {
             side: Side::A,
             name: String::new(),
             layer: None,
             generation: 0,
-            size: film.size,
-            window: film.window,
+            size: exact.size,
+            window: exact.window,
             pixels,
             exposure: settings.exposure,
             display: settings.display,
@@ -194,20 +196,6 @@ impl Pixels {
         let unit = exponent.exp2();
         Self { size, step: 1, rgb: halves(rgb, unit), se: halves(se, unit), n, unit }
     }
-
-    /// The pixels of a film's window in every `step`th column and row.
-    #[expect(clippy::cast_possible_truncation, reason = "a screen shows less than 32 bits")]
-    fn of_film(film: &Film, step: u32) -> Self {
-        let (mut rgb, mut se, mut n) = (vec![], vec![], vec![]);
-        let size = (film.window.size + step - 1) / step;
-        for at in Rect::new(UVec2::ZERO, size).points() {
-            let pixel = film.pixel(film.window.min + at * step);
-            rgb.extend(pixel.mean.to_array().map(|v| v as f32));
-            se.extend(pixel.standard_error().to_array().map(|v| v as f32));
-            n.push(pixel.n);
-        }
-        Self { step, ..Self::new(size, &rgb, &se, n) }
-    }
 }
 
 /// Infinity and what is not a number stay so; what is finite stays finite.
@@ -228,9 +216,15 @@ fn halves(values: &[f32], unit: f64) -> Vec<f16> {
 
 #[cfg(test)]
 mod tests {
+    use luxel_core::film::Film;
+
     use super::*;
 
     const ONE: Reached = Reached { step: 1, samples: 1, left: 0, is_whole: true };
+
+    fn of_film(film: &Film, settings: &stage::Film, now: (Reached, u32)) -> Frame {
+        Frame::of_exact(&Exact::of_film(film, now.0.step), settings, now)
+    }
 
     fn read(bytes: &[u8]) -> (Value, &[u8]) {
         assert_eq!(&bytes[..4], b"LXL1");
@@ -247,7 +241,7 @@ mod tests {
     fn a_film_is_read_back_with_its_head_and_planes() {
         let window = Rect::new(UVec2::new(5, 3), UVec2::new(7, 4));
         let film = Film::new(UVec2::new(32, 16), window);
-        let bytes = Frame::of_film(&film, &stage::Film::default(), (ONE, 4)).encode();
+        let bytes = of_film(&film, &stage::Film::default(), (ONE, 4)).encode();
         let (head, planes) = read(&bytes);
         assert_eq!((bytes.len() - planes.len()) % 8, 0);
         assert_eq!(head["window"], json!([5, 3, 7, 4]));
@@ -265,8 +259,7 @@ mod tests {
             display: if exposure.is_some() { Display::Filmic } else { Display::Srgb },
             ..stage::Film::default()
         });
-        let [before, wanted] =
-            [&plain, &brighter].map(|it| Frame::of_film(&film, it, (ONE, 4)).encode());
+        let [before, wanted] = [&plain, &brighter].map(|it| of_film(&film, it, (ONE, 4)).encode());
         assert_ne!(before, wanted);
         assert_eq!(shown_as(&before, &brighter), Some(wanted));
         assert_eq!(shown_as(b"", &plain), None);
@@ -277,7 +270,7 @@ mod tests {
     fn a_coarse_pass_sends_the_pixels_that_it_measured() {
         let film = Film::new(UVec2::new(32, 16), Rect::new(UVec2::new(5, 3), UVec2::new(17, 8)));
         let seen = Reached { step: 8, samples: 1, left: 0, is_whole: true };
-        let frame = Frame::of_film(&film, &stage::Film::default(), (seen, 1));
+        let frame = of_film(&film, &stage::Film::default(), (seen, 1));
         let bytes = frame.encode();
         let (head, planes) = read(&bytes);
         assert_eq!((&head["pixels"], &head["step"]), (&json!([3, 1]), &json!(8)));
@@ -305,7 +298,7 @@ mod tests {
     fn counts_are_sent_where_they_differ() {
         let pixels = Pixels::new(UVec2::new(2, 1), &[1.0; 6], &[], vec![3, 4]);
         let film = Film::new(UVec2::ONE, Rect::new(UVec2::ZERO, UVec2::ONE));
-        let frame = Frame { pixels, ..Frame::of_film(&film, &stage::Film::default(), (ONE, 4)) };
+        let frame = Frame { pixels, ..of_film(&film, &stage::Film::default(), (ONE, 4)) };
         let bytes = frame.encode();
         let (head, planes) = read(&bytes);
         assert_eq!((&head["n"], &head["planes"]), (&Value::Null, &json!(["n", "rgb"])));

@@ -10,6 +10,7 @@ mod attacks;
 mod board;
 mod browser;
 mod editor;
+mod exact;
 mod frame;
 mod guard;
 mod offer;
@@ -34,6 +35,7 @@ use guard::Gate;
 
 pub(crate) use args::{EditorArgs, PageArgs};
 pub(crate) use editor::Editor;
+pub(crate) use exact::{Exact, told};
 pub(crate) use frame::{Frame, Pixels, Side};
 pub(crate) use offer::{Camera, Field, Param};
 pub(crate) use problem::Problem;

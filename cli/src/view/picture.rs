@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use crate::picture::Picture;
-use crate::preview::{Frame, Pixels, Side};
+use crate::preview::{Frame, Pixels, Side, told};
 
 use super::layers::{Layer, layers};
 
@@ -36,15 +36,11 @@ pub(super) fn frame(picture: &Picture, layer: Option<&Layer<'_>>) -> Frame {
 /// The values of a pixel as they stand in the file; nothing outside.
 pub(super) fn facts(picture: &Picture, at: UVec2) -> Vec<(String, String)> {
     let Some(i) = picture.index(at) else { return vec![] };
-    let three =
-        |plane: &[f32]| plane.get(i * 3..i * 3 + 3).map(|v| format!("{} {} {}", v[0], v[1], v[2]));
-    let n = picture.n.get(i).map(u32::to_string);
-    let own =
-        [("radiance", three(&picture.rgb)), ("standard error", three(&picture.se)), ("samples", n)];
+    let mut facts = told(i, (&picture.rgb, &picture.se, &picture.n));
     let layers = layers(picture);
-    let of_layers = layers.iter().map(|layer| (layer.name, layer.fact(picture, at)));
-    let all = own.into_iter().chain(of_layers);
-    all.filter_map(|(name, value)| Some((name.to_owned(), value?))).collect()
+    let of_layer = |layer: &Layer<'_>| Some((layer.name.to_owned(), layer.fact(picture, at)?));
+    facts.extend(layers.iter().filter_map(of_layer));
+    facts
 }
 
 /// A line about it.

@@ -22,7 +22,7 @@ use super::wishes::Wishes;
 use crate::exit::{Failure, blaming};
 use crate::isolate::Address;
 use crate::preview::{
-    Command, Editor, Frame, PACE, PageArgs, Param, PixelReply, Preview, Problem, Screen,
+    Command, Editor, Exact, Frame, PACE, PageArgs, Param, PixelReply, Preview, Problem, Screen,
 };
 use crate::report;
 
@@ -32,11 +32,15 @@ const LOOK: Duration = Duration::from_millis(100);
 /// What is asked about: the scene on the page.
 type About = Arc<Mutex<Option<(Arc<Stage>, Arc<Read>)>>>;
 
+/// The values of the picture on the page.
+type Values = Arc<Mutex<Option<Exact>>>;
+
 /// A page that shows what is watched. Dropped, it is served no more.
 pub(super) struct Page {
     address: Address,
     screen: Screen,
     about: About,
+    values: Values,
     wishes: Arc<Wishes>,
     generation: AtomicU64,
     /// How far the picture is.
@@ -68,15 +72,29 @@ impl Page {
             }
         }
         let address = preview.address().clone();
-        let (screen, about) = (preview.screen().clone(), About::default());
+        let (screen, wishes) = (preview.screen().clone(), Arc::new(wishes));
+        let answering = Answering {
+            editor,
+            wishes: wishes.clone(),
+            about: About::default(),
+            values: Values::default(),
+        };
+        let (about, values) = (answering.about.clone(), answering.values.clone());
         let ended = Arc::new(AtomicBool::new(false));
-        let (subject, over, wishes) = (about.clone(), ended.clone(), Arc::new(wishes));
-        let answering = Answering { editor, wishes: wishes.clone(), about: subject };
-        let answering = std::thread::spawn(move || answering.answer(&preview, &over));
-        let (generation, broken, answering) =
-            (AtomicU64::new(0), Mutex::default(), Some(answering));
-        let standing = Arc::default();
-        Ok(Self { address, screen, about, wishes, generation, standing, broken, ended, answering })
+        let over = ended.clone();
+        let answering = Some(std::thread::spawn(move || answering.answer(&preview, &over)));
+        Ok(Self {
+            address,
+            screen,
+            about,
+            values,
+            wishes,
+            generation: AtomicU64::new(0),
+            standing: Arc::default(),
+            broken: Mutex::default(),
+            ended,
+            answering,
+        })
     }
 
     /// Where it is served.
@@ -168,7 +186,8 @@ impl Page {
         *lock(&self.about) = Some((stage.clone(), read.clone()));
         self.broken.lock().unwrap_or_else(PoisonError::into_inner).clear();
         let generation = self.generation.fetch_add(1, Ordering::Relaxed) + 1;
-        let (screen, about) = (self.screen.clone(), self.about.clone());
+        let (screen, about, values) =
+            (self.screen.clone(), self.about.clone(), self.values.clone());
         let (standing, settings) = (self.standing.clone(), stage.film.clone());
         "rendering".clone_into(&mut lock(&standing).reached);
         self.has_read();
@@ -182,9 +201,12 @@ impl Page {
             // Held until it is shown, so that another exposure comes after it and not in between.
             let about = lock(&about);
             let settings = about.as_ref().map_or(&settings, |(stage, _)| &stage.film);
-            let frame = Frame::of_film(film, settings, (now, of_samples));
+            let exact = Exact::of_film(film, now.step);
+            let frame = Frame::of_exact(&exact, settings, (now, of_samples));
+            let mut values = lock(&values);
             screen.show(&Frame { generation, ..frame });
-            drop(about);
+            *values = Some(exact);
+            drop((about, values));
             let mut standing = lock(&standing);
             standing.reached = status(now, of_samples);
             screen.status(&standing.line());
@@ -237,6 +259,7 @@ struct Answering {
     editor: Option<Editor>,
     wishes: Arc<Wishes>,
     about: About,
+    values: Values,
 }
 
 impl Answering {
@@ -271,7 +294,9 @@ impl Answering {
                 // A shape that panics is told of by the render.
                 blaming("", told).unwrap_or_default()
             };
-            let Facts { told: facts, places } = scene.map(told).unwrap_or_default();
+            let Facts { told, places } = scene.map(told).unwrap_or_default();
+            let mut facts = lock(&self.values).as_ref().map_or(vec![], |values| values.facts(at));
+            facts.extend(told);
             preview.screen().pixel(&PixelReply { at, side, facts, places });
         }
     }

@@ -118,6 +118,11 @@ function ask() {
     if (side === "a" || state.compare === "b") wire.ask({ pixel: { at, side } });
   }, 40);
 }
+// What was told of the picture before is not true of the next; what is seen in the pixel mostly is.
+function outdate() {
+  const ofPicture = ["radiance", "standard error", "samples"];
+  if (state.reply) state.reply.facts = state.reply.facts.filter(([name]) => !ofPicture.includes(name));
+}
 function hover(at) {
   if (String(at) === String(state.hovered)) return;
   state.hovered = at;
@@ -210,6 +215,7 @@ const wire = connect({
     } else {
       // A picture that was overtaken while it was coarse is none to compare with.
       if (state.a?.step === 1 && state.a.generation !== picture.generation) state.previous = state.a;
+      if (state.a?.generation !== picture.generation) outdate();
       state.a = picture;
       if (first) state.tone = picture.display;
       pan.resize(picture.size);

@@ -24,6 +24,9 @@ function element(name, text, kind) {
   return made;
 }
 
+// Numbers as the program writes them.
+const exact = (text) => text.split(" ").map((v) => Number(v.replace("inf", "Infinity")));
+
 // `reply` is what the program says of the pixel: exact values, where the page has rounded ones.
 export function inspect(state, at, side, reply, held) {
   const picture = side === "b" && state.other ? state.other : state.a;
@@ -32,18 +35,21 @@ export function inspect(state, at, side, reply, held) {
   panel.hidden = i < 0;
   if (i < 0) return;
   panel.classList.toggle("held", held);
-  const rgb = picture.radiance(i), se = picture.error(i), n = picture.samplesOf(i);
+  let rgb = picture.radiance(i), se = picture.error(i);
+  const n = picture.samplesOf(i);
   $("where").textContent = `${at[0]}, ${at[1]}`;
   const colour = show(rgb.map((x) => x * state.scaleOf()), state.tone).map(Math.round);
   $("swatch").style.background = `rgb(${colour.join()})`;
   const facts = [];
   if (picture.layer) return tell((reply?.facts ?? []).map(([name, text]) => [name, text, name === picture.layer ? "line" : ""]), reply, held);
   const known = Object.fromEntries(reply?.facts ?? []);
-  const split = (text, values, digits) => text?.split(" ") ?? values.map((v) => number(v, digits));
-  split(known.radiance, rgb).forEach((text, c) => facts.push(["RGB"[c], text, "rgb"[c]]));
+  const texts = known.radiance?.split(" ") ?? rgb.map((v) => number(v));
+  if (known.radiance) rgb = exact(known.radiance);
+  if (se && known["standard error"]) se = exact(known["standard error"]);
+  texts.forEach((text, c) => facts.push(["RGB"[c], text, "rgb"[c]]));
   facts.push(["luminance", number(luminance(...rgb))]);
   if (se) {
-    facts.push(["standard error", split(known["standard error"], se, 3).map((v) => number(Number(v.replace("inf", "Infinity")), 3)).join(" "), "line"]);
+    facts.push(["standard error", se.map((v) => number(v, 3)).join(" "), "line"]);
     facts.push(["relative", percent(relative(rgb, se))]);
   }
   if (n) facts.push(["samples", known.samples ?? String(n)]);
@@ -52,7 +58,7 @@ export function inspect(state, at, side, reply, held) {
     if (j >= 0) {
       const there = [state.other.radiance(j), state.other.error(j)];
       facts.push([`luminance, ${state.otherName}`, number(luminance(...there[0])), "line"]);
-      const exact = [rgb, se], scale = se && there[1] ? SIGMAS : NaN, d = apart(exact, there) * scale;
+      const scale = se && there[1] ? SIGMAS : NaN, d = apart([rgb, se], there) * scale;
       if (Number.isFinite(d)) facts.push(["difference", `${number(d, 2)} σ`]);
     }
   }

@@ -1,10 +1,14 @@
 //! The axis-aligned box.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
 use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
+
+use super::spherical::SphericalRectangle;
 
 /// A closed box along the axes; `transform` turns it.
 ///
@@ -92,32 +96,36 @@ impl Shape for Box {
         self.face_areas(None).iter().sum()
     }
 
-    /// Uniform over the faces that can be seen from outside, or over all.
+    /// A face by the solid angle that it fills, and uniform in that, from near enough outside; over the
+    /// area of the faces that can be seen from afar, and of all from within.
     fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
-        let areas = self.face_areas(from);
-        let total: f64 = areas.iter().sum();
+        let faces = self.faces(from);
+        let total: f64 = faces.iter().map(|face| face.weight).sum();
         // Spends the first number on the face, and what is left of it on the place.
         let mut rest = f64::from(u[0]) * total;
         let mut face = 0;
-        for (i, area) in areas.iter().enumerate().filter(|(_, area)| **area > 0.0) {
+        for (i, seen) in faces.iter().enumerate().filter(|(_, seen)| seen.weight > 0.0) {
             face = i;
-            if rest < *area {
+            if rest < seen.weight {
                 break;
             }
-            rest -= area;
+            rest -= seen.weight;
         }
-        let (u_axis, _, v_axis, _) = FACES[face];
-        let across = (rest / areas[face]).clamp(0.0, 1.0);
-        let unit = DVec2::new(across, f64::from(u[1])) - 0.5;
-        let at = unit * DVec2::new(self.size[u_axis], self.size[v_axis]);
-        Some(ShapeSample { surface: self.surface_at(face, at), pdf: total.recip() })
+        let across = (rest / faces[face].weight).clamp(0.0, 1.0);
+        let (u_axis, u_sign, v_axis, v_sign) = FACES[face];
+        let half = 0.5 * DVec2::new(self.size[u_axis], self.size[v_axis]);
+        let at = match &faces[face].angle {
+            Some((rectangle, foot)) => rectangle.sample([across, f64::from(u[1])]) - *foot,
+            None => (DVec2::new(across, f64::from(u[1])) - 0.5) * (2.0 * half),
+        };
+        let at = at.clamp(-half, half) * DVec2::new(u_sign, v_sign);
+        let surface = self.surface_at(face, at);
+        let pdf = self.density(&faces, from, &surface);
+        (pdf > 0.0 && pdf.is_finite()).then_some(ShapeSample { surface, pdf })
     }
 
     fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
-        let areas = self.face_areas(from);
-        let axis = at.ng.abs().max_position();
-        let face = 2 * axis + usize::from(at.ng[axis] > 0.0);
-        if areas[face] > 0.0 { areas.iter().sum::<f64>().recip() } else { 0.0 }
+        self.density(&self.faces(from), from, at)
     }
 
     fn is_closed(&self) -> bool {
@@ -140,6 +148,22 @@ fn face_code(face: usize) -> u8 {
     face as u8
 }
 
+/// Area of all that is seen over squared distance from which on solid angles are worth their
+/// arccosines, as of a rectangle.
+const NEAR: f64 = 0.25;
+
+/// Least solid angle, sr, for which a face that is seen is chosen.
+const LEAST: f64 = 1e-5;
+
+/// What a viewer sees of a face.
+#[derive(Default)]
+struct Seen {
+    /// The share with which it is chosen; 0 for one that is not seen.
+    weight: f64,
+    /// Its solid angle, and where its middle is from the viewer's foot; without, it is sampled by area.
+    angle: Option<(SphericalRectangle, DVec2)>,
+}
+
 impl Box {
     /// Areas of the faces that face the viewer; of all without one or with one inside.
     fn face_areas(&self, from: Option<DVec3>) -> [f64; 6] {
@@ -147,12 +171,60 @@ impl Box {
         let area = [s.y * s.z, s.z * s.x, s.x * s.y];
         let all = std::array::from_fn(|face| area[face / 2]);
         let Some(from) = from else { return all };
-        let o = from - self.center;
         let seen: [f64; 6] = std::array::from_fn(|face| {
-            let side = if face % 2 == 1 { o[face / 2] } else { -o[face / 2] };
-            if side > 0.5 * s[face / 2] { area[face / 2] } else { 0.0 }
+            if self.height_above(face, from) > 0.0 { area[face / 2] } else { 0.0 }
         });
         if seen.iter().any(|a| *a > 0.0) { seen } else { all }
+    }
+
+    /// How far a place is outside of the plane of a face.
+    fn height_above(&self, face: usize, place: DVec3) -> f64 {
+        let o = (place - self.center)[face / 2];
+        (if face % 2 == 1 { o } else { -o }) - 0.5 * self.size[face / 2]
+    }
+
+    fn faces(&self, from: Option<DVec3>) -> [Seen; 6] {
+        let areas = self.face_areas(from);
+        let by_area = || areas.map(|weight| Seen { weight, angle: None });
+        let Some(from) = from else { return by_area() };
+        let o = from - self.center;
+        let outside = (o.abs() - 0.5 * self.size).max_element() > 0.0;
+        if !outside || areas.iter().sum::<f64>() < NEAR * o.length_squared() {
+            return by_area();
+        }
+        std::array::from_fn(|face| {
+            if areas[face] <= 0.0 {
+                return Seen::default();
+            }
+            let (u, _, v, _) = FACES[face];
+            let (foot, half) =
+                (-DVec2::new(o[u], o[v]), 0.5 * DVec2::new(self.size[u], self.size[v]));
+            let height = self.height_above(face, from);
+            if let Some(seen) = SphericalRectangle::new(foot - half, foot + half, height) {
+                return Seen { weight: seen.solid_angle, angle: Some((seen, foot)) };
+            }
+            // Next to nothing, or next to half of everything: what its middle says.
+            let d2 = foot.length_squared() + height * height;
+            let angle = areas[face] * height / (d2 * d2.sqrt());
+            Seen { weight: angle.clamp(LEAST, TAU), angle: None }
+        })
+    }
+
+    /// Density over the area, m⁻², of a point that is sampled by a viewer who sees these faces.
+    fn density(&self, faces: &[Seen; 6], from: Option<DVec3>, at: &Surface) -> f64 {
+        let axis = at.ng.abs().max_position();
+        let face = 2 * axis + usize::from(at.ng[axis] > 0.0);
+        let total: f64 = faces.iter().map(|face| face.weight).sum();
+        match (&faces[face].angle, from) {
+            (Some(_), Some(from)) => {
+                let to = from - at.p;
+                let d2 = to.length_squared();
+                to[axis].abs() / (d2 * d2.sqrt() * total)
+            }
+            _ => {
+                faces[face].weight / (total * self.size[(axis + 1) % 3] * self.size[(axis + 2) % 3])
+            }
+        }
     }
 
     /// The point of a face at `at`, metres about its middle along its `u` and `v`.
@@ -187,7 +259,9 @@ impl Box {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::testing::{check_convex, check_sampling, check_solid_angle, visible_area};
+    use crate::shape::testing::{
+        check_convex, check_sampling, check_solid_angle, solid_angle, visible_area,
+    };
 
     fn residual(b: &Box, p: DVec3) -> f64 {
         ((p - b.center).abs() - 0.5 * b.size).max_element().abs()
@@ -248,6 +322,26 @@ mod tests {
         let seen = visible_area(&b, Some(DVec3::splat(5.0)), 3, 33).mean;
         assert!((seen - 11.0).abs() <= 1e-14);
         check_solid_angle(&b, DVec3::new(3.0, 1.5, 1.0), 34);
+    }
+
+    #[test]
+    fn near_boxes_are_sampled_by_the_solid_angles_of_their_faces() {
+        let b = Box { center: DVec3::ONE, size: DVec3::new(1.0, 2.0, 3.0) };
+        let at = |x: f64, y: f64, z: f64| DVec3::ONE + DVec3::new(x, y, z);
+        for (k, from) in (0..).zip([
+            at(0.9, 1.5, -2.0),
+            at(0.7, 0.2, 0.1),
+            at(0.501, -0.3, 1.6),
+            at(-0.55, 0.1, 1.4),
+            at(0.2, -1.3, 0.4),
+        ]) {
+            check_sampling(&b, Some(from), 35 + k);
+            check_solid_angle(&b, from, 50 + 2 * k);
+        }
+        // All that is seen is found alike: one sample tells the solid angle.
+        let from = at(0.9, 1.5, -2.0);
+        let near = solid_angle(&b, from, 1000, 45);
+        assert!(near.standard_error() <= 1e-9 * near.mean, "{}", near.standard_error());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The capsule: a rod with round ends.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::cmp::Ordering;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::Params;
@@ -96,13 +97,23 @@ impl Shape for Capsule {
         TAU * self.radius * self.length()
     }
 
-    /// Uniform along the axis and around it: a slice of a ball has the area of one of its hull.
+    /// Along the axis and around it, where a slice of a ball has the area of one of its hull: uniform,
+    /// or from outside over the arcs that can be seen, by how long these about are.
     ///
     /// # Source
     /// Archimedes, *On the Sphere and Cylinder*.
-    fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
-        let z = f64::from(u[1]) * self.length() - self.radius;
-        let turn = (f64::from(u[0]) - 0.5) * TAU;
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let seen = self.seen_from(from);
+        let [u, v] = u.map(f64::from);
+        let (z, half) = match &seen {
+            Some(seen) => {
+                let z = self.along(seen, v);
+                (z, self.arc(&seen.viewer, z))
+            }
+            None => (v * self.length() - self.radius, PI),
+        };
+        let turn = seen.as_ref().map_or(0.0, |seen| seen.towards) + (u - 0.5) * 2.0 * half;
+        let turn = turn - TAU * (turn / TAU).round();
         let above = z - self.height;
         let surface = if z < 0.0 {
             self.surface_at(LOW, DVec2::new(turn, (z / self.radius).max(-1.0).asin()))
@@ -111,11 +122,12 @@ impl Shape for Capsule {
         } else {
             self.surface_at(SIDE, DVec2::new(turn, z))
         };
-        Some(ShapeSample { surface, pdf: self.area().recip() })
+        let pdf = self.density(seen.as_ref(), &surface);
+        (pdf > 0.0 && pdf.is_finite()).then_some(ShapeSample { surface, pdf })
     }
 
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        self.area().recip()
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        self.density(self.seen_from(from).as_ref(), at)
     }
 
     fn is_closed(&self) -> bool {
@@ -133,7 +145,86 @@ impl Shape for Capsule {
     }
 }
 
+/// Pieces of either end along the axis; the side is one.
+const PIECES: usize = 4;
+/// What is added to the length of an arc, radians: where a piece was asked nothing is seen, but
+/// something may be beside.
+const LEAST_ARC: f64 = 0.05;
+
+/// What a viewer outside sees.
+struct Seen {
+    /// The viewer: distance from the axis, and height.
+    viewer: DVec2,
+    /// Where it stands around the axis, radians.
+    towards: f64,
+    /// Shares with which pieces are chosen, along the axis.
+    weights: [f64; 2 * PIECES + 1],
+}
+
 impl Capsule {
+    fn seen_from(&self, from: Option<DVec3>) -> Option<Seen> {
+        let from = from.filter(|from| self.distance(*from).is_some_and(|away| away > 0.0))?;
+        let q = local(&self.frame, from - self.base);
+        let viewer = DVec2::new(q.x.hypot(q.y), q.z);
+        let weights = std::array::from_fn(|i| {
+            let (low, high) = self.piece(i);
+            let arcs = [low, 0.5 * (low + high), high].map(|z| self.arc(&viewer, z));
+            (high - low) * ((arcs[0] + 4.0 * arcs[1] + arcs[2]) / 6.0 + LEAST_ARC)
+        });
+        viewer.is_finite().then_some(Seen { viewer, towards: q.y.atan2(q.x), weights })
+    }
+
+    /// From where to where a piece goes along the axis.
+    fn piece(&self, i: usize) -> (f64, f64) {
+        let step = self.radius / PIECES as f64;
+        let low = |i: usize| i as f64 * step - self.radius;
+        match i.cmp(&PIECES) {
+            Ordering::Less => (low(i), low(i + 1)),
+            Ordering::Equal => (0.0, self.height),
+            Ordering::Greater => {
+                let start = self.height + (i - PIECES - 1) as f64 * step;
+                (start, start + step)
+            }
+        }
+    }
+
+    /// The half of the arc at a height that faces the viewer, radians: where n · viewer > n · p, with
+    /// n and p about the nearest point of the axis.
+    fn arc(&self, viewer: &DVec2, z: f64) -> f64 {
+        let from = z.clamp(0.0, self.height);
+        let sin = ((z - from) / self.radius).clamp(-1.0, 1.0);
+        let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
+        let least = (self.radius - sin * (viewer.y - from)) / (cos * viewer.x);
+        if least.is_nan() { 0.0 } else { least.clamp(-1.0, 1.0).acos() }
+    }
+
+    /// A height by the weights of the pieces; `v` uniform in [0, 1).
+    fn along(&self, seen: &Seen, v: f64) -> f64 {
+        let mut rest = v * seen.weights.iter().sum::<f64>();
+        let mut i = 0;
+        while i < 2 * PIECES && rest >= seen.weights[i] {
+            rest -= seen.weights[i];
+            i += 1;
+        }
+        let (low, high) = self.piece(i);
+        low + (high - low) * (rest / seen.weights[i]).min(1.0)
+    }
+
+    /// Density over the area, m⁻², with which a point is sampled.
+    fn density(&self, seen: Option<&Seen>, at: &Surface) -> f64 {
+        let Some(seen) = seen else { return self.area().recip() };
+        let q = local(&self.frame, at.p - self.base);
+        let half = self.arc(&seen.viewer, q.z);
+        let aside = q.y.atan2(q.x) - seen.towards;
+        if !((aside - TAU * (aside / TAU).round()).abs() <= half && half > 0.0) {
+            return 0.0;
+        }
+        let last = 2 * PIECES;
+        let i = (0..last).find(|i| q.z < self.piece(*i).1).unwrap_or(last);
+        let ((low, high), total) = (self.piece(i), seen.weights.iter().sum::<f64>());
+        seen.weights[i] / (total * (high - low) * 2.0 * half * self.radius)
+    }
+
     /// From end to end.
     fn length(&self) -> f64 {
         self.height + 2.0 * self.radius
@@ -257,6 +348,30 @@ pub(super) mod tests {
             }
             let along = c.intersect(&Ray::new(x * reach - z * 9.0, z));
             assert_eq!(along.is_some(), met, "{along:?}");
+        }
+    }
+
+    #[test]
+    fn only_what_is_seen_is_sampled() {
+        let c = capsule(DVec3::ONE, 0.7, 2.0);
+        let at = |x: f64, y: f64, z: f64| place(&c.frame, DVec3::new(x, y, z)) + c.base;
+        for (k, from) in (0..).zip([
+            at(1.0, -1.0, 1.0),
+            at(0.1, 0.2, 5.0),
+            at(0.0, -2.0, -3.0),
+            at(0.9, 0.1, -0.2),
+            at(4.0, 1.0, 3.0),
+        ]) {
+            check_sampling(&c, Some(from), 66 + k);
+            let mut rng = luxel_sdk::sampling::Rng::new(80 + k);
+            let mut faces = 0;
+            for _ in 0..4000 {
+                let Some(s) = c.sample(Some(from), rng.pair()) else { continue };
+                assert!((from - s.surface.p).dot(s.surface.ng) >= -1e-9, "{from}: {:?}", s.surface);
+                faces += 1;
+            }
+            assert!(faces > 3200, "{from}: {faces} of 4000");
+            check_solid_angle(&c, from, 90 + 2 * k);
         }
     }
 

@@ -93,26 +93,30 @@ impl Shape for Cylinder {
         self.side_area() + if self.caps { 2.0 * self.cap_area() } else { 0.0 }
     }
 
-    fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
-        let area = self.area();
-        let (side, cap) = (self.side_area(), self.cap_area());
-        let rest = f64::from(u[0]) * area;
-        let surface = if rest < side || !self.caps {
-            let at = DVec2::new((rest / side - 0.5) * TAU, f64::from(u[1]) * self.height);
-            self.surface_at(SIDE, at)
+    /// Uniform over the area that can be seen, of a solid rod from outside; else over all of it.
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let seen = self.seen_from(from);
+        let side = seen.side(self);
+        let rest = f64::from(u[0]) * seen.area(self);
+        let surface = if rest < side || seen.caps[0] + seen.caps[1] <= 0.0 {
+            let turn = seen.towards + (rest / side - 0.5) * 2.0 * seen.half;
+            let turn = turn - TAU * (turn / TAU).round();
+            self.surface_at(SIDE, DVec2::new(turn, f64::from(u[1]) * self.height))
         } else {
+            let (rest, low) = (rest - side, seen.caps[0]);
             let (face, rest) =
-                if rest - side < cap { (BOTTOM, rest - side) } else { (TOP, rest - side - cap) };
+                if rest < low { (BOTTOM, rest / low) } else { (TOP, (rest - low) / seen.caps[1]) };
             #[expect(clippy::cast_possible_truncation, reason = "a random number again")]
-            let across = (rest / cap) as f32;
+            let across = rest as f32;
             let on_disk = disk_concentric([across.clamp(0.0, 1.0), u[1]]).as_dvec2();
             self.surface_at(face, on_disk.clamp_length_max(1.0) * self.radius)
         };
-        Some(ShapeSample { surface, pdf: area.recip() })
+        let pdf = self.density(&seen, &surface);
+        (pdf > 0.0 && pdf.is_finite()).then_some(ShapeSample { surface, pdf })
     }
 
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        self.area().recip()
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        self.density(&self.seen_from(from), at)
     }
 
     fn is_closed(&self) -> bool {
@@ -125,7 +129,54 @@ impl Shape for Cylinder {
     }
 }
 
+/// What a viewer sees.
+struct Seen {
+    /// Where the viewer stands around the axis, radians, and how far to either side of that the side
+    /// faces it.
+    towards: f64,
+    half: f64,
+    /// Areas of bottom and top, 0 for one that is not seen.
+    caps: [f64; 2],
+}
+
+impl Seen {
+    fn side(&self, of: &Cylinder) -> f64 {
+        2.0 * self.half * of.radius * of.height
+    }
+
+    fn area(&self, of: &Cylinder) -> f64 {
+        self.side(of) + self.caps[0] + self.caps[1]
+    }
+}
+
+/// Shares of the whole area that are as good as nothing: a viewer so near is as good as inside.
+const LEAST: f64 = 1e-6;
+
 impl Cylinder {
+    fn seen_from(&self, from: Option<DVec3>) -> Seen {
+        let cap = if self.caps { self.cap_area() } else { 0.0 };
+        let all = Seen { towards: 0.0, half: PI, caps: [cap; 2] };
+        let Some(from) = from.filter(|_| self.caps) else { return all };
+        let q = self.local(from - self.base);
+        let far = q.truncate().length();
+        let half = if far > self.radius { (self.radius / far).acos() } else { 0.0 };
+        let caps = [q.z < 0.0, q.z > self.height].map(|is_seen| if is_seen { cap } else { 0.0 });
+        let seen = Seen { towards: q.y.atan2(q.x), half, caps };
+        if seen.area(self) > LEAST * self.area() { seen } else { all }
+    }
+
+    /// Density over the area, m⁻², with which a point is sampled.
+    fn density(&self, seen: &Seen, at: &Surface) -> f64 {
+        let n = self.local(at.ng);
+        let is_seen = if n.z.abs() > 0.5 {
+            seen.caps[usize::from(n.z > 0.0)] > 0.0
+        } else {
+            let aside = n.y.atan2(n.x) - seen.towards;
+            (aside - TAU * (aside / TAU).round()).abs() <= seen.half
+        };
+        if is_seen { seen.area(self).recip() } else { 0.0 }
+    }
+
     fn side_area(&self) -> f64 {
         TAU * self.radius * self.height
     }
@@ -196,7 +247,7 @@ impl Cylinder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::testing::{check_convex, check_sampling, check_solid_angle};
+    use crate::shape::testing::{check_convex, check_sampling, check_solid_angle, visible_area};
 
     fn cylinder(base: DVec3, radius: f64, height: f64, caps: bool) -> Cylinder {
         let axis = DVec3::new(2.0, 6.0, -3.0);
@@ -261,6 +312,25 @@ mod tests {
         // Closed, as in a tube one side hides another, which the samples do not see.
         let c = cylinder(DVec3::ZERO, 1.0, 2.0, true);
         check_solid_angle(&c, c.z * 3.0 + c.x * 3.0, 43);
+    }
+
+    #[test]
+    fn only_what_is_seen_of_a_rod_is_sampled() {
+        let c = cylinder(DVec3::ONE, 1.0, 2.0, true);
+        let at = |x: f64, y: f64, z: f64| c.base + c.x * x + c.y * y + c.z * z;
+        // Half of the side at most, by the arccosine of 1/2; a cap; both; and all from inside.
+        let third = TAU / 3.0 * 2.0;
+        for (k, (from, seen)) in (0..).zip([
+            (at(1.2, -1.6, 1.0), third),
+            (at(0.1, 0.2, 5.0), PI),
+            (at(0.0, -2.0, -3.0), third + PI),
+            (at(0.3, 0.2, 0.5), c.area()),
+        ]) {
+            check_sampling(&c, Some(from), 44 + k);
+            let area = visible_area(&c, Some(from), 20_000, 54 + k).mean;
+            assert!((area / seen - 1.0).abs() < 1e-3, "{from}: {area} {seen}");
+        }
+        check_solid_angle(&c, at(1.2, -1.6, 2.5), 45);
     }
 
     #[test]

@@ -9,6 +9,12 @@ use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 use luxel_sdk::sampling::disk_concentric;
 
+use super::ellipse::SphericalEllipse;
+
+/// Area over squared distance from which on the solid angle is worth its arctangents, as of a
+/// rectangle.
+const NEAR: f64 = 0.25;
+
 /// A flat disk, or with `inner_radius` a ring.
 ///
 /// A texture lies on it as on the square around it: its middle at (0.5, 0.5).
@@ -88,17 +94,25 @@ impl Shape for Disk {
         PI * (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
     }
 
-    fn sample(&self, _from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
-        let on_disk = disk_concentric(u).as_dvec2();
-        let part = on_disk.length_squared().min(1.0);
-        let (outer2, inner2) = (self.radius * self.radius, self.inner_radius * self.inner_radius);
-        let r = (inner2 + (outer2 - inner2) * part).sqrt();
-        let at = on_disk.try_normalize().unwrap_or(DVec2::X) * r;
-        Some(ShapeSample { surface: self.surface_at(at), pdf: self.area().recip() })
+    /// Uniform in the solid angle, to a few hundredths, from near enough; over the area from afar, in
+    /// the disk's plane, and of a ring.
+    fn sample(&self, from: Option<DVec3>, u: [f32; 2]) -> Option<ShapeSample> {
+        let seen = self.seen_from(from);
+        let at = match &seen {
+            Some((ellipse, to_centre)) => {
+                let d = ellipse.sample(u.map(f64::from));
+                let q = d * (self.z.dot(*to_centre) / self.z.dot(d)) - *to_centre;
+                DVec2::new(self.x.dot(q), self.y.dot(q)).clamp_length_max(self.radius)
+            }
+            None => self.by_area(u),
+        };
+        let surface = self.surface_at(at);
+        let pdf = self.density(seen.as_ref(), surface.p);
+        (pdf > 0.0 && pdf.is_finite()).then_some(ShapeSample { surface, pdf })
     }
 
-    fn pdf(&self, _from: Option<DVec3>, _at: &Surface) -> f64 {
-        self.area().recip()
+    fn pdf(&self, from: Option<DVec3>, at: &Surface) -> f64 {
+        self.density(self.seen_from(from).as_ref(), at.p)
     }
 
     fn normal_derivatives(&self, _hit: &Hit, _at: &Surface) -> Option<NormalDerivatives> {
@@ -107,6 +121,31 @@ impl Shape for Disk {
 }
 
 impl Disk {
+    /// What a viewer sees, and where the middle is from there.
+    fn seen_from(&self, from: Option<DVec3>) -> Option<(SphericalEllipse, DVec3)> {
+        let to_centre = self.center - from?;
+        if self.inner_radius > 0.0 || self.area() < NEAR * to_centre.length_squared() {
+            return None;
+        }
+        Some((SphericalEllipse::new(to_centre, self.z, self.radius)?, to_centre))
+    }
+
+    fn by_area(&self, u: [f32; 2]) -> DVec2 {
+        let on_disk = disk_concentric(u).as_dvec2();
+        let part = on_disk.length_squared().min(1.0);
+        let (outer2, inner2) = (self.radius * self.radius, self.inner_radius * self.inner_radius);
+        let r = (inner2 + (outer2 - inner2) * part).sqrt();
+        on_disk.try_normalize().unwrap_or(DVec2::X) * r
+    }
+
+    /// Density over the area, m⁻², of a point that is sampled by a viewer who sees this.
+    fn density(&self, seen: Option<&(SphericalEllipse, DVec3)>, p: DVec3) -> f64 {
+        let Some((ellipse, to_centre)) = seen else { return self.area().recip() };
+        let to = *to_centre + (p - self.center);
+        let d2 = to.length_squared();
+        ellipse.density(to) * self.z.dot(to).abs() / (d2.sqrt() * d2)
+    }
+
     fn surface_at(&self, at: DVec2) -> Surface {
         Surface {
             p: self.center + (self.x * at.x + self.y * at.y),
@@ -123,7 +162,9 @@ impl Disk {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::testing::{check_convex, check_sampling, check_solid_angle};
+    use crate::shape::testing::{
+        check_convex, check_sampling, check_solid_angle, solid_angle, visible_area,
+    };
 
     fn disk(center: DVec3, normal: DVec3, radius: f64, inner_radius: f64) -> Disk {
         let zero = DVec3::ZERO;
@@ -160,6 +201,29 @@ mod tests {
             let r = p.length();
             assert!((1.0 - 1e-15..=2.0 + 1e-15).contains(&r), "{r}");
         }
+    }
+
+    #[test]
+    fn a_near_disk_is_sampled_by_its_solid_angle() {
+        let d = disk(DVec3::ONE, DVec3::new(1.0, 2.0, -0.5), 0.8, 0.0);
+        for (k, from) in (0..).zip([
+            d.center + d.z * 0.3 + d.x * 0.2,
+            d.center + d.z * 0.05 - d.y * 0.9,
+            d.center - d.z * 1.1 + d.x * 0.7,
+            d.center + d.z * 1e-3 + d.y * 0.6,
+            d.center + d.x * 2.0,
+            d.center + d.z * 9.0,
+        ]) {
+            check_sampling(&d, Some(from), 24 + k);
+            let area = visible_area(&d, Some(from), 100_000, 34 + k);
+            let off = (area.mean - d.area()).abs();
+            assert!(off <= 5.0 * area.standard_error() + 1e-9, "{from}: {}", area.mean);
+        }
+        // What a lamp near it gives is known from one sample, to what the polygon leaves.
+        let from = d.center + d.z * 0.3 + d.x * 0.5;
+        let near = solid_angle(&d, from, 10_000, 44);
+        let spread = near.standard_error() * 100.0 / near.mean;
+        assert!(spread < 0.02, "{spread}");
     }
 
     #[test]

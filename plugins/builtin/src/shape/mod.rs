@@ -8,6 +8,7 @@ mod csg;
 mod curves;
 mod cylinder;
 mod disk;
+mod ellipse;
 mod gyroid_wall;
 mod heightfield;
 mod implicit;

@@ -21,6 +21,9 @@ const STEP: f64 = 1e-4;
 /// their own radii. (5·1e-4)² times four hundred.
 const BEYOND: f64 = 1e-4;
 
+/// The same of terms beyond the first, where one side alone is looked at: 5·1e-4 times twenty.
+const BESIDE: f64 = 1e-2;
+
 /// What a few dozen operations round.
 const ROUNDS: f64 = 256.0 * f64::EPSILON;
 
@@ -78,13 +81,18 @@ impl Look<'_> {
             let carried = turns.carried(at.ns, &transform);
             let turn = if transform.swaps_handedness() { -1.0 } else { 1.0 };
             let NormalDerivatives { dn_du, dn_dv } = carried;
-            let predicted = dn_du * moved.x + dn_dv * (turn * moved.y);
-            let off = (ns(&b) - ns(&a) - predicted).length();
-            let size = dn_du.length() * moved.x.abs() + dn_dv.length() * moved.y.abs();
             // The transforms stretch what rounds by their condition of four.
-            let slack = BEYOND * size + 4.0 * rounds * (1.0 + dn_du.length() + dn_dv.length());
+            let least = 4.0 * rounds * (1.0 + dn_du.length() + dn_dv.length());
+            let off = |from: &Surface, to: &Surface, beyond: f64| {
+                let moved = to.uv - from.uv;
+                let predicted = dn_du * moved.x + dn_dv * (turn * moved.y);
+                let size = dn_du.length() * moved.x.abs() + dn_dv.length() * moved.y.abs();
+                (ns(to) - ns(from) - predicted).length() / (beyond * size + least)
+            };
+            // Where a blend begins, the normal turns at another rate beyond: one side is as told.
+            let off = off(&a, &b, BEYOND).min(off(&a, at, BESIDE)).min(off(at, &b, BESIDE));
             let here = || format!("{}: {hit:?}, over {moved}, {transform:?}", self.at(ray));
-            judge.within(TURNS, off / slack, 1.0, here);
+            judge.within(TURNS, off, 1.0, here);
         }
     }
 

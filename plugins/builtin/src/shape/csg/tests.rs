@@ -201,6 +201,66 @@ fn faces_that_lie_in_each_other_leave_neither_skins_nor_walls() {
     }
 }
 
+/// Two balls that overlap, as one shape with all of their crossings.
+struct Twins([Sphere; 2]);
+
+impl Shape for Twins {
+    fn bounds(&self) -> Bounds3 {
+        self.0[0].bounds().union(self.0[1].bounds())
+    }
+    fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let hit = |i: usize| Some(Hit { face: u32::from(i == 1), ..self.0[i].intersect(ray)? });
+        [hit(0), hit(1)].into_iter().flatten().min_by(|a, b| a.t.total_cmp(&b.t))
+    }
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.0[hit.face as usize].surface(ray, hit)
+    }
+    fn area(&self) -> f64 {
+        f64::INFINITY
+    }
+    fn is_closed(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_part_that_crosses_itself_is_what_is_inside_of_any_of_its_pieces() {
+    let twins = Twins([ball(-0.3, 0.0, 0.6), ball(0.3, 0.1, 0.5)]);
+    let block = Box { center: DVec3::Y * 0.4, size: DVec3::new(3.0, 0.8, 0.7) };
+    let joined = pair(Op::Union, &twins.0[0], &twins.0[1], 0.0);
+    let mut rng = Rng::new(89);
+    for op in OPS {
+        let solids = [pair(op, &twins, &block, 0.0), pair(op, &block, &twins, 0.0)];
+        let truths = [pair(op, &joined, &block, 0.0), pair(op, &block, &joined, 0.0)];
+        let mut n = 0;
+        for i in 0..3000 {
+            let d = direction(&mut rng);
+            // From without, from within and from the overlap.
+            let far = [4.0, 0.0, 0.5][i % 3];
+            let o = direction(&mut rng) * (0.6 * rng.f64()) - d * far;
+            for (solid, truth) in solids.iter().zip(&truths) {
+                let (found, truth) =
+                    (crossings(solid, &Ray::new(o, d)), crossings(truth, &Ray::new(o, d)));
+                assert_eq!(found.len(), truth.len(), "{op:?}: {o} {d}");
+                for (found, truth) in found.iter().zip(&truth) {
+                    assert!(found.p.distance(truth.p) < 1e-12, "{op:?}: {o} {d}");
+                    assert!(found.ng.distance(truth.ng) < 1e-12, "{op:?}: {o} {d}");
+                }
+                n += found.len();
+            }
+        }
+        assert!(n > 3000, "{n}");
+    }
+}
+
+#[test]
+fn a_ray_that_touches_one_part_is_not_inside_of_it_before() {
+    let (a, b) = (ball(0.0, 0.0, 2.0), ball(3.0, 0.0, 0.5));
+    let ray = Ray::new(DVec3::new(-9.0, 0.3, 0.4), DVec3::X);
+    let hit = pair(Op::Union, &a, &b, 0.0).intersect(&ray).unwrap();
+    assert!(hit.t < 9.0, "{hit:?}");
+}
+
 #[test]
 fn a_ray_that_starts_inside_meets_the_inner_side() {
     let (a, b) = (ball(0.0, 0.0, 1.0), ball(1.0, 0.0, 1.0));

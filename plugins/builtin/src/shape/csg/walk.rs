@@ -1,9 +1,11 @@
 //! Sharp solids: a ray from crossing to crossing of both parts.
 //!
 //! Each part tells its own crossings, one after the other: a ray that goes on from one starts beyond
-//! what that crossing's error bound leaves open, so that it is not met again. Whether a ray starts
-//! inside a part, the outer normal of the first crossing says. The whole is crossed where what is
-//! inside of both parts changes what is inside of it.
+//! what that crossing's error bound leaves open, so that it is not met again. How often a ray has gone
+//! into a part is counted, so that strands and meshes may cross themselves: it is outside when it has
+//! left it as often. Where a ray starts in a part that knows its distance, and so has but one inside,
+//! the outer normal of the first crossing says; in another one, all that lies ahead does. The whole is
+//! crossed where what is inside of both parts changes what is inside of it.
 
 use glam::{DVec2, DVec3};
 use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeRef, Surface};
@@ -15,6 +17,7 @@ use super::{Op, Pair};
 const MOST: usize = 4096;
 
 /// A crossing of one part.
+#[derive(Clone, Copy)]
 struct Crossing {
     /// `t` along the ray that is walked.
     hit: Hit,
@@ -26,7 +29,9 @@ struct Crossing {
 /// A part along the ray.
 struct Follower<'s> {
     part: ShapeRef<'s>,
-    inside: bool,
+    /// How often it is inside now, and after its next crossing.
+    depth: u32,
+    then: u32,
     next: Option<Crossing>,
 }
 
@@ -34,30 +39,67 @@ impl<'s> Follower<'s> {
     fn new(part: ShapeRef<'s>, ray: &Ray) -> Self {
         let whole = Ray { t_max: f64::INFINITY, ..*ray };
         let next = crossing(&part, &whole, 0.0);
-        // Nothing ahead: outside.
-        let inside = next.as_ref().is_some_and(|next| !next.enters);
-        Self { part, inside, next }
+        let mut found = Self { part, depth: 0, then: 0, next };
+        if found.next.is_some() && part.bounds().contains(ray.o) {
+            found.depth = found.deep(&whole, None);
+        }
+        found.look_ahead(ray);
+        found
     }
 
     fn t(&self) -> f64 {
         self.next.as_ref().map_or(f64::INFINITY, |next| next.hit.t)
     }
 
-    /// Whether it will be inside after its next crossing.
-    fn after(&self) -> bool {
-        self.next.as_ref().map_or(self.inside, |next| next.enters)
+    fn is_inside(&self) -> bool {
+        self.depth > 0
     }
 
     /// Past the next crossing.
     fn advance(&mut self, ray: &Ray) {
         let Some(passed) = self.next.take() else { return };
-        self.inside = passed.enters;
-        let Surface { p, p_err, ng, .. } = passed.surface;
-        let o = offset_origin(p, p_err, ng, ray.d);
-        let t = (o - ray.o).dot(ray.d) / ray.d.length_squared();
-        // The ray that is walked goes on, however the point was rounded.
-        self.next = crossing(&self.part, &Ray::new(o, ray.d), t.max(passed.hit.t));
+        self.next = following(&self.part, &passed, ray);
+        // Nothing ahead: outside.
+        self.depth = if self.next.is_some() { self.then } else { 0 };
+        self.look_ahead(ray);
     }
+
+    /// How deep it will be after the next crossing. Where it was entered twice and left once, it is
+    /// made sure that it was not left unseen.
+    fn look_ahead(&mut self, ray: &Ray) {
+        self.then = match &self.next {
+            Some(next) if next.enters => self.depth + 1,
+            Some(next) if self.depth > 1 => self.deep(ray, Some(next)),
+            _ => 0,
+        };
+    }
+
+    /// How deep a ray is where it starts, or after a crossing: it leaves the part so much more often
+    /// than it goes into it.
+    fn deep(&self, ray: &Ray, after: Option<&Crossing>) -> u32 {
+        let first = after.map_or(self.next, |passed| following(&self.part, passed, ray));
+        let Some(first) = first else { return 0 };
+        let least = u32::from(!first.enters);
+        if self.part.distance(first.surface.p).is_some() {
+            return least;
+        }
+        let (mut left, mut next) = (0i32, Some(first));
+        for _ in 0..MOST {
+            let Some(passed) = next else { break };
+            left += if passed.enters { -1 } else { 1 };
+            next = following(&self.part, &passed, ray);
+        }
+        left.max(0).unsigned_abs().max(least)
+    }
+}
+
+/// The crossing after another one.
+fn following(part: &ShapeRef<'_>, passed: &Crossing, ray: &Ray) -> Option<Crossing> {
+    let Surface { p, p_err, ng, .. } = passed.surface;
+    let o = offset_origin(p, p_err, ng, ray.d);
+    let t = (o - ray.o).dot(ray.d) / ray.d.length_squared();
+    // The ray that is walked goes on, however the point was rounded.
+    crossing(part, &Ray::new(o, ray.d), t.max(passed.hit.t))
 }
 
 /// The first crossing of a ray that starts at `start` along the one that is walked.
@@ -102,11 +144,14 @@ pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
             (Some(next), Some(other)) if coincide(next, other, ray) => (true, true),
             _ => (a.t() <= b.t(), b.t() < a.t()),
         };
-        let after =
-            (if pass_a { a.after() } else { a.inside }, if pass_b { b.after() } else { b.inside });
-        if pair.op.holds(a.inside, b.inside) != pair.op.holds(after.0, after.1) {
+        let inside = (a.is_inside(), b.is_inside());
+        let after = (
+            if pass_a { a.then > 0 } else { inside.0 },
+            if pass_b { b.then > 0 } else { inside.1 },
+        );
+        if pair.op.holds(inside.0, inside.1) != pair.op.holds(after.0, after.1) {
             // Of two that coincide the first that turns over.
-            let of_a = pass_a && after.0 != a.inside;
+            let of_a = pass_a && after.0 != inside.0;
             let (met, part) = if of_a { (&a, 0) } else { (&b, 1) };
             let hit = met.next.as_ref()?.hit;
             let hit = Hit { face: face_of(part, hit.face)?, ..hit };
@@ -114,7 +159,7 @@ pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
         }
         if pass_a {
             a.advance(ray);
-            let gone = a.next.is_none() && !a.inside;
+            let gone = a.next.is_none() && !a.is_inside();
             if pair.op != Op::Union && gone {
                 return None;
             }

@@ -17,7 +17,7 @@ const MUCH: usize = 60 << 20;
 
 /// All of them.
 pub(crate) fn all() -> impl Iterator<Item = Attack> {
-    let sorts: [fn() -> Vec<Attack>; 2] = [evaluated, files];
+    let sorts: [fn() -> Vec<Attack>; 4] = [evaluated, repeated, copied, files];
     sorts.into_iter().flat_map(|sort| sort()).chain(READ.into_iter().map(|make| make()))
 }
 
@@ -62,6 +62,56 @@ fn evaluated() -> Vec<Attack> {
         ),
         attack("definitions", lines(1_000_000, |i| format!("let a{i} = 1\n"))),
         attack("unknown names", lines(500_000, |i| format!("let a{i} = nope{i}\n"))),
+    ]
+}
+
+/// What costs much each time that it is done, and what is wrong each time.
+fn repeated() -> Vec<Attack> {
+    let turns = |name, before: &str, each: &str| {
+        attack(name, format!("{before}\nfor i in 0..1000000000 {{ {each} }}"))
+    };
+    let text = format!("let a = \"{}\"", "x".repeat(512 << 10));
+    let moves = "let l = [for i in 0..100000 => move((0, 0, 1) m)]";
+    let pairs = "let l = [for i in 0..100000 => (i * 1 nm, 1)]";
+    let names = "let l = [for i in 0..100000 => \"a\"] fn f(names: string[]) = 1";
+    let metal = format!("let a = metal(\"{}\")", "A".repeat(1024));
+    let file = turns("spectra of a file", "", "let b = spectrum.file(\"a.csv\")");
+    vec![
+        turns("compared texts", &text, "let b = a == a"),
+        turns("long transforms", moves, "shape sphere { radius = 1 m, transform = l }"),
+        turns("long arguments", names, "let a = f(l)"),
+        attack("long spectra", format!("{pairs}\nlet m = [for i in 0..1000 => spectrum(l)]")),
+        Attack { files: vec![("a.csv".to_owned(), "400 0.1\n700 0.5\n".to_owned())], ..file },
+        turns("a wrong metal", "", &metal),
+        turns("a lacking argument", "", "let a = metal()"),
+        turns("a wrong sum", "", "let a = 5 m + 3 deg"),
+        turns("a wrong parameter", "", "shape sphere { radus = 5 m }"),
+    ]
+}
+
+/// What is kept as often as it is said.
+fn copied() -> Vec<Attack> {
+    let place = |i: usize| {
+        let each = format!("place g{} {{ transform = move((i, 0, 0) m) }}", i.wrapping_sub(1));
+        match i {
+            0 => "let g0 = shape sphere { radius = 1 m }\n".to_owned(),
+            i => format!("let g{i} = group {{ for i in 0..10 {{ {each} }} }}\n"),
+        }
+    };
+    let amended = |i: usize| match i {
+        0 => "let m0 = material diffuse { reflectance = 0.5 }\n".to_owned(),
+        i => format!("let m{i} = m{} with {{ reflectance = 0.4 }}\n", i - 1),
+    };
+    let labelled = "shape sphere \"a\" { radius = 1 m }";
+    vec![
+        attack("groups of groups", lines(8, place) + "place g7"),
+        attack("chained copies", lines(400_000, amended)),
+        attack("parameters", lines(900_000, |i| format!("param p{i}: int = 1\n"))),
+        attack("one label", format!("{labelled}\n").repeat(1_200_000)),
+        attack(
+            "sets of many",
+            format!("for i in 0..900000 {{ {labelled} }}\n") + &"set a.radius = 2 m\n".repeat(400),
+        ),
     ]
 }
 

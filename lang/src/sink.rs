@@ -54,10 +54,10 @@ impl Sink {
     }
 
     /// Keeps a diagnostic, unless the same code was told of the same place: a loop makes each
-    /// mistake once.
-    pub(crate) fn push(&mut self, mut diagnostic: Diagnostic) {
+    /// mistake once. Whether it was new.
+    pub(crate) fn push(&mut self, mut diagnostic: Diagnostic) -> bool {
         if !self.seen.insert((diagnostic.code, diagnostic.span())) {
-            return;
+            return false;
         }
         self.errors += usize::from(diagnostic.is_error());
         let sort = usize::from(!diagnostic.is_error());
@@ -68,6 +68,7 @@ impl Sink {
         } else {
             self.dropped[sort] += 1;
         }
+        true
     }
 
     /// An empty one of the same kind, for a part of the text.
@@ -97,7 +98,9 @@ impl Sink {
         self.errors += part.errors - kept;
         self.dropped[0] += part.dropped[0];
         self.dropped[1] += part.dropped[1];
-        part.list.into_iter().for_each(|found| self.push(found));
+        for found in part.list {
+            self.push(found);
+        }
     }
 
     /// Whether nothing was told.

@@ -40,6 +40,7 @@ impl Scene {
             expectations: self.expectations.iter().map(expected).collect(),
             required: self.required.clone(),
             dropped: self.dropped.clone(),
+            most_instances: self.most_instances,
             own: nodes.iter().map(|old| self.own[*old as usize]).collect(),
         }
     }

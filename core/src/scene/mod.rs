@@ -39,6 +39,9 @@ pub use print::print;
 pub use setting::Setting;
 pub use value::{Hash, Value};
 
+/// Most placements that a scene may come to, if nobody allows more: each takes half a kilobyte.
+pub const MOST_INSTANCES: usize = 2_000_000;
+
 /// Parameters of a film that no sample depends on.
 const SHOWN: [&str; 3] = ["exposure", "display", "file"];
 
@@ -163,6 +166,8 @@ pub struct Scene {
     required: BTreeSet<Feature>,
     /// Left out though the scene may require it.
     dropped: BTreeSet<Feature>,
+    /// Most placements that it may come to, if not as many as usual.
+    most_instances: Option<usize>,
     /// Of each node the hash without what every node of its kind may have.
     own: Vec<Hash>,
 }
@@ -176,6 +181,16 @@ impl Scene {
     /// The group of that name. Names come from this scene.
     pub fn group(&self, id: GroupId) -> &Group {
         &self.groups[id.0 as usize]
+    }
+
+    /// Lets it come to so many placements, where memory is no matter. Changes no bit of a picture.
+    pub fn allow_instances(&mut self, most: usize) {
+        self.most_instances = Some(most);
+    }
+
+    /// Most placements that it may come to.
+    pub fn most_instances(&self) -> usize {
+        self.most_instances.unwrap_or(MOST_INSTANCES)
     }
 
     /// Has a feature modelled, whether the scene requires it or not. Changes no bit of a picture.

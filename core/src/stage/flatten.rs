@@ -20,7 +20,7 @@ pub(super) struct Flat {
 /// Most steps of a pose that moves: each costs time for every ray that comes near.
 const MOST_STEPS: usize = 256;
 
-/// Most placements that a stage holds.
+/// Most placements that a stage can hold, whatever the scene is allowed.
 const LIMIT: usize = 100_000_000;
 
 const _: () = assert!(LIMIT <= TopBvh::MOST, "a tree numbers every placement");
@@ -30,7 +30,7 @@ const _: () = assert!(LIMIT <= TopBvh::MOST, "a tree numbers every placement");
 /// # Errors
 /// E0501 when there are too many.
 pub(super) fn flatten(scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
-    within(LIMIT, scene)
+    within(scene.most_instances().min(LIMIT), scene)
 }
 
 /// The same with at most `limit`.
@@ -73,7 +73,9 @@ impl Walk<'_> {
             }
             if self.out.len() > self.limit {
                 let message = format!("more than {} instances", self.limit);
-                return Err(Box::new(Diagnostic::error("E0501", item.span, message)));
+                let told = Diagnostic::error("E0501", item.span, message);
+                let advice = format!("`--budget instances={:.0e}` allows more", 2 * self.limit);
+                return Err(Box::new(if self.limit < LIMIT { told.help(advice) } else { told }));
             }
         }
         Ok(())

@@ -89,7 +89,9 @@ impl Document {
             piece.read.diagnostics.iter().map(|found| placed(found.clone(), piece.start))
         });
         let around = self.head.iter().chain(&self.faults).cloned();
-        around.chain(own).for_each(|found| sink.push(found));
+        for found in around.chain(own) {
+            sink.push(found);
+        }
         sink.absorb(Sink::clone(&self.names));
         sink.finish()
     }

@@ -20,6 +20,8 @@ pub(super) struct Labels {
     /// Objects by label; `None` for one with a mistake, or out of the scene by `@off`.
     pub(super) objects: BTreeMap<Arc<str>, Vec<Option<Rc<ObjectValue>>>>,
     pub(super) sets: Vec<Set>,
+    /// Whether something may be set.
+    keeps: bool,
 }
 
 /// `set label.field = value`.
@@ -30,9 +32,15 @@ pub(super) struct Set {
 }
 
 impl Labels {
+    /// Those of a file of this text: objects are kept only where some `set` may change them.
+    pub(super) fn of(text: &str) -> Self {
+        let has = |word: &str| memchr::memmem::find(text.as_bytes(), word.as_bytes()).is_some();
+        Self { keeps: ["set", "include", "import"].into_iter().any(has), ..Self::default() }
+    }
+
     /// Notes an emitted object.
     pub(super) fn add(&mut self, label: Option<&Name>, value: &Value) {
-        let Some(label) = label else { return };
+        let Some(label) = label.filter(|_| self.keeps) else { return };
         let object = match value {
             Value::Object(object) => Some(object.clone()),
             _ => None,
@@ -128,10 +136,10 @@ impl Evaluator<'_> {
         let (instances, depth) = (open.instances, open.depth);
         if instances > limit {
             let message = format!("more than {limit} things stand in the scene");
-            self.over_budget("E0501", span, message);
+            self.over_budget("E0501", span, message, "instances");
         } else if depth >= self.budgets.nesting {
             let message = format!("groups stand in one another more than {depth} deep");
-            self.over_budget("E0507", span, message);
+            self.over_budget("E0507", span, message, "nesting");
         }
     }
 
@@ -140,7 +148,7 @@ impl Evaluator<'_> {
         self.placements += 1;
         if self.placements > self.budgets.nodes && !self.stopped {
             let message = format!("the scene has more than {} nodes", self.budgets.nodes);
-            self.over_budget("E0501", span, message);
+            self.over_budget("E0501", span, message, "nodes");
         }
         !self.stopped
     }

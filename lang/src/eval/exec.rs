@@ -113,7 +113,7 @@ impl Evaluator<'_> {
         let n_names = env.define(&name.text, value);
         if n_names > self.budgets.names && !self.stopped {
             let message = format!("a block defines more than {} names", self.budgets.names);
-            self.over_budget("E0511", name.span, message);
+            self.over_budget("E0511", name.span, message, "names");
         }
     }
 
@@ -209,6 +209,7 @@ impl Evaluator<'_> {
         let Some(elements) = self.elements(value, over.span) else { return };
         self.note_index(index, &elements);
         self.loops.push(item.span);
+        let repeats = self.repeats;
         let mut count = 0.0;
         let mut inner = env.inner();
         while let Some(element) = elements.get(count) {
@@ -219,7 +220,7 @@ impl Evaluator<'_> {
             inner.define(&item.text, element);
             count += 1.0;
             self.block(block, &inner, body);
-            if !self.tick(2, over.span) {
+            if !self.goes_on(repeats, 2, over.span) {
                 break;
             }
         }

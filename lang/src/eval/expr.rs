@@ -257,6 +257,7 @@ impl Evaluator<'_> {
         }
         let mut out = vec![];
         self.loops.push(span);
+        let repeats = self.repeats;
         let mut index = 0.0;
         let mut inner = env.inner();
         while let Some(element) = elements.get(index) {
@@ -277,9 +278,9 @@ impl Evaluator<'_> {
             }
             if out.len() > self.budgets.list {
                 let message = format!("a list of more than {} elements", self.budgets.list);
-                self.over_budget("E0503", span, message);
+                self.over_budget("E0503", span, message, "list");
             }
-            if !self.tick(1, span) {
+            if !self.goes_on(repeats, 1, span) {
                 break;
             }
         }
@@ -290,7 +291,8 @@ impl Evaluator<'_> {
         let made = out.len() * size_of::<Value>();
         let list = Value::list(out, Form::List);
         if let Value::Numbers(packed) = &list {
-            self.held -= made.saturating_sub(packed.data.len() * size_of::<f64>()).min(self.held);
+            let spared = made.saturating_sub(packed.data.len() * size_of::<f64>());
+            self.held.set(self.held.get().saturating_sub(spared));
         }
         list
     }
@@ -330,7 +332,7 @@ impl Evaluator<'_> {
 }
 
 /// Elements from which on a list is counted, whatever is in it.
-const LARGE: usize = 64;
+pub(super) const LARGE: usize = 64;
 
 /// What a loop runs over.
 pub(super) enum Elements {

@@ -50,7 +50,14 @@ impl Evaluator<'_> {
                 Some(Given::Path(field.file.folder.join(&**text)))
             }
             Value::Text(text) => Some(Given::Text(text.clone())),
-            Value::Numbers(n) => Some(Given::Numbers(n.data.clone(), n.dimension)),
+            Value::Numbers(n) => {
+                // Each is looked at, and may be copied into other units.
+                let is_copied = n.dimension.is_none() && !param.unit.is_empty() && n.data.len() > 3;
+                let bytes = if is_copied { n.data.len() * size_of::<f64>() } else { 0 };
+                let is_within =
+                    self.tick(n.data.len() as u64 / 16, field.span) && self.hold(bytes, field.span);
+                is_within.then(|| Given::Numbers(n.data.clone(), n.dimension))
+            }
             Value::Items(items) => self.given_items(param, &items.items, field),
             Value::Color(color, dimension) => Some(Given::Color(color.clone(), *dimension)),
             Value::Look(look) => Some(Given::Look(**look)),
@@ -78,6 +85,9 @@ impl Evaluator<'_> {
 
     /// A vector with bare zeros, or a table whose rows are vectors.
     fn given_items(&mut self, param: &Param, items: &[Value], field: &FieldValue) -> Option<Given> {
+        if !self.tick(items.len() as u64, field.span) {
+            return None;
+        }
         if let Some((data, dimension)) = with_zeros(items) {
             return Some(Given::Numbers(data.into(), dimension));
         }

@@ -9,6 +9,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span, near};
 use luxel_core::files::FileError;
 use luxel_sdk::params::{Dimension, Unit};
 
+use super::emit::Labels;
 use super::env::{Env, File, Override};
 use super::exec::{Body, Place};
 use super::resolve::resolve;
@@ -43,6 +44,7 @@ impl Evaluator<'_> {
             return;
         };
         self.chain.push((canonical, None));
+        self.labels = Labels::of(&text);
         if let Some(declared) = self.declared(&text, source, set) {
             self.run_in_turns((&text, source), path, declared, set);
         } else {
@@ -65,12 +67,14 @@ impl Evaluator<'_> {
         let limit = self.budgets.file_bytes;
         let total = self.bytes_read.saturating_add(bytes.len());
         if bytes.len() > limit || total > self.budgets.total_bytes {
-            let message = if bytes.len() > limit {
-                format!("{name} has {} bytes; the limit is {limit}", bytes.len())
+            let (message, budget) = if bytes.len() > limit {
+                let message = format!("{name} has {} bytes; the limit is {limit}", bytes.len());
+                (message, "file_bytes")
             } else {
-                format!("all scene files have more than {} bytes", self.budgets.total_bytes)
+                let limit = self.budgets.total_bytes;
+                (format!("all scene files have more than {limit} bytes"), "total_bytes")
             };
-            self.tell(placed("E0504", from, message));
+            self.tell(placed("E0504", from, message).help(self.budgets.allows(budget)));
             return None;
         }
         self.bytes_read = total;
@@ -192,13 +196,14 @@ impl Evaluator<'_> {
         if self.chain.len() > self.budgets.include_depth {
             let message =
                 format!("files include one another more than {} deep", self.budgets.include_depth);
-            self.poison("E0505", name.span, message);
+            let found = Diagnostic::error("E0505", name.span, message);
+            self.tell(found.help(self.budgets.allows("include_depth")));
             return None;
         }
         self.includes += 1;
         if self.includes > self.budgets.includes {
             let message = format!("files are included more than {} times", self.budgets.includes);
-            self.over_budget("E0505", name.span, message);
+            self.over_budget("E0505", name.span, message, "includes");
             return None;
         }
         if let Some(read) = self.read.get(&canonical) {

@@ -32,6 +32,7 @@ mod unknown;
 pub(crate) mod types;
 mod value;
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -40,15 +41,16 @@ use std::sync::Arc;
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_core::files::{FileError, Files};
 use luxel_core::registry::Registry;
-use luxel_core::scene::{Group, NodeId, Scene};
+use luxel_core::scene::{Color, Group, NodeId, Scene};
 use luxel_sdk::kind::Kind;
 
 #[cfg(test)]
 pub(crate) use self::resolve::resolve;
 
+use self::builtins::SpectrumFile;
 use self::emit::Labels;
 use self::include::ReadFile;
-use self::value::{Module, Value};
+use self::value::{Held, Module, Value};
 use crate::budgets::Budgets;
 use crate::sink::Sink;
 use crate::{Loaded, ParamInfo, Settings, Unloaded};
@@ -98,8 +100,10 @@ struct Evaluator<'a> {
     stopped: bool,
     /// Where a budget was spent, if one was.
     spent: Option<Span>,
-    /// Bytes of lists and records that were made so far.
-    held: usize,
+    /// Bytes of lists and records that were made so far, and of objects that can still be named.
+    held: Rc<Cell<usize>>,
+    /// How often a mistake was made that had been told.
+    repeats: usize,
     bytes_read: usize,
     /// Files included or imported so far.
     includes: usize,
@@ -110,6 +114,8 @@ struct Evaluator<'a> {
     /// Files that were read, by canonical path.
     read: BTreeMap<PathBuf, Rc<ReadFile>>,
     imported: BTreeMap<PathBuf, Rc<Module>>,
+    /// Spectra that were read from files.
+    spectra: BTreeMap<SpectrumFile, Color>,
     /// The files that are being evaluated, and where each was asked for.
     chain: Vec<(PathBuf, Option<Span>)>,
     /// The loops that are running.
@@ -117,6 +123,8 @@ struct Evaluator<'a> {
     labels: Labels,
     /// The names of the classes that objects have.
     classes: BTreeMap<&'static str, Arc<str>>,
+    /// The label that a node was given last.
+    last_label: Arc<str>,
     /// Where the camera, film, … were given.
     slots: Vec<(Kind, Span)>,
     has_asset: bool,
@@ -132,6 +140,12 @@ struct Evaluator<'a> {
     /// What each statement of a large root file came to, if that is wanted.
     record: Option<again::Record>,
 }
+
+/// Steps that a mistake counts that had been told: it is put into words all the same.
+const TOLD: u64 = 50;
+
+/// How often a loop may make mistakes that had been told.
+const REPEATS: usize = 1000;
 
 /// A group that is being filled.
 #[derive(Default)]
@@ -165,17 +179,20 @@ impl<'a> Evaluator<'a> {
             placements: 0,
             stopped: false,
             spent: None,
-            held: 0,
+            held: Rc::default(),
+            repeats: 0,
             bytes_read: 0,
             includes: 0,
             n_reads: 0,
             n_foreseen: 0,
             read: BTreeMap::new(),
             imported: BTreeMap::new(),
+            spectra: BTreeMap::new(),
             chain: vec![],
             loops: vec![],
             labels: Labels::default(),
             classes: BTreeMap::new(),
+            last_label: Arc::default(),
             slots: vec![],
             has_asset: false,
             damaged: false,
@@ -195,8 +212,17 @@ impl<'a> Evaluator<'a> {
 
     /// Keeps a diagnostic; too many end the evaluation.
     fn tell(&mut self, diagnostic: Diagnostic) {
-        self.sink.push(diagnostic);
+        let is_error = diagnostic.is_error();
+        if !self.sink.push(diagnostic) {
+            self.repeats += usize::from(is_error);
+            self.steps = self.steps.saturating_add(TOLD);
+        }
         self.stopped |= self.sink.is_full();
+    }
+
+    /// How many mistakes were made so far, told or not.
+    fn mistakes(&self) -> usize {
+        self.sink.errors() + self.repeats
     }
 
     /// Tells an error and gives poison.
@@ -210,7 +236,7 @@ impl<'a> Evaluator<'a> {
         self.steps = self.steps.saturating_add(work);
         if self.steps > self.budgets.steps && !self.stopped {
             let message = format!("evaluation takes more than {} steps", self.budgets.steps);
-            self.over_budget("E0502", span, message);
+            self.over_budget("E0502", span, message, "steps");
         }
         self.stopped |= self.sink.is_stopped();
         !self.stopped
@@ -218,24 +244,39 @@ impl<'a> Evaluator<'a> {
 
     /// Counts memory that a value will hold; `false` when there may be no more.
     fn hold(&mut self, bytes: usize, span: Span) -> bool {
-        self.held = self.held.saturating_add(bytes);
-        if self.held > self.budgets.value_bytes && !self.stopped {
+        self.held.set(self.held.get().saturating_add(bytes));
+        if self.held.get() > self.budgets.value_bytes && !self.stopped {
             let limit = self.budgets.value_bytes;
-            let message = format!("lists and records hold more than {limit} bytes");
-            self.over_budget("E0503", span, message);
+            let message = format!("lists, records and objects hold more than {limit} bytes");
+            self.over_budget("E0503", span, message, "value_bytes");
         }
         !self.stopped
     }
 
+    /// The memory of an object with so many fields, counted as long as it can be named.
+    fn hold_object(&mut self, n_fields: usize, span: Span) -> Held {
+        let held = Held::of(n_fields, &self.held);
+        self.hold(0, span);
+        held
+    }
+
     /// Tells that a budget is spent, with the loops that are running, and stops.
-    fn over_budget(&mut self, code: &'static str, span: Span, message: String) {
+    fn over_budget(&mut self, code: &'static str, span: Span, message: String, budget: &str) {
         let place = self.loops.last().copied().unwrap_or(span);
         let mut diagnostic = Diagnostic::error(code, place, message);
         for outer in self.loops.iter().rev().skip(1).take(4) {
             diagnostic = diagnostic.label(*outer, "inside this loop");
         }
-        self.tell(diagnostic);
+        self.tell(diagnostic.help(self.budgets.allows(budget)));
         (self.stopped, self.spent) = (true, Some(span));
+    }
+
+    /// Whether a loop goes on after a turn, of which nothing more is told if each makes the mistakes of
+    /// the one before.
+    fn goes_on(&mut self, repeats: usize, work: u64, span: Span) -> bool {
+        let is_told = self.repeats - repeats >= REPEATS;
+        self.damaged |= is_told;
+        self.tick(work, span) && !is_told
     }
 
     /// Goes one level deeper; `false` when that is too deep, which is told.

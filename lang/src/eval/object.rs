@@ -119,6 +119,7 @@ impl Evaluator<'_> {
         let mut group = open.group;
         group.label = object.label.as_ref().map(|label| label.text.clone());
         let (pose, material) = self.group_fields(&body.fields);
+        let held = self.hold_object(body.fields.len(), span);
         let id = GroupId(u32::try_from(self.scene.groups.len()).unwrap_or(u32::MAX));
         self.scene.groups.push(group);
         let head =
@@ -130,6 +131,7 @@ impl Evaluator<'_> {
             head,
             depth: open.depth + 1,
             instances: open.instances.max(1),
+            held,
         }))
     }
 
@@ -154,14 +156,14 @@ impl Evaluator<'_> {
 
     /// `object with { … }`: the same object with some fields given anew.
     pub(super) fn amend(&mut self, value: Value, fields: Vec<FieldValue>, span: Span) -> Value {
-        let old = match &value {
-            Value::Object(object) => object.fields.len(),
-            Value::Record(fields) => fields.len(),
-            _ => 0,
+        let (old, is_kept) = match &value {
+            Value::Object(object) => (object.fields.len(), 0),
+            Value::Record(fields) => (fields.len(), 1),
+            _ => (0, 0),
         };
         let all = old + fields.len();
         if !self.tick((old * fields.len()) as u64, span)
-            || !self.hold(all * size_of::<FieldValue>(), span)
+            || !self.hold(is_kept * all * size_of::<FieldValue>(), span)
         {
             return Value::Poison;
         }
@@ -176,7 +178,11 @@ impl Evaluator<'_> {
                 let What::Group(id, _) = object.what else { return Value::Poison };
                 let fields = std::mem::take(&mut all);
                 let what = What::Group(id, material);
-                Value::Object(Rc::new(ObjectValue { what, fields, pose, ..(*object).clone() }))
+                let held = self.hold_object(fields.len(), span);
+                let (head, depth) = (object.head.clone(), object.depth);
+                let instances = object.instances;
+                let made = ObjectValue { what, fields, pose, head, depth, instances, held };
+                Value::Object(Rc::new(made))
             }
             Value::Record(old) => Value::Record(Rc::new(merged(&old, fields))),
             Value::Poison => Value::Poison,
@@ -195,7 +201,7 @@ impl Evaluator<'_> {
             return Value::Poison;
         };
         let class = *class;
-        let before = self.sink.errors();
+        let before = self.mistakes();
         let taken = self.taken(&class, &fields);
         self.complete(&class, head, &fields, &taken.meant);
         let Taken { params, overrides, pose, depth, is_placed, lacks_own, .. } = taken;
@@ -203,14 +209,14 @@ impl Evaluator<'_> {
             let message = format!("objects stand in one another more than {depth} deep");
             return self.poison("E0507", head.span, message);
         }
-        let is_whole = !lacks_own && self.sink.errors() == before && self.count_node(head.span);
+        let is_whole = !lacks_own && self.mistakes() == before && self.count_node(head.span);
         if !is_whole {
             return Value::Poison;
         }
         let node = Node {
             kind: class.kind,
             class: self.shared(class.name),
-            label: head.label.as_ref().map(|label| label.text.clone()),
+            label: head.label.as_ref().map(|label| self.label_text(&label.text)),
             params: params.into(),
             overrides,
             span: head.span,
@@ -222,9 +228,10 @@ impl Evaluator<'_> {
             return Value::Poison;
         }
         let what = What::Node(id, class.kind);
+        let held = self.hold_object(fields.len(), head.span);
         let head = head.clone();
         let depth = depth + 1;
-        Value::Object(Rc::new(ObjectValue { what, fields, pose, head, depth, instances: 1 }))
+        Value::Object(Rc::new(ObjectValue { what, fields, pose, head, depth, instances: 1, held }))
     }
 
     /// Fields of an object, as far as they fit its class.
@@ -277,6 +284,14 @@ impl Evaluator<'_> {
         let id = NodeId(u32::try_from(self.scene.nodes.len()).unwrap_or(u32::MAX));
         self.scene.nodes.push(node);
         id
+    }
+
+    /// The text of a label, one for objects of the same that follow one another.
+    fn label_text(&mut self, text: &Arc<str>) -> Arc<str> {
+        if self.last_label != *text {
+            self.last_label = text.clone();
+        }
+        self.last_label.clone()
     }
 
     /// A class's name, one for all objects of it.

@@ -5,6 +5,7 @@ use luxel_sdk::params::Dimension;
 
 use super::Evaluator;
 use super::env::Env;
+use super::expr::LARGE;
 use super::value::{Range, Value};
 use crate::syntax::{Expr, Form, Op};
 
@@ -127,7 +128,10 @@ impl Evaluator<'_> {
         match (a, b) {
             (Value::Poison, _) | (_, Value::Poison) => return Err(Incomparable::Told),
             (Value::Bool(a), Value::Bool(b)) => return Ok(a == b),
-            (Value::Text(a), Value::Text(b)) => return Ok(a == b),
+            (Value::Text(a), Value::Text(b)) => {
+                let compared = if a.len() == b.len() { a.len() as u64 / TEXT_STEP } else { 0 };
+                return self.tick(compared, span).then(|| a == b).ok_or(Incomparable::Told);
+            }
             // A zero has two signs.
             (Value::Number(x, dx), Value::Number(y, dy)) if dx == dy => {
                 return Ok(x <= y && y <= x);
@@ -218,7 +222,7 @@ impl Evaluator<'_> {
 
     fn vector_scaled(&mut self, op: Op, vector: &Value, by: &Value, span: Span) -> Value {
         let (Value::Numbers(v), Value::Number(x, d)) = (vector, by) else { return Value::Poison };
-        if !self.tick(v.data.len() as u64, span) {
+        if !self.copies(v.data.len(), span) {
             return Value::Poison;
         }
         let divide = op == Op::Div;
@@ -235,12 +239,18 @@ impl Evaluator<'_> {
         if v.dimension != w.dimension {
             return self.mismatch(op, v.dimension, w.dimension, span);
         }
-        if !self.tick(v.data.len() as u64, span) {
+        if !self.copies(v.data.len(), span) {
             return Value::Poison;
         }
         let sum = |(x, y): (&f64, &f64)| if op == Op::Add { x + y } else { x - y };
         let data: Vec<f64> = v.data.iter().zip(w.data.iter()).map(sum).collect();
         self.finite_vector(data, v.dimension, span)
+    }
+
+    /// Counts numbers that are made of others; a few of them take no memory worth counting.
+    fn copies(&mut self, n: usize, span: Span) -> bool {
+        let bytes = if n < LARGE { 0 } else { n * size_of::<f64>() };
+        self.tick(n as u64, span) && self.hold(bytes, span)
     }
 
     fn finite_vector(&mut self, data: Vec<f64>, dimension: Dimension, span: Span) -> Value {
@@ -250,6 +260,9 @@ impl Evaluator<'_> {
         self.poison("E0209", span, "the result is not finite")
     }
 }
+
+/// Bytes of a text that are compared in a step.
+const TEXT_STEP: u64 = 64;
 
 /// How deep lists are compared.
 const COMPARED_DEPTH: usize = 64;

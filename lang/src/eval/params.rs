@@ -21,6 +21,9 @@ use crate::{ParamInfo, ParamLimits, ParamValue};
 /// Steps that a `set` counts, which builds an object anew: it takes as long as so many others.
 const SET: u64 = 60;
 
+/// Bytes of a parameter: what is known of it, its texts and its statement, which are kept for the whole load.
+pub(super) const PARAM: usize = 1024;
+
 impl Evaluator<'_> {
     /// The value of a declared parameter: from outside, or its default.
     pub(super) fn param(&mut self, def: &ParamDef, env: &Env) -> Value {
@@ -32,11 +35,11 @@ impl Evaluator<'_> {
         self.in_range(def, &own, range.as_ref(), def.value.span, "E0405");
         let place = env.file.is_root.then(|| self.declare(def, range.as_ref(), &own));
         let Some(given) = env.file.overrides.get(&def.name.text).cloned() else { return own };
-        let before = self.sink.errors();
+        let before = self.mistakes();
         let code = if env.file.is_root { Some("E0112") } else { None };
         let value = self.fit_setting(def, &given, env, code);
         self.in_range(def, &value, range.as_ref(), given.span, code.unwrap_or("E0405"));
-        if self.sink.errors() > before {
+        if self.mistakes() > before {
             return Value::Poison;
         }
         if let Some(info) = place.and_then(|place| self.params.get_mut(place)) {
@@ -132,6 +135,8 @@ impl Evaluator<'_> {
             written,
             span: def.name.span,
         };
+        let bytes = info.doc.len() + info.default.len();
+        self.hold(PARAM + bytes, def.name.span);
         self.params.push(info);
         self.params.len() - 1
     }
@@ -227,7 +232,8 @@ impl Evaluator<'_> {
     /// Changes what `set` names; each object is checked against its schema again.
     pub(super) fn apply_sets(&mut self) {
         for set in std::mem::take(&mut self.labels.sets) {
-            if !self.tick(SET, set.field.span) {
+            let n = self.labels.objects.get(&set.label.text).map_or(1, Vec::len);
+            if !self.tick(SET.saturating_mul(n as u64), set.field.span) {
                 return;
             }
             let Some(objects) = self.labels.objects.get(&set.label.text).cloned() else {
@@ -270,8 +276,9 @@ impl Evaluator<'_> {
         }
         // The new node, the last one, takes the place of the old one, which nothing needs any more.
         self.scene.nodes.swap_remove(old.0 as usize);
-        let what = What::Node(old, kind);
-        Some(Rc::new(ObjectValue { what, ..(*changed).clone() }))
+        let mut changed = (*changed).clone();
+        changed.what = What::Node(old, kind);
+        Some(Rc::new(changed))
     }
 
     /// Whether a node holds another one, at any depth.

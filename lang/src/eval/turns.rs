@@ -9,6 +9,7 @@ use super::Evaluator;
 use super::by_name::ByName;
 use super::exec::{Body, Place};
 use super::names::{Around, Facts, Mentions, Odd, tell_odd};
+use super::params::PARAM;
 use crate::sink::Sink;
 use crate::syntax::{self, Cut, Name, Stmt, StmtNode, Tree, Turns};
 
@@ -17,6 +18,9 @@ pub(super) const TURN: usize = 1 << 20;
 
 /// Statements with something wrong about their names that are kept to be looked at; others are counted.
 const KEPT: usize = 10_000;
+
+/// Mistakes of names that are counted; with more of them a file is not read to its end.
+const COUNTED: usize = 100_000;
 
 impl Evaluator<'_> {
     /// What a large file declares for all of it: its units and parameters. `None` for a file that is
@@ -46,6 +50,10 @@ impl Evaluator<'_> {
                 _ => syntax::says_units(part),
             };
             out.stmts.extend(stmts.into_iter().filter(declares));
+            // Evaluation will end before the last of so many.
+            if out.stmts.len() > self.budgets.value_bytes / PARAM {
+                break;
+            }
         }
         // What is set and not declared here may stand where nothing can be read.
         let is_known = |name: &str| super::include::params(&out).any(|known| *known.text == *name);
@@ -75,8 +83,10 @@ impl Evaluator<'_> {
             let made = self.stmts_recorded(&stmts, &env, &mut body);
             // What stands in the file itself is no object's.
             body.fields.clear();
-            // Where a budget is spent, the rest is not read.
-            let goes_on = self.spent.is_none();
+            // Where a budget is spent, the rest is not read; nor where so much is wrong that nobody reads
+            // all of it.
+            let goes_on = self.spent.is_none() && names.n_more < COUNTED;
+            self.stopped |= !goes_on;
             if goes_on {
                 let mut made = made.into_iter();
                 for stmt in stmts {

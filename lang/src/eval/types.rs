@@ -41,6 +41,9 @@ impl Evaluator<'_> {
                 self.unfit(&format!("a list of {}", ty.name.text), &value, span)
             }
             Value::Items(items) => {
+                if !self.tick(items.items.len() as u64, span) {
+                    return Value::Poison;
+                }
                 for item in &items.items {
                     if self.fit_one(&ty.name.text, item.clone(), span, env).is_poison() {
                         return Value::Poison;

@@ -1,11 +1,12 @@
 //! What expressions give.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
 use luxel_core::diag::Span;
-use luxel_core::scene::{Color, GroupId, NodeId, Pose};
+use luxel_core::scene::{Argument, Color, GroupId, Node, NodeId, Pose};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look};
 
@@ -96,6 +97,42 @@ pub(crate) struct ObjectValue {
     pub(crate) depth: usize,
     /// How many placements it stands for.
     pub(crate) instances: u64,
+    /// What it holds, counted until it is dropped.
+    #[expect(dead_code, reason = "it counts as long as it is there")]
+    pub(crate) held: Held,
+}
+
+/// Bytes of an object, which count for as long as it lives.
+#[derive(Debug)]
+pub(crate) struct Held {
+    bytes: usize,
+    all: Rc<Cell<usize>>,
+}
+
+impl Held {
+    /// Those of an object with so many fields and of its node, added to those of `all`.
+    pub(crate) fn of(n_fields: usize, all: &Rc<Cell<usize>>) -> Self {
+        let of_field = size_of::<FieldValue>() + size_of::<Argument>();
+        let bytes = size_of::<ObjectValue>() + size_of::<Node>() + n_fields * of_field;
+        Self { bytes, all: all.clone() }.counted()
+    }
+
+    fn counted(self) -> Self {
+        self.all.set(self.all.get().saturating_add(self.bytes));
+        self
+    }
+}
+
+impl Clone for Held {
+    fn clone(&self) -> Self {
+        Self { bytes: self.bytes, all: self.all.clone() }.counted()
+    }
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.all.set(self.all.get().saturating_sub(self.bytes));
+    }
 }
 
 impl ObjectValue {
@@ -168,7 +205,7 @@ impl Value {
             Self::Numbers(n) => 64 + n.data.len() * size_of::<f64>(),
             Self::Items(i) => 64 + i.items.len() * size_of::<Self>(),
             Self::Record(fields) => 64 + fields.len() * size_of::<FieldValue>(),
-            Self::Transform(_) | Self::Look(_) | Self::Object(_) => 256,
+            Self::Transform(_) | Self::Look(_) => 256,
             _ => 0,
         };
         size_of::<Self>() + inside

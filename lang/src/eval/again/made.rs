@@ -55,7 +55,7 @@ impl Cost {
     pub(super) fn of(evaluator: &Evaluator<'_>) -> Self {
         let n_instances = evaluator.open_groups.first().map_or(0, |open| open.instances);
         let wide = |n: usize| n as u64;
-        Self([evaluator.steps, wide(evaluator.held), wide(evaluator.placements), n_instances])
+        Self([evaluator.steps, wide(evaluator.held.get()), wide(evaluator.placements), n_instances])
     }
 
     pub(super) fn plus(self, other: Self) -> Self {

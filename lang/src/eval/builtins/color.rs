@@ -1,5 +1,6 @@
 //! Colours and spectra.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -30,6 +31,12 @@ pub(super) enum Make {
     Metal,
     Glass,
 }
+
+/// Steps of looking a file up that was read before, by its path.
+const KNOWN: u64 = 10;
+
+/// A file of spectra and the column that is wanted of it.
+pub(in crate::eval) type SpectrumFile = (PathBuf, Option<Arc<str>>);
 
 impl Evaluator<'_> {
     /// Makes a colour or spectrum.
@@ -164,7 +171,10 @@ impl Evaluator<'_> {
     fn curve(&mut self, points: Vec<(f64, f64)>, span: Span) -> Option<Color> {
         use catalogue::{Curve, CurveError, Outside};
         match Curve::from_points(&points, Outside::Constant) {
-            Ok(_) => return Some(Color::Curve(points.into())),
+            Ok(_) => {
+                let is_within = self.hold(points.len() * size_of::<(f64, f64)>(), span);
+                return is_within.then(|| Color::Curve(points.into()));
+            }
             Err(CurveError::NotIncreasing(i)) => {
                 let message = format!(
                     "wavelengths must increase: {} nm stands after {} nm",
@@ -188,7 +198,21 @@ impl Evaluator<'_> {
             None => None,
         };
         let path = call.env.file.folder.join(&*name);
-        let bytes = match self.bytes(&path) {
+        let asked = (path, column.map(|(name, _)| name));
+        if let Some(read) = self.spectra.get(&asked).cloned() {
+            self.n_reads += 1;
+            self.tick(KNOWN, span);
+            return Some(read);
+        }
+        let read = self.spectrum_read(&name, &asked, span)?;
+        self.spectra.insert(asked, read.clone());
+        Some(read)
+    }
+
+    /// A spectrum of a file, the first time that it is asked for; `None` after a mistake.
+    fn spectrum_read(&mut self, name: &str, asked: &SpectrumFile, span: Span) -> Option<Color> {
+        let (path, column) = asked;
+        let bytes = match self.bytes(path) {
             Ok(bytes) => bytes,
             Err(error) => {
                 let message = format!("\"{name}\": {error}");
@@ -197,9 +221,10 @@ impl Evaluator<'_> {
                 return None;
             }
         };
-        self.tick(bytes.len() as u64 / 16, span);
-        let wanted = column.as_ref().map(|(name, _)| &**name);
-        match spectrum_file::read(&bytes, wanted, self.budgets.list) {
+        if !self.tick(bytes.len() as u64 / 4, span) {
+            return None;
+        }
+        match spectrum_file::read(&bytes, column.as_deref(), self.budgets.list) {
             Ok(points) => self.curve(points, span),
             Err(why) => {
                 self.poison("E0413", span, format!("\"{name}\": {why}"));

@@ -15,6 +15,8 @@ use std::sync::Arc;
 use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::Dimension;
 
+pub(super) use self::color::SpectrumFile;
+
 use super::Evaluator;
 use super::call::takes_only;
 use super::env::Env;

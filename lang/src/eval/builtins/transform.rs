@@ -25,6 +25,9 @@ pub(super) enum Transform {
 /// Steps of one transform, where some move: each costs time for every ray.
 const MOST_STEPS: usize = 64;
 
+/// Steps that one transform of a list takes: what the product of two matrices does.
+const JOINED: u64 = 2;
+
 /// Distances from a camera to what it looks at whose squares, and sums of them, are accurate.
 const VIEWS: RangeInclusive<f64> = 1e-150..=1e150;
 
@@ -139,6 +142,9 @@ impl Evaluator<'_> {
             Value::Transform(one) => Pose::clone(one),
             Value::Numbers(n) if n.data.is_empty() => Pose::IDENTITY,
             Value::Items(items) => {
+                if !self.tick(items.items.len() as u64 * JOINED, span) {
+                    return None;
+                }
                 let mut all = Pose::IDENTITY;
                 for item in &items.items {
                     let Value::Transform(next) = item else {

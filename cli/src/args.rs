@@ -10,6 +10,7 @@ use luxel_core::accel::Precision;
 use luxel_core::film::{Layer, Rect};
 use luxel_core::render::Options;
 use luxel_core::scene::{Feature, Scene};
+use luxel_lang::Budgets;
 
 use crate::exit::{Exit, Failure};
 
@@ -36,6 +37,28 @@ pub(crate) struct LoadArgs {
     /// Model less than the scene requires: `spectral`, `media`, `nested`, `motion`, `layers`
     #[arg(long = "drop", value_name = "FEATURE,…", value_delimiter = ',', value_parser = droppable)]
     pub(crate) dropped: Vec<Feature>,
+    #[command(flatten)]
+    pub(crate) budgets: BudgetArgs,
+}
+
+/// What reading a scene may cost.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct BudgetArgs {
+    /// Let a scene cost more or less than usual, as in `nodes=3e6,steps=1e9`: `nodes`, `instances`, `steps`,
+    /// `value_bytes`, `list`, `names`, `string`, `pieces`, `file_bytes`, `total_bytes`, `includes`,
+    /// `include_depth`, `diagnostics`, `brackets`, `operators`, `nesting`
+    #[arg(long = "budget", value_name = "NAME=N,…", value_delimiter = ',', value_parser = budget)]
+    amounts: Vec<(String, f64)>,
+}
+
+impl BudgetArgs {
+    /// All budgets, those that are given changed.
+    pub(crate) fn budgets(&self) -> Budgets {
+        let changed = |budgets: Budgets, (name, amount): &(String, f64)| {
+            budgets.with(name, *amount).unwrap_or(budgets)
+        };
+        self.amounts.iter().fold(Budgets::default(), changed)
+    }
 }
 
 impl LoadArgs {
@@ -114,6 +137,13 @@ impl RenderArgs {
         let Self { spp, seed, crop, threads, .. } = *self;
         Options { spp, seed, crop, threads, ..Options::default() }
     }
+}
+
+fn budget(text: &str) -> Result<(String, f64), String> {
+    let (name, amount) = text.trim().split_once('=').ok_or("expected NAME=N, as in nodes=3e6")?;
+    let amount = amount.trim().parse().unwrap_or(f64::NAN);
+    Budgets::default().with(name.trim(), amount)?;
+    Ok((name.trim().to_owned(), amount))
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
@@ -196,6 +226,21 @@ mod tests {
         let refused = args.change_features(&mut Scene::default()).unwrap_err();
         assert_eq!(refused.message, "`motion`: it is both required and dropped");
         assert_eq!(refused.exit, Exit::Usage);
+    }
+
+    #[test]
+    fn budgets_are_read_or_refused_with_what_is_known() {
+        let amounts = ["nodes=3e6", " steps = 1000000000"].map(|text| budget(text).unwrap());
+        let budgets = BudgetArgs { amounts: amounts.to_vec() }.budgets();
+        let wanted = Budgets { nodes: 3_000_000, steps: 1_000_000_000, ..Budgets::default() };
+        assert_eq!(budgets, wanted);
+        assert!(budget("node=3").unwrap_err().contains("did you mean `nodes`?"));
+        for bad in ["nodes", "nodes=", "nodes=many", "nodes=0.5", "brackets=1e6"] {
+            assert!(budget(bad).is_err(), "{bad}");
+        }
+        let help = <BudgetArgs as Args>::augment_args(clap::Command::new("a")).render_long_help();
+        let help = help.to_string();
+        assert!(Budgets::NAMES.iter().all(|name| help.contains(&format!("`{name}`"))), "{help}");
     }
 
     #[test]

@@ -24,6 +24,7 @@ Examples:
   luxel check scenes/*.scene
   luxel check scenes/cornell.scene --print
   luxel check scenes/cornell.scene --fix
+  luxel check scenes/cornell.scene --budget nodes=3e6,steps=1e9
   luxel check scenes/cornell.scene --json")]
 pub(crate) struct Args {
     /// The scenes

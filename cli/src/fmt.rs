@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_core::files::FileError;
-use luxel_lang::Budgets;
 use serde_json::json;
 
+use crate::args::BudgetArgs;
 use crate::exit::{Exit, Failure};
 use crate::files::read_limited;
 use crate::interrupt::Guard;
@@ -35,6 +35,8 @@ pub(crate) struct Args {
     /// JSON lines on standard output: diagnostics, and each file with whether it changes
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    budgets: BudgetArgs,
 }
 
 /// A text before and after.
@@ -67,7 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 fn one(file: &Path, args: &Args, guard: &Guard) -> Result<Exit, Failure> {
-    let Some(Pair { before, after }) = laid_out(file, args.json)? else { return Ok(Exit::Input) };
+    let Some(Pair { before, after }) = laid_out(file, args)? else { return Ok(Exit::Input) };
     let (changes, name) = (before != after, name(file));
     if args.json {
         report::out(&format!("{}\n", json!({ "file": name, "changes": changes })))?;
@@ -88,8 +90,8 @@ fn one(file: &Path, args: &Args, guard: &Guard) -> Result<Exit, Failure> {
 }
 
 /// A file's text before and after; none if it has a mistake, which is told.
-fn laid_out(file: &Path, json: bool) -> Result<Option<Pair>, Failure> {
-    let budgets = Budgets::default();
+fn laid_out(file: &Path, args: &Args) -> Result<Option<Pair>, Failure> {
+    let budgets = args.budgets.budgets();
     let bytes = read(file, budgets.file_bytes as u64).map_err(|error| {
         Failure::new(Exit::Input, format!("cannot read `{}`: {error}", name(file)))
     })?;
@@ -110,7 +112,8 @@ fn laid_out(file: &Path, json: bool) -> Result<Option<Pair>, Failure> {
             vec![Diagnostic::error("E0003", span, message)]
         }
     };
-    let (form, stream) = if json { (Form::Json, Stream::Out) } else { (Form::Text, Stream::Error) };
+    let (form, stream) =
+        if args.json { (Form::Json, Stream::Out) } else { (Form::Text, Stream::Error) };
     report::diagnostics(&found, &sources, form, stream)?;
     Ok(None)
 }

@@ -134,6 +134,7 @@ pub(crate) fn read(
             set: args.set.clone(),
             unloaded: plugins.unloaded(),
             stop: Some(watch.flag()),
+            budgets: args.budgets.budgets(),
             ..Default::default()
         };
         let registry = &plugins.registry;
@@ -158,6 +159,8 @@ pub(crate) fn read(
             scene.set_precision(precision);
         }
         if let Some(scene) = &mut scene {
+            let most = args.budgets.budgets().instances;
+            scene.allow_instances(usize::try_from(most).unwrap_or(usize::MAX));
             args.layers.iter().for_each(|layer| scene.add_layer(*layer));
         }
         let luxel_lang::Loaded { rest, diagnostics, sources, params, .. } = read;

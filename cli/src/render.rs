@@ -41,6 +41,7 @@ Examples:
   luxel render scenes/cornell.scene --resume
   luxel render scenes/cornell.scene --aov albedo,normal,depth
   luxel render scenes/motion.scene --drop motion
+  luxel render scenes/cornell.scene --budget nodes=3e6,steps=1e9
   luxel render scenes/cornell.scene --crop 100,100,64,64 --json
   luxel render scenes/cornell.scene --isolate")]
 pub(crate) struct Args {

@@ -10,6 +10,7 @@ use luxel_core::files::{FileError, Files, normalise};
 use luxel_lang::Budgets;
 use luxel_lang::editor::{Document, Project};
 
+use super::Limits;
 use crate::files::DiskFiles;
 
 /// Scene files that are looked for below the folders of a workspace, at most.
@@ -40,16 +41,21 @@ pub(super) struct Opened {
     pub(super) open: BTreeMap<PathBuf, Open>,
     /// The folders of the workspace.
     pub(super) folders: Vec<PathBuf>,
-    pub(super) allow: Vec<PathBuf>,
+    limits: Limits,
     known: RefCell<BTreeMap<PathBuf, Known>>,
     /// Files on disk are looked at once in each.
     round: u64,
 }
 
 impl Opened {
-    pub(super) fn new(allow: Vec<PathBuf>) -> Self {
+    pub(super) fn new(limits: Limits) -> Self {
         let (open, folders, known) = Default::default();
-        Self { open, folders, allow, known, round: 0 }
+        Self { open, folders, limits, known, round: 0 }
+    }
+
+    /// What reading a file may cost.
+    pub(super) fn budgets(&self) -> &Budgets {
+        &self.limits.budgets
     }
 
     /// What is on disk may have changed.
@@ -61,7 +67,7 @@ impl Opened {
     fn readers(&self) -> impl Iterator<Item = DiskFiles> {
         let scenes = self.open.keys().cloned();
         let scenes = scenes.chain(self.folders.iter().map(|folder| folder.join("x")));
-        scenes.map(|scene| DiskFiles::new(&scene, &self.allow))
+        scenes.map(|scene| DiskFiles::new(&scene, &self.limits.allow))
     }
 
     /// A file on disk that one of the open files may read.
@@ -69,7 +75,7 @@ impl Opened {
         if let Some(known) = self.known.borrow().get(path).filter(|k| k.round == self.round) {
             return Some(known.document.clone());
         }
-        let limit = Budgets::default().file_bytes;
+        let limit = self.budgets().file_bytes;
         let small = fs::metadata(path).is_ok_and(|about| about.len() <= limit as u64);
         let read = |files: DiskFiles| files.read(path).ok();
         let bytes = self.readers().filter(|_| small).find_map(read)?;
@@ -80,7 +86,7 @@ impl Opened {
             return Some(known.document.clone());
         }
         let text = str::from_utf8(&bytes).ok()?;
-        let document = Arc::new(Document::new(text, &Budgets::default()));
+        let document = Arc::new(Document::new(text, self.budgets()));
         let round = self.round;
         known.insert(path.to_owned(), Known { hash, document: document.clone(), round });
         Some(document)

@@ -1,6 +1,5 @@
 //! A file laid out anew.
 
-use luxel_lang::Budgets;
 use serde_json::{Value, json};
 
 use super::server::Server;
@@ -12,7 +11,7 @@ impl Server {
     pub(super) fn formatting(&self, params: &Value) -> Result<Value, Refusal> {
         let (_, document) = self.asked(params)?;
         let old = document.text();
-        let Ok(new) = luxel_lang::format(old, &Budgets::default()) else {
+        let Ok(new) = luxel_lang::format(old, self.files.budgets()) else {
             let why = "the file is not laid out: it holds mistakes";
             return Err(Refusal::new(Code::RequestFailed, why));
         };

@@ -12,6 +12,7 @@ use luxel_core::files::normalise;
 use luxel_core::stage::{self, Unbuilt};
 use luxel_lang::{Kept, Values};
 
+use super::Limits;
 use super::files::Overlay;
 use super::queue::{Event, Queue};
 use crate::exit::blaming;
@@ -156,7 +157,7 @@ impl Desk {
 
 impl Judge {
     /// Starts the thread.
-    pub(super) fn start(queue: Arc<Queue>, plugins: Arc<Plugins>, allow: Vec<PathBuf>) -> Self {
+    pub(super) fn start(queue: Arc<Queue>, plugins: Arc<Plugins>, limits: Limits) -> Self {
         let desk = Arc::new(Desk::default());
         let own = desk.clone();
         let thread = std::thread::Builder::new().name("judge".to_owned()).stack_size(STACK);
@@ -170,7 +171,7 @@ impl Judge {
                 let mut one = |(root, whole): (&PathBuf, &bool)| {
                     let kept = all.entry(root.clone()).or_default();
                     let course = (&job, &*watch, *whole);
-                    let (judged, took) = judged(root, kept, course, (&plugins, &allow));
+                    let (judged, took) = judged(root, kept, course, (&plugins, &limits));
                     is_short &= took < SHORT || kept.n_evaluated().is_some();
                     judged
                 };
@@ -215,19 +216,22 @@ fn judged(
     root: &Path,
     kept: &mut Kept,
     (job, watch, whole): (&Job, &Watch, bool),
-    (plugins, allow): (&Plugins, &[PathBuf]),
+    (plugins, limits): (&Plugins, &Limits),
 ) -> (Judged, Duration) {
     let (start, mut took) = (Instant::now(), Duration::ZERO);
     let run = || {
-        let files = Overlay::new(root, allow, &job.texts);
+        let files = Overlay::new(root, &limits.allow, &job.texts);
         let settings = luxel_lang::Settings {
             unloaded: plugins.unloaded(),
             noting: true,
             without_scene: !whole,
             stop: Some(watch.flag()),
+            budgets: limits.budgets,
             ..Default::default()
         };
-        let loaded = kept.load(root, &files, &plugins.registry, &settings);
+        let mut loaded = kept.load(root, &files, &plugins.registry, &settings);
+        let most = usize::try_from(limits.budgets.instances).unwrap_or(usize::MAX);
+        loaded.scene.iter_mut().for_each(|scene| scene.allow_instances(most));
         took = start.elapsed();
         let build =
             |scene| match stage::build_watched(scene, &plugins.registry, &files, None, watch) {

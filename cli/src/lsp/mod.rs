@@ -22,7 +22,9 @@ use std::io::BufReader;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::args::PluginArgs;
+use luxel_lang::Budgets;
+
+use crate::args::{BudgetArgs, PluginArgs};
 use crate::exit::{Exit, Failure};
 use crate::load;
 use crate::report::{Form, Stream};
@@ -37,7 +39,8 @@ use self::queue::Queue;
 #[command(after_help = "\
 Examples:
   luxel lsp
-  luxel lsp --allow-path ../assets")]
+  luxel lsp --allow-path ../assets
+  luxel lsp --budget nodes=3e6,steps=1e9")]
 pub(crate) struct Args {
     /// Let scenes read files below this folder too (their own folder is always allowed)
     #[arg(long, value_name = "DIR")]
@@ -47,6 +50,16 @@ pub(crate) struct Args {
     stdio: bool,
     #[command(flatten)]
     plugins: PluginArgs,
+    #[command(flatten)]
+    budgets: BudgetArgs,
+}
+
+/// What scenes may read and cost.
+#[derive(Clone, Debug)]
+struct Limits {
+    /// Folders that scenes may read from beside their own.
+    allow: Vec<PathBuf>,
+    budgets: Budgets,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -57,6 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let reader = std::thread::Builder::new().name("reader".to_owned());
     let ours = |error| Failure::new(Exit::Ours, format!("no thread can be had: {error}"));
     reader.spawn(move || wire::read(BufReader::new(std::io::stdin()), &reading)).map_err(ours)?;
-    let mut session = session::Session::new(queue, Arc::new(plugins), args.allow_path.clone());
+    let limits = Limits { allow: args.allow_path.clone(), budgets: args.budgets.budgets() };
+    let mut session = session::Session::new(queue, Arc::new(plugins), limits);
     session.run()
 }

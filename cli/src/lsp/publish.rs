@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Severity};
-use luxel_lang::Budgets;
 use luxel_lang::editor::Document;
 use serde_json::{Value, json};
 
@@ -104,7 +103,7 @@ impl Server {
         // Of a file that is no text, everything is shown at its start.
         let document = self
             .any_document(path)
-            .unwrap_or_else(|| Arc::new(Document::new("", &Budgets::default())));
+            .unwrap_or_else(|| Arc::new(Document::new("", self.files.budgets())));
         let shown: Vec<Value> = told.iter().map(|told| self.shown(told, &document)).collect();
         let mut params = json!({ "uri": self.uri(path), "diagnostics": shown });
         if let Some(open) = open {

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use luxel_lang::Budgets;
 use luxel_lang::editor::{Document, Project, reached};
 use serde_json::{Value, json};
 
+use super::Limits;
 use super::convert::{Encoding, path_of};
 use super::files::{Open, Opened};
 use super::judge::{Job, Judge, Judged, Verdict};
@@ -46,10 +46,10 @@ pub(super) struct Client {
 }
 
 impl Server {
-    pub(super) fn new(queue: Arc<Queue>, plugins: Arc<Plugins>, allow: Vec<PathBuf>) -> Self {
+    pub(super) fn new(queue: Arc<Queue>, plugins: Arc<Plugins>, limits: Limits) -> Self {
         Self {
-            files: Opened::new(allow.clone()),
-            judge: Judge::start(queue, plugins.clone(), allow),
+            files: Opened::new(limits.clone()),
+            judge: Judge::start(queue, plugins.clone(), limits),
             plugins,
             encoding: Encoding::Utf16,
             client: Client::default(),
@@ -123,7 +123,7 @@ impl Server {
                 let open = Open {
                     uri: document["uri"].as_str().unwrap_or_default().to_owned(),
                     version: document["version"].as_i64().unwrap_or_default(),
-                    document: Arc::new(Document::new(text, &Budgets::default())),
+                    document: Arc::new(Document::new(text, self.files.budgets())),
                 };
                 self.files.open.insert(path.clone(), open);
                 self.changed(&path, true)
@@ -158,7 +158,7 @@ impl Server {
     }
 
     fn change(&mut self, path: &Path, params: &Value) -> Result<(), Failure> {
-        let encoding = self.encoding;
+        let (encoding, budgets) = (self.encoding, *self.files.budgets());
         let Some(open) = self.files.open.get_mut(path) else { return Ok(()) };
         let document = Arc::make_mut(&mut open.document);
         let mut broken = Ok(());
@@ -174,7 +174,7 @@ impl Server {
             }
             let edited = blaming("", || document.edit(range, text));
             if let Err(failure) = edited {
-                *document = Document::new(document.text(), &Budgets::default());
+                *document = Document::new(document.text(), &budgets);
                 broken = Err(failure);
             }
         }

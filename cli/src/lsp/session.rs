@@ -1,11 +1,11 @@
 //! One client from `initialize` to `exit`.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use serde_json::{Value, json};
 
+use super::Limits;
 use super::answer;
 use super::queue::{Event, Queue};
 use super::server::Server;
@@ -29,8 +29,8 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub(super) fn new(queue: Arc<Queue>, plugins: Arc<Plugins>, allow: Vec<PathBuf>) -> Self {
-        let server = Server::new(queue.clone(), plugins, allow);
+    pub(super) fn new(queue: Arc<Queue>, plugins: Arc<Plugins>, limits: Limits) -> Self {
+        let server = Server::new(queue.clone(), plugins, limits);
         Self { queue, server, stage: Stage::New }
     }
 

@@ -107,7 +107,7 @@ fn a_watch_shows_a_new_build_and_keeps_the_last_one_that_opened() {
     let scene = "reloaded/reloaded.scene";
     let open = ["--plugin-dir", "plugins", "--allow-unlocked-plugins"];
     let small = ["--size", "16x12", "--spp", "2", "-o", "out"];
-    let mut watching = folder.start(&[&["watch", scene][..], &open, &small].concat());
+    let mut watching = folder.start(&[&["watch", scene, "--json"][..], &open, &small].concat());
     until("the first picture", || !folder.read("out.exr").is_empty());
     let first = folder.read("out.exr");
 
@@ -131,4 +131,14 @@ fn a_watch_shows_a_new_build_and_keeps_the_last_one_that_opened() {
     let done = watching.end();
     assert_eq!(done.code, 0, "{done:?}");
     assert!(done.err.contains("stays in use"), "{done:?}");
+    let told = done.out.lines().map(|line| serde_json::from_str(line).unwrap());
+    let told: Vec<serde_json::Value> = told.collect();
+    let made = told.iter().map(|it| {
+        ["objects_made", "shapes_made", "trees_made"].map(|name| it["edit"][name].clone())
+    });
+    // What is made of the library, and nothing beside it.
+    for made in made.skip(1).filter(|[objects, ..]| *objects != 0) {
+        assert_eq!(made, [1, 0, 0].map(serde_json::Value::from), "{done:?}");
+    }
+    assert!(told.len() > 2 && told[0]["edit"]["shapes_made"] == 2, "{done:?}");
 }

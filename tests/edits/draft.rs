@@ -13,8 +13,10 @@ use crate::disk::{OnDisk, root};
 
 /// The scene's own file.
 pub(super) const SCENE: &str = "a.scene";
+/// The film that finds out whether the scene needs wavelengths.
+const AUTO: u64 = VALUES - 1;
 /// Kinds of things that a scene may hold.
-const THINGS: u64 = 11;
+const THINGS: u64 = 12;
 /// Values that most of a draft's numbers take.
 const VALUES: u64 = 5;
 /// Contents that a file takes; the last two are broken and missing.
@@ -33,6 +35,8 @@ pub(super) enum Edit {
     Material,
     /// Where a thing stands, or the order in which they are written.
     Place,
+    /// Where a part of a solid stands in it.
+    Part,
     /// Film, integrator, sampler, filter.
     Settings,
     /// Lights and fog.
@@ -48,17 +52,22 @@ pub(super) enum Edit {
 }
 
 impl Edit {
-    /// Whether no shape has to be made ready for it, and so no tree built.
+    /// Whether no shape has to be made ready for it.
     pub(super) fn keeps_shapes(self) -> bool {
-        matches!(self, Self::Words | Self::Camera | Self::Material | Self::Place)
+        matches!(self, Self::Words | Self::Camera | Self::Material | Self::Place | Self::Settings)
+    }
+
+    /// Whether no tree of a mesh has to be built for it.
+    pub(super) fn keeps_trees(self) -> bool {
+        self.keeps_shapes() || self == Self::Part
     }
 
     fn any(rng: &mut Rng) -> Self {
         use Edit::{
-            Back, Camera, Contents, Light, Material, Mistake, Place, Settings, Things, Words,
+            Back, Camera, Contents, Light, Material, Mistake, Part, Place, Settings, Things, Words,
         };
         let all = [
-            Words, Camera, Camera, Material, Material, Place, Place, Settings, Light, Things,
+            Words, Camera, Camera, Material, Material, Place, Place, Part, Settings, Light, Things,
             Things, Contents, Contents, Back, Back, Mistake,
         ];
         all[index(rng, all.len())]
@@ -71,6 +80,8 @@ struct Thing {
     paint: u64,
     at: u64,
     label: u64,
+    /// Where a part of it stands, if it is a solid.
+    part: u64,
 }
 
 /// The scene as it is in the author's mind, and the mistake that is in its text.
@@ -91,9 +102,9 @@ impl Draft {
         let files = ["a.obj", "b.obj", "picture.hdr", "sky.hdr", "bumps.hdr", "a.glb"];
         Self {
             camera: [0; 3],
-            settings: [0; 5],
+            settings: [0, below(rng, 2) * AUTO, 0, 0, 0],
             lights: [0; 4],
-            paints: [0, 1, 2],
+            paints: [0, 1, below(rng, 2)],
             words: 0,
             things: (0..4).map(|_| Thing::any(rng)).collect(),
             contents: files.map(|file| (file, below(rng, BROKEN))).into(),
@@ -124,6 +135,10 @@ impl Draft {
                 self.mistake =
                     if self.mistake.is_some() { None } else { Some(below(rng, MISTAKES)) };
             }
+            Edit::Part => {
+                let thing = index(rng, self.things.len());
+                self.things[thing].part = below(rng, VALUES);
+            }
             Edit::Things if self.things.len() < 2 || below(rng, 2) == 0 => {
                 self.things.push(Thing::any(rng));
             }
@@ -138,6 +153,15 @@ impl Draft {
             }
         }
         edit
+    }
+
+    /// The files whose contents are not those of another draft.
+    pub(super) fn other_files<'a>(
+        &'a self,
+        than: &'a Self,
+    ) -> impl Iterator<Item = &'static str> + 'a {
+        let differs = |(file, n): &(&&str, &u64)| than.contents[**file] != **n;
+        self.contents.iter().filter(differs).map(|(file, _)| *file)
     }
 
     /// The scene's files as they are saved.
@@ -216,6 +240,7 @@ impl Draft {
             0 => "spectral { shutter = 10 ms,",
             1 => "rgb { time = 1 s,",
             2 => "spectral { exposure = 3 EV,",
+            AUTO => "auto {",
             _ => "rgb { precision = \"exact\",",
         };
         let integrator = match integrator {
@@ -235,6 +260,7 @@ impl Draft {
         let [sky, lamp, shape, fog] = self.lights;
         let sky = match sky {
             0 => "light environment { file = \"sky.hdr\" }\n".to_owned(),
+            1 => "light constant { radiance = 0.3 W/m^2/sr }\n".to_owned(),
             n => format!(
                 "light constant {{ spectrum = blackbody({n}000 K), radiance = 0.{n} W/m^2/sr }}\n"
             ),
@@ -258,12 +284,13 @@ impl Draft {
 
 impl Thing {
     fn any(rng: &mut Rng) -> Self {
-        let [what, paint, at, label] = [THINGS, 3, VALUES, VALUES].map(|n| below(rng, n));
-        Self { what, paint, at, label }
+        let all = [THINGS, 3, VALUES, VALUES, VALUES];
+        let [what, paint, at, label, part] = all.map(|n| below(rng, n));
+        Self { what, paint, at, label, part }
     }
 
     fn text(self, i: usize) -> String {
-        let Self { what, paint, at, label } = self;
+        let Self { what, paint, at, label, part } = self;
         let (x, turn) = (at as f64 * 0.5 - 1.0, 20 * at);
         let place = format!("transform = [rotate((0, 1, 0), {turn} deg), move(({x}, 0.3, 0) m)]");
         let shape = |class: &str, body: &str| {
@@ -286,7 +313,15 @@ impl Thing {
             ),
             6 => shape(
                 "difference",
-                "a = shape sphere { radius = 45 cm }, b = shape mesh { file = \"a.obj\", unit = 60 cm, transform = move((0.2, 0.2, 0.2) m) }",
+                &format!(
+                    "a = shape sphere {{ radius = 45 cm }}, b = shape mesh {{ file = \"a.obj\", unit = 60 cm, transform = move((0.2, 0.{part}, 0.2) m) }}"
+                ),
+            ),
+            11 => shape(
+                "difference",
+                &format!(
+                    "a = shape mesh {{ file = \"a.obj\", unit = 60 cm }}, b = shape sphere {{ radius = 1{part} cm, transform = move((0.1, 0.{part}, 0) m) }}"
+                ),
             ),
             7 => format!(
                 "let g{i} = group {{ shape disk {{ radius = 20 cm }}  shape mesh {{ file = \"b.obj\", unit = 20 cm }} }}\n\
@@ -318,7 +353,7 @@ fn bytes(file: &str, contents: u64) -> Arc<[u8]> {
 }
 
 /// Closed, with texture coordinates; one contents has a face without area, of which a warning tells.
-fn octahedron(contents: u64) -> String {
+pub(super) fn octahedron(contents: u64) -> String {
     let r = 0.3 + 0.07 * contents as f64;
     let mut text = String::new();
     for (x, y, z) in [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)] {

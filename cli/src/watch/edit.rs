@@ -30,23 +30,27 @@ impl Edit {
 
     /// Both, of one picture.
     pub(super) fn then(self, next: Self) -> Self {
-        let Self { mut changes, anew: Anew { objects, shapes }, seconds } = self;
+        let Self { mut changes, anew, seconds } = self;
         changes.extend(next.changes);
-        let anew = Anew { objects: objects + next.anew.objects, shapes: shapes + next.anew.shapes };
-        Self { changes, anew, seconds: seconds + next.seconds }
+        Self { changes, anew: anew + next.anew, seconds: seconds + next.seconds }
     }
 
-    /// `sphere "ball": radius · made anew: 1 object, 1 shape · 3.2 ms`
+    /// `sphere "ball": radius · made anew: 1 object, 1 shape · 3.2 ms`; trees where there are some.
     pub(super) fn words(&self) -> String {
-        let Self { changes, anew: Anew { objects, shapes }, seconds } = self;
+        let Self { changes, anew: Anew { objects, shapes, trees }, seconds } = self;
         let mut told: Vec<_> = changes.iter().take(MOST).cloned().collect();
         if changes.len() > MOST {
             told.push(format!("{} more", changes.len() - MOST));
         }
         let told = told.join("; ") + if told.is_empty() { "" } else { " · " };
+        let parts = [(*objects, "object"), (*shapes, "shape"), (*trees, "tree")];
+        let parts = &parts[..if *trees == 0 { 2 } else { 3 }];
         let made = match (objects, shapes) {
             (0, 0) => "nothing made anew".to_owned(),
-            _ => format!("made anew: {}, {}", count(*objects, "object"), count(*shapes, "shape")),
+            _ => {
+                let parts: Vec<_> = parts.iter().map(|(n, what)| count(*n, what)).collect();
+                format!("made anew: {}", parts.join(", "))
+            }
         };
         format!("{told}{made} · {}", brief(*seconds))
     }
@@ -58,6 +62,7 @@ impl Edit {
             "changes": changes,
             "objects_made": anew.objects,
             "shapes_made": anew.shapes,
+            "trees_made": anew.trees,
             "ready_seconds": seconds,
         })
     }
@@ -94,10 +99,13 @@ mod tests {
     fn an_edit_is_told_in_a_line() {
         let told = |changes: &[&str], objects, shapes, seconds| {
             let changes = changes.iter().map(ToString::to_string).collect();
-            Edit::new(changes, Anew { objects, shapes }, seconds).words()
+            Edit::new(changes, Anew { objects, shapes, trees: shapes / 2 }, seconds).words()
         };
         let ball = "sphere \"ball\": radius · made anew: 1 object, 1 shape · 3.2 ms";
         assert_eq!(told(&["sphere \"ball\": radius"], 1, 1, 0.0032), ball);
+        let [one, two] = [told(&[], 1, 2, 0.001), told(&[], 0, 4, 0.001)];
+        assert_eq!(one, "made anew: 1 object, 2 shapes, 1 tree · 1.0 ms");
+        assert_eq!(two, "made anew: 0 objects, 4 shapes, 2 trees · 1.0 ms");
         assert_eq!(told(&[], 0, 0, 1.5), "nothing made anew · 1.50 s");
         let many = told(&["a", "b", "c", "d", "e", "f"], 2, 0, 0.1);
         assert_eq!(many, "a; b; c; d; 2 more · made anew: 2 objects, 0 shapes · 100.0 ms");

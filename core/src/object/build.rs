@@ -9,12 +9,10 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Emission, Fault, Param, Quantity, Role, Type};
 
 use super::Object;
-use super::block::Block;
 use super::colour::{self, Amount};
 use super::context::{Embedded, Reader, Reads};
 use super::draft::Draft;
-use super::part::{MeshParts, OWN_BITS};
-use super::patch::Patches;
+use super::part::{MeshParts, PartTree};
 use super::shelf::{Kept, Shelf};
 use crate::accel;
 use crate::diag::{Diagnostic, Span};
@@ -53,9 +51,13 @@ impl Kept for Arc<Object> {
 /// Objects of the last builds, by content.
 #[derive(Debug, Default)]
 pub struct Objects {
-    by_content: Shelf<(Hash, ColorMode), Arc<Object>>,
+    by_content: Shelf<Key, Arc<Object>>,
+    /// Trees of meshes that are parts of other shapes, by the content of the mesh.
+    pub(super) trees: Shelf<Hash, PartTree>,
     /// How many the last build had to make.
     pub made: usize,
+    /// How many of the trees it had to build.
+    pub trees_made: usize,
     /// Objects of no node: what the host takes where a scene says nothing.
     presets: Vec<Arc<Object>>,
     /// Raised by each object that fails, of this build and of those before and after it.
@@ -73,8 +75,22 @@ impl Objects {
 
     /// Takes over what builds before have left, of so many bytes at most; returns how many those are.
     pub(crate) fn inherit(&mut self, before: &Self, most: usize) -> usize {
-        self.by_content.inherit(&before.by_content, most)
+        let trees = self.trees.inherit(&before.trees, most);
+        trees + self.by_content.inherit(&before.by_content, most - trees)
     }
+}
+
+/// What an object is known by: the content of its node, and how colour is carried if that counts.
+type Key = (Hash, Option<ColorMode>);
+
+/// The keys that an object may have; those of which no more than one is taken.
+fn keys(hash: Hash, mode: ColorMode) -> [Key; 2] {
+    [(hash, None), (hash, Some(mode))]
+}
+
+/// The key of an object that was made.
+fn key(hash: Hash, mode: ColorMode, object: &Object) -> Key {
+    (hash, object.is_by_mode.then_some(mode))
 }
 
 /// Makes objects of the nodes of one scene.
@@ -84,7 +100,7 @@ pub struct Builder<'a> {
     files: &'a dyn Files,
     mode: ColorMode,
     embedded: Embedded,
-    before: &'a Objects,
+    pub(super) before: &'a Objects,
     /// How triangles become a part of another shape; without it they cannot.
     pub mesh_parts: Option<MeshParts<'a>>,
     /// Ends what plugins do before it is done.
@@ -138,17 +154,19 @@ impl<'a> Builder<'a> {
 
     fn build_or_keep(&mut self, id: NodeId) -> Option<Arc<Object>> {
         let node = self.scene.node(id);
-        let key = (self.scene.own_hash(id), self.mode);
-        if let Some(object) = self.objects.by_content.now().get(&key) {
+        let (hash, mode) = (self.scene.own_hash(id), self.mode);
+        let now = self.objects.by_content.now();
+        if let Some(object) = keys(hash, mode).iter().find_map(|key| now.get(key)) {
             return Some(object.clone());
         }
         let may_stay = |it: &&Arc<Object>| {
             it.is_current(self.registry) && it.is_unchanged(self.files, &self.embedded)
         };
-        if let Some(object) = self.before.by_content.all(key).find(may_stay).cloned() {
+        let known = keys(hash, mode).into_iter().flat_map(|key| self.before.by_content.all(key));
+        if let Some(object) = known.into_iter().find(may_stay).cloned() {
             self.keep_parts(object.class(), node);
             self.tell(&object, node);
-            self.objects.by_content.put(key, object.clone());
+            self.objects.by_content.put(key(hash, mode, &object), object.clone());
             return Some(object);
         }
         let Some(class) = self.registry.class(node.kind, &node.class) else {
@@ -157,7 +175,7 @@ impl<'a> Builder<'a> {
             return None;
         };
         let object = self.make(class, Some(node))?;
-        self.objects.by_content.put(key, object.clone());
+        self.objects.by_content.put(key(hash, mode, &object), object.clone());
         self.objects.made += 1;
         Some(object)
     }
@@ -168,6 +186,7 @@ impl<'a> Builder<'a> {
             match (param.ty, node.get(param.name).map(|argument| &argument.value)) {
                 (Type::Object(Kind::Shape), _) => {}
                 (Type::Object(Kind::Texture), Some(Value::Node(id))) => _ = self.build_asked(*id),
+                (Type::Part, Some(Value::Node(id) | Value::Moved(id, _))) => self.keep_part(*id),
                 (_, Some(Value::Node(id) | Value::Moved(id, _))) => _ = self.build(*id),
                 _ => {}
             }
@@ -201,15 +220,7 @@ impl<'a> Builder<'a> {
 
     fn make(&mut self, class: &Class, node: Option<&Node>) -> Option<Arc<Object>> {
         let errors = self.diagnostics.len();
-        let mut draft = Draft {
-            block: Block::zeroed(class.size),
-            patches: Patches::default(),
-            owned: vec![],
-            parts: vec![],
-            face_bits: OWN_BITS,
-            lacks: false,
-            mode: self.mode,
-        };
+        let mut draft = Draft::new(class.size, self.mode);
         let watch = remote(class).map(|remote| {
             let who = format!("{} `{}` of {}", class.kind, class.name, remote.origin());
             let watch = Arc::new(Watch::new(who, self.objects.alarm.clone()));
@@ -233,6 +244,7 @@ impl<'a> Builder<'a> {
             owned: draft.owned,
             size: draft.parts.iter().fold(1, |size, part| size.saturating_add(part.size)),
             parts: draft.parts,
+            is_by_mode: draft.is_by_mode,
             face_bits: draft.face_bits,
             watch,
             needs: None,
@@ -287,6 +299,7 @@ impl<'a> Builder<'a> {
     pub(super) fn part_of(&mut self, draft: &mut Draft, id: NodeId) -> Option<Arc<Object>> {
         let part = self.build(id);
         draft.lacks |= part.is_none();
+        draft.is_by_mode |= part.as_ref().is_some_and(|part| part.is_by_mode);
         part
     }
 
@@ -324,9 +337,10 @@ impl<'a> Builder<'a> {
                 }
             }
             (Type::Spectrum | Type::ComplexIor, Some(Value::Color(color, _))) => {
-                draft.lanes(param.offset, colour::lanes(color, param.role, draft.mode)?)?;
+                let mode = draft.mode();
+                draft.lanes(param.offset, colour::lanes(color, param.role, mode)?)?;
                 if param.ty == Type::ComplexIor
-                    && let Some(k) = colour::extinction(color, draft.mode)
+                    && let Some(k) = colour::extinction(color, mode)
                 {
                     draft.lanes(param.offset + size_of::<Spectrum>(), k)?;
                 }
@@ -374,11 +388,12 @@ impl<'a> Builder<'a> {
                 }
             }
             Some(Value::Color(color, _)) => {
-                draft.lanes(param.offset, colour::emission(color, amount, draft.mode)?)?;
+                let lanes = colour::emission(color, amount, draft.mode())?;
+                draft.lanes(param.offset, lanes)?;
             }
             Some(other) => return Err(format!("a spectrum cannot be made of {other:?}")),
             None => {
-                let lanes = colour::emission(&colour::white(), amount, draft.mode)?;
+                let lanes = colour::emission(&colour::white(), amount, draft.mode())?;
                 draft.lanes(param.offset, lanes)?;
             }
         }

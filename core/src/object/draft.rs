@@ -10,6 +10,7 @@ use luxel_sdk::params::{File, Maybe, Param, Preset, Role, Table, Text, Type};
 use super::asked::Asked;
 use super::block::Block;
 use super::colour::Lanes;
+use super::part::OWN_BITS;
 use super::patch::{ChildPatch, CurvePatch, Patches, RgbPatch, Target, TexturePatch, Uplift};
 use super::{ColorMode, Object};
 use crate::cast::{self, narrow, whole};
@@ -24,10 +25,32 @@ pub(super) struct Draft {
     pub(super) face_bits: u32,
     /// Whether a part is missing, with which something is wrong: it cannot be made.
     pub(super) lacks: bool,
-    pub(super) mode: ColorMode,
+    /// How colour is carried, and whether anything here depends on that.
+    mode: ColorMode,
+    pub(super) is_by_mode: bool,
 }
 
 impl Draft {
+    /// Nothing yet, of so many bytes.
+    pub(super) fn new(size: usize, mode: ColorMode) -> Self {
+        Self {
+            block: Block::zeroed(size),
+            patches: Patches::default(),
+            owned: vec![],
+            parts: vec![],
+            face_bits: OWN_BITS,
+            lacks: false,
+            mode,
+            is_by_mode: false,
+        }
+    }
+
+    /// How colour is carried: whoever asks depends on it.
+    pub(super) fn mode(&mut self) -> ColorMode {
+        self.is_by_mode = true;
+        self.mode
+    }
+
     pub(super) fn lanes(&mut self, offset: usize, lanes: Lanes) -> Result<(), String> {
         let finite = match &lanes {
             Lanes::Constant(value) => value.is_finite(),
@@ -77,12 +100,13 @@ impl Draft {
             Type::Spectrum | Type::Emission | Type::ComplexIor => Target::Spectrum,
             _ => return Err(format!("`{}` cannot be textured", param.name)),
         };
-        let uplift = match (self.mode, target, param.role) {
-            (ColorMode::Rgb, ..) | (_, Target::Float | Target::Luminance(_) | Target::Vec3, _) => {
-                Uplift::None
-            }
-            (_, _, Role::Illuminant) => Uplift::Illuminant,
-            _ => Uplift::Reflectance,
+        let uplift = match target {
+            Target::Float | Target::Luminance(_) | Target::Vec3 => Uplift::None,
+            Target::Spectrum => match (self.mode(), param.role) {
+                (ColorMode::Rgb, _) => Uplift::None,
+                (_, Role::Illuminant) => Uplift::Illuminant,
+                _ => Uplift::Reflectance,
+            },
         };
         self.parts.push(texture.clone());
         self.patches.textures.push(TexturePatch {

@@ -80,6 +80,8 @@ pub struct Object {
     parts: Vec<Arc<Object>>,
     /// Itself and its parts with theirs, each as often as it is asked.
     size: usize,
+    /// Whether it would be another one if colour were carried in another way.
+    is_by_mode: bool,
     /// Bits that its hits' faces may take, where it is a shape.
     face_bits: u32,
     /// What a material looks at, where that is the same everywhere.

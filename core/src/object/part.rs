@@ -1,5 +1,6 @@
 //! Shapes of which another one is made, and how they stand in the frame of that one.
 
+use std::fmt;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -9,6 +10,7 @@ use luxel_sdk::params::Param;
 
 use super::build::Builder;
 use super::draft::Draft;
+use super::shelf::Kept;
 use super::{Object, carried_area};
 use crate::cast;
 use crate::diag::Diagnostic;
@@ -55,9 +57,8 @@ impl Builder<'_> {
             }
             Some(triangles) => {
                 let bits = u32::BITS - cast::index(triangles.indices.len()).leading_zeros();
-                let make = self.mesh_parts.ok_or("triangles cannot be a part here")?;
-                let tree = make(triangles).map_err(|why| format!("`{name}`: {why}"))?;
-                (Body::Triangles(tree), bits)
+                let tree = self.tree(id, &child, triangles);
+                (Body::Triangles(tree.map_err(|why| format!("`{name}`: {why}"))?), bits)
             }
         };
         draft.face_bits = draft.face_bits.max(bits + 1);
@@ -68,6 +69,42 @@ impl Builder<'_> {
             return Err(format!("`{name}`: shapes stand in one another more than {deepest} deep"));
         }
         Ok(())
+    }
+}
+
+impl Builder<'_> {
+    /// The tree of a mesh that is a part, which does not depend on what it is a part of.
+    fn tree(
+        &mut self,
+        id: NodeId,
+        child: &Arc<Object>,
+        triangles: Arc<TriangleMesh>,
+    ) -> Result<Arc<dyn Shape>, String> {
+        if let Some(known) = self.known_tree(id, child) {
+            return Ok(known.shape);
+        }
+        let make = self.mesh_parts.ok_or("triangles cannot be a part here")?;
+        let (shape, bytes) = make(triangles)?;
+        let tree = PartTree { of: child.clone(), shape: shape.clone(), bytes };
+        self.objects.trees.put(self.scene.own_hash(id), tree);
+        self.objects.trees_made += 1;
+        Ok(shape)
+    }
+
+    /// Keeps a part of what is kept, with its tree.
+    pub(super) fn keep_part(&mut self, id: NodeId) {
+        if let Some(child) = self.build(id) {
+            self.known_tree(id, &child);
+        }
+    }
+
+    /// The tree of a mesh, if there is one, for this build and the next.
+    fn known_tree(&mut self, id: NodeId, child: &Arc<Object>) -> Option<PartTree> {
+        let hash = self.scene.own_hash(id);
+        let known = self.objects.trees.all(hash).chain(self.before.trees.all(hash));
+        let known = known.into_iter().find(|tree| Arc::ptr_eq(&tree.of, child)).cloned()?;
+        self.objects.trees.put(hash, known.clone());
+        Some(known)
     }
 }
 
@@ -84,11 +121,36 @@ impl Draft {
     }
 }
 
-/// How triangles become a shape that intersects itself.
+/// How triangles become a shape that intersects itself, and how many bytes it and they take.
 ///
 /// # Errors
 /// Why they cannot.
-pub type MeshParts<'a> = &'a dyn Fn(Arc<TriangleMesh>) -> Result<Arc<dyn Shape>, String>;
+pub type MeshParts<'a> = &'a dyn Fn(Arc<TriangleMesh>) -> Result<(Arc<dyn Shape>, usize), String>;
+
+/// A mesh that is a part of other shapes, with its tree.
+#[derive(Clone)]
+pub(super) struct PartTree {
+    /// The mesh: what has its triangles.
+    of: Arc<Object>,
+    shape: Arc<dyn Shape>,
+    bytes: usize,
+}
+
+impl Kept for PartTree {
+    fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.of, &other.of)
+    }
+
+    fn bytes(&self) -> usize {
+        self.bytes
+    }
+}
+
+impl fmt::Debug for PartTree {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "tree of {:?}", self.of)
+    }
+}
 
 /// What a part is.
 enum Body {

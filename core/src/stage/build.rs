@@ -109,7 +109,8 @@ pub fn build_watched(
     }
     diagnostics.append(&mut maker.builder.diagnostics);
     let (made, objects) = (maker.made, maker.builder.objects);
-    let anew = Anew { objects: objects.made, shapes: made.new_shapes };
+    let trees = made.new_trees + objects.trees_made;
+    let anew = Anew { objects: objects.made, shapes: made.new_shapes, trees };
     match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
             let stage = made.finish(settings, objects, (scene, film, mode), cache, watch);
@@ -329,6 +330,7 @@ impl Maker<'_> {
         let Some(triangles) = shape.mesh() else {
             return Some(Geometry::Analytic(Analytic::new(object.clone(), self.watch)?));
         };
+        self.made.new_trees += 1;
         let span = self.scene.node(id).span;
         match Mesh::build(triangles, self.during, self.watch) {
             Ok(mesh) => Some(Geometry::Mesh(Arc::new(mesh))),

@@ -140,6 +140,18 @@ impl Mesh {
         self.bvh.bytes()
     }
 
+    /// Bytes of the tree and the triangles.
+    pub(super) fn whole_bytes(&self) -> usize {
+        let TriangleMesh { points, indices, normals, uvs, colors, later, .. } = &*self.triangles;
+        let vectors = |all: &[Vec3]| size_of_val(all);
+        let later = later.as_ref();
+        let later = later.map_or(0, |later| vectors(&later.points) + vectors(&later.normals));
+        let triangles = size_of_val(&**indices) + size_of_val(&**uvs) + later;
+        self.bytes()
+            + [points, normals, colors].map(|all| vectors(all)).iter().sum::<usize>()
+            + triangles
+    }
+
     /// How far its points have come at a time, from 0 to 1.
     #[inline(always)]
     fn share(&self, time: f64) -> f32 {

@@ -1,8 +1,9 @@
 //! What one build leaves for the next, and what it had to make anew.
 
+use std::ops::Add;
 use std::sync::Arc;
 
-use luxel_sdk::kind::{Imported, TriangleMesh};
+use luxel_sdk::kind::Imported;
 
 use super::Geometry;
 use crate::object::{Kept, Object, Objects, Reads, Shelf};
@@ -63,8 +64,22 @@ impl Cache {
 pub struct Anew {
     /// Objects: parameters taken in, files read and decoded.
     pub objects: usize,
-    /// Shapes made ready: of meshes, their trees.
+    /// Shapes made ready for rays.
     pub shapes: usize,
+    /// Trees over the triangles of meshes: of shapes, and of parts of solids.
+    pub trees: usize,
+}
+
+impl Add for Anew {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            objects: self.objects + other.objects,
+            shapes: self.shapes + other.shapes,
+            trees: self.trees + other.trees,
+        }
+    }
 }
 
 impl Kept for Shaped {
@@ -75,20 +90,7 @@ impl Kept for Shaped {
     fn bytes(&self) -> usize {
         match &*self.1 {
             Geometry::Analytic(_) => 0,
-            Geometry::Mesh(mesh) => mesh.bytes() + bytes(mesh.triangles()),
+            Geometry::Mesh(mesh) => mesh.whole_bytes(),
         }
     }
-}
-
-fn bytes(mesh: &TriangleMesh) -> usize {
-    let TriangleMesh { points, indices, normals, uvs, colors, later, .. } = mesh;
-    let later = later.as_ref().map_or(0, |later| {
-        size_of_val(later.points.as_slice()) + size_of_val(later.normals.as_slice())
-    });
-    size_of_val(points.as_slice())
-        + size_of_val(indices.as_slice())
-        + size_of_val(normals.as_slice())
-        + size_of_val(uvs.as_slice())
-        + size_of_val(colors.as_slice())
-        + later
 }

@@ -35,6 +35,8 @@ pub(super) struct Made {
     pub(super) shapes: Shelf<Hash, Shaped>,
     /// How many of them had to be made ready.
     pub(super) new_shapes: usize,
+    /// How many of their trees had to be built.
+    pub(super) new_trees: usize,
     pub(super) placements: Vec<Placement>,
     pub(super) materials: Vec<Arc<Object>>,
     pub(super) material_nodes: Vec<NodeId>,

@@ -15,23 +15,24 @@ struct MeshPart {
     area: f64,
 }
 
-/// Triangles with their tree as a shape.
+/// Triangles with their tree as a shape, and the bytes of both.
 ///
 /// # Errors
 /// Why there is no tree.
 pub(in super::super) fn mesh_part(
     triangles: Arc<TriangleMesh>,
     watch: &Watch,
-) -> Result<Arc<dyn Shape>, String> {
+) -> Result<(Arc<dyn Shape>, usize), String> {
     if triangles.later.is_some() {
         return Err("a mesh whose points move is no part of a solid".to_owned());
     }
     let mesh = Mesh::build(triangles, [0.0; 2], watch).map_err(|e| e.to_string())?;
     let triangles = 0..crate::cast::index(mesh.triangles().indices.len());
     let area = triangles.map(|i| mesh.area(i, 0.0, |edge| edge)).sum();
+    let bytes = mesh.whole_bytes();
     let mesh = Geometry::Mesh(Arc::new(mesh));
     let bounds = mesh.bounds();
-    Ok(Arc::new(MeshPart { mesh, bounds, area }))
+    Ok((Arc::new(MeshPart { mesh, bounds, area }), bytes))
 }
 
 impl Shape for MeshPart {

@@ -126,7 +126,7 @@ impl Found {
 
 fn measured(case: &Case, sampler: &str) -> Found {
     let stage = &stage(case, sampler);
-    let goal = Goal { error: Some(case.error), time: None };
+    let goal = Goal { error: Some(case.error), ..Goal::default() };
     let some = |first: u32| {
         let mut found = Found::default();
         for seed in (first..RUNS).step_by(THREADS as usize) {

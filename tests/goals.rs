@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use glam::UVec2;
 use luxel_core::files::MemoryFiles;
-use luxel_core::film::{Errors, Film, Rect};
+use luxel_core::film::{Above, Confidence, Errors, Film, Rect, half_width_95};
 use luxel_core::render::{Control, Goal, Options, Outcome, Reached, render, render_on};
 use luxel_core::stage::Stage;
 
@@ -36,7 +36,7 @@ fn empty(stage: &Stage) -> Film {
 }
 
 fn asked(error: f64) -> Options {
-    let goal = Goal { error: Some(error), time: None };
+    let goal = Goal { error: Some(error), ..Goal::default() };
     Options { goal, ..Options::default() }
 }
 
@@ -56,6 +56,26 @@ fn what_is_asked_is_what_one_gets() {
         // And not four times the samples: tiles at most double, so the error is above half of it.
         assert!(said.rms > 0.01, "{sampler}: {}", said.rms);
     }
+}
+
+#[test]
+fn with_confidence_the_error_asked_holds_for_that_share_of_the_pixels() {
+    let stage = stage(SCENE);
+    let goal = Goal { confidence: Some(Confidence::USUAL), ..asked(0.04).goal };
+    let (film, outcome) =
+        render(&stage, &Options { goal, ..Options::default() }, &Control::default());
+    assert_eq!(outcome, Outcome::Complete);
+    assert_eq!(Above::of_film(&film, (0.04, goal.confidence), 5).tiles, 0);
+    let said = Errors::of_film(&film, 0.04).unwrap();
+    assert!(said.rms * half_width_95(film.most_samples()) <= 0.04, "{said:?}");
+    let held =
+        film.pixels().filter(|(_, pixel)| (pixel.mean.y / TRUTH - 1.0).abs() <= 0.04).count();
+    // Four standard deviations of the share of 2048 pixels, of which 95 % at the least are to be held.
+    let share = held as f64 / film.window.area() as f64;
+    assert!(share >= 0.95 - 4.0 * (0.95_f64 * 0.05 / 2048.0).sqrt(), "{share}");
+    // As one standard error it asks for about a quarter of the samples.
+    let plain = render(&stage, &asked(0.04), &Control::default()).0;
+    assert!(plain.samples() * 2 < film.samples(), "{} {}", plain.samples(), film.samples());
 }
 
 /// On the left a lamp in brushed metal, on the right an even sky.
@@ -155,7 +175,7 @@ fn more_samples_go_on_where_fewer_ended() {
 #[test]
 fn a_time_that_is_over_at_once_leaves_a_picture() {
     let stage = stage(UNEVEN);
-    let goal = Goal { error: None, time: Some(Duration::from_nanos(1)) };
+    let goal = Goal { time: Some(Duration::from_nanos(1)), ..Goal::default() };
     let options = Options { goal, ..Options::default() };
     let (film, outcome) = render(&stage, &options, &Control::default());
     assert_eq!(outcome, Outcome::Complete);

@@ -8,7 +8,7 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use luxel_core::film::{Film, Rect};
+use luxel_core::film::{Confidence, Film, Rect};
 use luxel_core::render::{Goal, Options, can_go_on};
 use luxel_core::stage::Stage;
 use serde_json::{Value, json};
@@ -72,6 +72,8 @@ pub(crate) struct Asked {
     pub(crate) spp: Option<u32>,
     /// The error.
     pub(crate) error: Option<f64>,
+    /// With which confidence, if not as one standard error.
+    pub(crate) confidence: Option<Confidence>,
     /// Seconds: those of this run, or what is left of them for the next.
     pub(crate) time: Option<f64>,
 }
@@ -90,13 +92,14 @@ pub(crate) struct Before {
 impl Asked {
     /// What these options ask for.
     pub(crate) fn of(options: &Options) -> Self {
-        let Goal { error, time } = options.goal;
-        Self { spp: options.spp, error, time: time.map(|time| time.as_secs_f64()) }
+        let Goal { error, confidence, time } = options.goal;
+        Self { spp: options.spp, error, confidence, time: time.map(|time| time.as_secs_f64()) }
     }
 
     /// The same for another run. One that had an error to reach and no time left goes on until then.
     pub(crate) fn ask(&self, options: &mut Options) {
         (options.spp, options.goal.error) = (self.spp, self.error);
+        options.goal.confidence = self.confidence;
         let time = self.time.filter(|left| *left > 0.0 || self.error.is_none());
         options.goal.time = time.and_then(|left| Duration::try_from_secs_f64(left).ok());
     }
@@ -125,6 +128,7 @@ impl Checkpoint {
             "window": [window.min.to_array(), window.size.to_array()],
             "spp": asked.spp,
             "error": asked.error,
+            "confidence": asked.confidence.map(Confidence::share),
         });
         let every = Some(args.every).filter(|every| !every.is_zero() && can_go_on(stage));
         let next = every.and_then(|every| Instant::now().checked_add(every));
@@ -215,13 +219,15 @@ impl Checkpoint {
         let spp = about["spp"].as_u64().and_then(|spp| spp.try_into().ok());
         let [error, time, seconds] =
             ["error", "time_left", "seconds"].map(|key| about[key].as_f64());
-        let asked = Asked { spp, error, time };
+        let confidence = about["confidence"].as_f64().and_then(Confidence::new);
+        let asked = Asked { spp, error, confidence, time };
         Ok(Some(Before { film, asked, seconds: seconds.unwrap_or(0.0) }))
     }
 
     /// From now on this is asked for, after so many seconds of other runs.
     pub(crate) fn asks(&mut self, asked: Asked, before: f64) {
         (self.about["spp"], self.about["error"]) = (json!(asked.spp), json!(asked.error));
+        self.about["confidence"] = json!(asked.confidence.map(Confidence::share));
         (self.given, self.before) = (asked.time, before);
     }
 
@@ -329,7 +335,8 @@ mod tests {
         let mut kept = checkpoint(&folder, 1);
         assert_eq!((kept.read().unwrap(), kept.left().unwrap()), (None, Left::Nothing));
         assert!(!kept.is_due());
-        let asked = Asked { spp: Some(7), error: Some(0.25), time: Some(4.0) };
+        let confidence = Confidence::new(0.9);
+        let asked = Asked { spp: Some(7), error: Some(0.25), confidence, time: Some(4.0) };
         kept.asks(asked, 30.0);
         kept.keep(&film(), 1.5).unwrap();
         assert_eq!(folder.names(), ["a.checkpoint"]);
@@ -345,7 +352,7 @@ mod tests {
     fn the_next_run_has_what_is_left_of_the_time_or_goes_on_until_the_error_is_reached() {
         let time = |error, time| {
             let mut options = Options::default();
-            Asked { spp: None, error, time }.ask(&mut options);
+            Asked { error, time, ..Asked::default() }.ask(&mut options);
             (options.goal.error, options.goal.time)
         };
         let half = Some(Duration::from_millis(500));

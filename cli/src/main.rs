@@ -31,6 +31,7 @@ mod picture;
 mod plugin;
 mod preview;
 mod progress;
+mod reached;
 mod render;
 mod report;
 mod study;

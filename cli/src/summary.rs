@@ -1,7 +1,7 @@
 //! What a render came to, for people and as JSON.
 
 use glam::{DVec3, UVec2};
-use luxel_core::film::{Errors, Film, Layer};
+use luxel_core::film::{Film, Layer};
 use luxel_core::render::{Goal, Options, Outcome};
 use luxel_core::scene::{Feature, NodeId, called};
 use luxel_core::stage::Stage;
@@ -12,6 +12,7 @@ use crate::origin::Origin;
 use crate::output::Output;
 use crate::picture::Notes;
 use crate::progress::duration;
+use crate::reached::Reached;
 
 /// What was asked, what it cost and how wrong the picture may be.
 #[derive(Clone, Debug)]
@@ -36,7 +37,7 @@ pub(crate) struct Summary {
     /// Of this run and those that it went on from.
     samples_in_all: u64,
     mean: DVec3,
-    error: Option<Errors>,
+    reached: Reached,
     scene: String,
     files: String,
     origin: Origin,
@@ -104,7 +105,7 @@ impl Summary {
             took,
             samples_in_all: film.samples().max(took.samples),
             mean: film.mean().0,
-            error: Errors::of_film(film, goal.error.unwrap_or(f64::INFINITY)),
+            reached: Reached::of(film, goal),
             scene: hex(stage.scene.hash()),
             files: files.hash().to_hex().to_string(),
             origin: origin.clone(),
@@ -117,13 +118,15 @@ impl Summary {
 
     /// Whether every tile has the error that was asked for, if one was.
     pub(crate) fn is_reached(&self) -> bool {
-        self.goal.error.is_none() || self.error.is_some_and(|error| error.tiles_above == 0)
+        self.reached.is_whole()
     }
 
     fn settings(&self) -> Value {
         let mut settings = self.common_settings();
         self.origin.say(&mut settings);
-        self.say_reached(&mut settings);
+        settings["least_samples"] = json!(self.counts[0]);
+        settings["most_samples"] = json!(self.counts[1]);
+        self.reached.say(&mut settings);
         if self.names.as_object().is_some_and(|names| !names.is_empty()) {
             settings["names"] = self.names.clone();
         }
@@ -132,21 +135,6 @@ impl Summary {
         }
         self.bad_places.say(&mut settings);
         settings
-    }
-
-    /// How good the picture is.
-    fn say_reached(&self, all: &mut Value) {
-        all["least_samples"] = json!(self.counts[0]);
-        all["most_samples"] = json!(self.counts[1]);
-        all["rms_relative_error"] = json!(self.error.map(|error| error.rms));
-        all["median_relative_error"] = json!(self.error.map(|error| error.median));
-        all["p95_relative_error"] = json!(self.error.map(|error| error.p95));
-        all["worst_relative_error"] = json!(self.error.map(|error| error.worst));
-        all["worst_pixel"] = json!(self.error.map(|error| error.worst_at.to_array()));
-        if self.goal.error.is_some() {
-            all["pixels_above"] = json!(self.error.map(|error| error.above));
-            all["tiles_above"] = json!(self.error.map(|error| error.tiles_above));
-        }
     }
 
     fn common_settings(&self) -> Value {
@@ -167,7 +155,6 @@ impl Summary {
             "sampler": self.sampler,
             "filter": self.filter,
             "bad_samples": self.bad,
-            "error_asked": self.goal.error,
             "time_asked": self.goal.time.map(|time| time.as_secs_f64()),
             "complete": self.outcome == Outcome::Complete && self.is_reached(),
         })
@@ -207,7 +194,7 @@ impl Summary {
             "wrote {exr} and {png}{done}\n\
              {size}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
              mean radiance ({:.4}, {:.4}, {:.4}) W/m²/sr\n\
-             {error}{reached}{bad}{dropped}",
+             {reached}{bad}{dropped}",
             mean.x,
             mean.y,
             mean.z,
@@ -218,8 +205,7 @@ impl Summary {
             mode = self.mode,
             time = self.took.words(),
             rate = self.took.rate() / 1e6,
-            error = self.error_words(),
-            reached = self.reached_words(),
+            reached = self.reached.words(),
             bad = self.bad_places.words(),
             dropped = self.dropped_words(),
         )
@@ -230,33 +216,6 @@ impl Summary {
         let [least, most] = self.counts;
         let is_even = least == most || !self.goal.is_some();
         if is_even { self.spp.to_string() } else { format!("{least} to {most}") }
-    }
-
-    fn error_words(&self) -> String {
-        let Some(Errors { rms, median, p95, worst, worst_at, .. }) = self.error else {
-            return "standard error per pixel: unknown, it takes two samples\n".into();
-        };
-        let [rms, median, p95, worst] = [rms, median, p95, worst].map(percent);
-        format!(
-            "relative standard error per pixel: rms {rms}, median {median}, 95th percentile {p95}, \
-             worst {worst} at ({}, {})\n",
-            worst_at.x, worst_at.y
-        )
-    }
-
-    fn reached_words(&self) -> String {
-        let (Some(asked), Some(error)) = (self.goal.error, self.error) else {
-            return String::new();
-        };
-        let (asked, above) = (percent(asked), error.above);
-        match error.tiles_above {
-            0 => format!(
-                "every tile is within the {asked} asked for; single pixels above: {above}\n"
-            ),
-            tiles => format!(
-                "the {asked} asked for is not reached: {tiles} tiles are above, {above} pixels\n"
-            ),
-        }
     }
 
     fn dropped_words(&self) -> String {
@@ -342,10 +301,6 @@ fn names(stage: &Stage, film: &Film) -> Value {
     let shapes = &mut stage.placements.iter().map(|placement| &placement.node);
     let objects = listed(Layer::Object, shapes);
     Value::Object(materials.into_iter().chain(objects).collect())
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.2} %", share * 100.0)
 }
 
 /// The fewest and the most samples of a pixel.

@@ -210,6 +210,32 @@ fn nothing_is_gone_on_with_that_is_of_another_picture() {
     assert_eq!(folder.read("a.checkpoint"), b"a diary");
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interval_is_told_and_can_be_asked_for_and_tiles_where_it_is_not_reached_have_names() {
+    let folder = Folder::new("sure").with("a.scene", SCENE);
+    assert_eq!(folder.luxel(&["render", "a.scene", "-q", "-o", "a", "--spp", "16"]).code, 0);
+    let half = &attribute(&folder.read("a.exr"))["half_width"];
+    assert!(
+        half["confidence"] == 0.95 && half["worst_tile"].as_f64() > half["median"].as_f64(),
+        "{half}"
+    );
+    // What cannot be reached is told with the tiles where it is not.
+    let sure =
+        ["render", "a.scene", "--error", "0.1%", "--confidence", "99%", "--spp", "64", "-o", "b"];
+    let done = folder.luxel(&sure);
+    let told = "the 0.10 % with 99 % confidence asked for is not reached: ";
+    assert!(done.code == 3 && done.out.contains(told), "{done:?}");
+    let about = attribute(&folder.read("b.exr"));
+    let (above, worst) = (&about["tiles_above"], &about["worst_tiles_above"]);
+    assert_eq!(above.as_u64(), worst.as_array().map(|tiles| tiles.len() as u64), "{about}");
+    assert!(worst[0]["error"].as_f64() >= worst[1]["error"].as_f64(), "{worst}");
+    assert_eq!((&worst[0]["at"][2], &about["confidence_asked"]), (&16.into(), &0.99.into()));
+    // It is gone on with as it was asked for.
+    let again = folder.luxel(&["render", "a.scene", "-o", "b", "--resume"]);
+    assert!(again.code == 3 && again.out.contains(told), "{again:?}");
+}
+
 #[test]
 fn an_error_and_a_time_are_read_or_refused() {
     let folder = Folder::new("goal").with("a.scene", SCENE);
@@ -219,11 +245,19 @@ fn an_error_and_a_time_are_read_or_refused() {
     // The picture says itself how good it is.
     let exr = folder.read("a.exr");
     assert!(exr.windows(20).any(|bytes| bytes == b"\"rms_relative_error\""));
+    assert!(done.out.contains("\nhalf width of 95 % intervals: median "), "{}", done.out);
     let timed = folder.luxel(&["render", "a.scene", "--time", "0.05s", "-o", "a", "--json"]);
     assert!(timed.code == 0 && timed.out.contains("rms_relative_error"), "{timed:?}");
-    for wrong in [["--error", "one"], ["--time", "3 weeks"], ["--checkpoint", "-1"]] {
+    for wrong in [
+        ["--error", "one"],
+        ["--time", "3 weeks"],
+        ["--checkpoint", "-1"],
+        ["--confidence", "100%"],
+    ] {
         let args = [&["render", "a.scene"][..], &wrong].concat();
         let done = folder.luxel(&args);
         assert!(done.code == 2 && done.err.contains("expected"), "{done:?}");
     }
+    let alone = folder.luxel(&["render", "a.scene", "--confidence", "95%"]);
+    assert!(alone.code == 2 && alone.err.contains("--error"), "{alone:?}");
 }

@@ -63,10 +63,10 @@ pub(super) fn table(root: &Path, form: Form) -> Result<String, String> {
     ];
     for (name, file, assets) in SCENES {
         let stage = stage_of(&root.join("scenes"), (file, assets), run.size)?;
-        let error = Goal { error: Some(run.error), time: None };
+        let error = Goal { error: Some(run.error), ..Goal::default() };
         let asked = format!("{name}, {:.0} %", run.error * 100.0);
         rows.push(format!("| {asked} | {} |", run.row(&stage, error)));
-        let time = Goal { error: None, time: Some(run.time) };
+        let time = Goal { time: Some(run.time), ..Goal::default() };
         let asked = format!("{name}, {} s", run.time.as_secs_f64());
         rows.push(format!("| {asked} | {} |", run.row(&stage, time)));
     }
@@ -129,7 +129,7 @@ impl Run {
     fn truth(&self, goal: Goal) -> Options {
         let error = goal.error.map(|error| error / f64::from(self.times).sqrt());
         let time = goal.time.map(|time| time * self.times);
-        Options { goal: Goal { error, time }, seed: Some(SEED), ..Options::default() }
+        Options { goal: Goal { error, time, ..goal }, seed: Some(SEED), ..Options::default() }
     }
 
     /// Relative error of a picture, root mean square: of all, and of the worst tile.
@@ -175,11 +175,11 @@ mod tests {
             let total: u64 = film.pixels().map(|(_, pixel)| u64::from(pixel.n)).sum();
             total as f64 / 256.0
         };
-        let goal = Goal { error: Some(run.error), time: None };
+        let goal = Goal { error: Some(run.error), ..Goal::default() };
         let judged = mean(Options { goal, ..Options::default() });
         let ratio = mean(run.truth(goal)) / judged;
         assert!(judged > 64.0 && (12.0..20.0).contains(&ratio), "{ratio} times {judged}");
-        let timed = run.truth(Goal { error: None, time: Some(time) });
+        let timed = run.truth(Goal { time: Some(time), ..Goal::default() });
         assert_eq!((timed.goal.time, timed.seed), (Some(Duration::from_secs(32)), Some(SEED)));
     }
 }

@@ -87,7 +87,7 @@ impl Scale {
 
     /// Nothing below two samples, and where the error is beyond numbers. A picture that is black all
     /// over is black without error, as far as one can tell.
-    fn error(&self, pixel: &Pixel) -> Option<f64> {
+    pub(super) fn error(&self, pixel: &Pixel) -> Option<f64> {
         let error = self.weights.dot(pixel.standard_error());
         let value = self.weights.dot(pixel.mean).max(self.dark);
         let relative = if error > 0.0 { error / value } else { 0.0 };

@@ -4,6 +4,7 @@
 //! does not depend on tiles or threads.
 
 mod errors;
+mod interval;
 mod layer;
 mod pixel;
 mod rect;
@@ -14,9 +15,10 @@ use glam::{DVec3, UVec2};
 
 pub use errors::Errors;
 pub(crate) use errors::Scale;
+pub use interval::{Above, Confidence, Intervals, half_width_95};
 pub(crate) use layer::Of;
 pub use layer::{Channel, Holds, Layer};
-pub use pixel::{Pixel, degrees_of_freedom, half_width_95};
+pub use pixel::{Pixel, degrees_of_freedom};
 pub use rect::Rect;
 pub use save::Unreadable;
 pub(crate) use tile::{COARSEST, Tile};

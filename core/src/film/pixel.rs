@@ -182,32 +182,6 @@ pub fn degrees_of_freedom(n: u32) -> f64 {
     1.0 / (first + later)
 }
 
-/// How many standard errors an interval about the mean of `n` samples reaches to each side, if it is
-/// to hold the truth 95 times in 100: Student's t; infinite below two samples.
-///
-/// # Source
-/// Hill 1970, Algorithm 396 (the expansion in the normal quantile), three digits from three degrees of
-/// freedom on; below, the closed forms.
-pub fn half_width_95(n: u32) -> f64 {
-    let nu = degrees_of_freedom(n);
-    match n {
-        0 | 1 => f64::INFINITY,
-        2 => 12.706_204_736,
-        3 => 4.302_652_730,
-        _ => {
-            let z: f64 = 1.959_963_984_540_054;
-            let g1 = (z.powi(3) + z) / 4.0;
-            let g2 = (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0;
-            let g3 = (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0;
-            let g4 = (79.0 * z.powi(9) + 776.0 * z.powi(7) + 1482.0 * z.powi(5)
-                - 1920.0 * z.powi(3)
-                - 945.0 * z)
-                / 92160.0;
-            z + g1 / nu + g2 / nu.powi(2) + g3 / nu.powi(3) + g4 / nu.powi(4)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -282,17 +256,13 @@ mod tests {
     }
 
     #[test]
-    fn degrees_and_intervals_are_those_of_the_tables() {
+    fn degrees_of_freedom_are_those_of_the_parts() {
         for (n, degrees) in [(0, 0.0), (1, 0.0), (2, 1.0), (16, 15.0)] {
             assert!((degrees_of_freedom(n) - degrees).abs() <= 0.0, "{n}");
         }
         assert!((degrees_of_freedom(32) - 1.0 / (0.25 / 7.0 + 0.25 / 15.0)).abs() < 1e-9);
         assert!((20.9..21.0).contains(&degrees_of_freedom(1 << 20)));
         assert!((20.9..21.1).contains(&degrees_of_freedom(u32::MAX)));
-        // Student's t, 97.5 %: 3.18245, 2.36462, 2.13145 for 3, 7 and 15 degrees of freedom.
-        for (n, t) in [(4, 3.18245), (8, 2.36462), (16, 2.13145)] {
-            assert!((half_width_95(n) / t - 1.0).abs() < 2e-3, "{n}: {}", half_width_95(n));
-        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use std::time::Duration;
 
-use crate::film::{Film, Scale};
+use crate::film::{Confidence, Film, Scale};
 
 /// How good a picture is to be, or how long it may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,6 +13,9 @@ pub struct Goal {
     /// Relative standard error that each tile is to reach (root mean square over its pixels, as
     /// `film::Errors`), above 0.
     pub error: Option<f64>,
+    /// Instead of the standard error it is then the half width of an interval that holds the truth with
+    /// this probability.
+    pub confidence: Option<Confidence>,
     /// Time that a render may take. What is measured then depends on the machine; without `error` the
     /// samples go where they lower the picture's mean squared error most.
     pub time: Option<Duration>,
@@ -62,7 +65,7 @@ impl Plan {
             return (missing > 0).then_some(0);
         }
         let aims = match self.goal.error {
-            Some(error) => for_error(film, error, self.most),
+            Some(error) => for_error(film, (error, self.goal.confidence), self.most),
             None => for_time(film, self.most),
         };
         let mut beyond = None;
@@ -88,7 +91,8 @@ impl Plan {
             return false;
         };
         let scale = Scale::of(film);
-        film.tiles().iter().all(|tile| scale.of_tile(tile).is_none_or(|found| found <= error))
+        let reach = |tile| scale.reach(tile, self.goal.confidence);
+        film.tiles().iter().all(|tile| reach(tile).is_none_or(|found| found <= error))
     }
 }
 
@@ -101,10 +105,10 @@ struct Aim {
 
 /// Variance falls as one over the number of samples or faster: a tile needs at most the square of what
 /// its error is too large by. It at most doubles, and finds out again.
-fn for_error(film: &Film, target: f64, most: u32) -> Vec<Aim> {
+fn for_error(film: &Film, (target, confidence): (f64, Option<Confidence>), most: u32) -> Vec<Aim> {
     let scale = Scale::of(film);
     // More of what is not finite tells nothing more.
-    let ratio = |tile| scale.of_tile(tile).unwrap_or(0.0) / target;
+    let ratio = |tile| scale.reach(tile, confidence).unwrap_or(0.0) / target;
     let ratios: Vec<f64> = film.tiles().iter().map(ratio).collect();
     let counts: Vec<u32> = film.tiles().iter().map(|tile| tile.next).collect();
     let of_tile = |i: usize| {
@@ -188,7 +192,7 @@ mod tests {
     }
 
     fn error(error: f64) -> Goal {
-        Goal { error: Some(error), time: None }
+        Goal { error: Some(error), ..Goal::default() }
     }
 
     #[test]
@@ -220,6 +224,18 @@ mod tests {
     }
 
     #[test]
+    fn an_interval_asks_for_more_than_its_standard_error() {
+        // The first 16 of 64 samples have all of the spread: .26 / 4, and a half width of 2.08 times that.
+        let asked = |confidence| {
+            let goal = Goal { confidence, ..error(0.1) };
+            let mut found = film(64, 0.01, 1.0);
+            Plan::new(goal, MOST).aim(&mut found).map(|_| found.tiles()[4].aim)
+        };
+        assert_eq!((asked(None), asked(Confidence::new(0.5))), (None, None));
+        assert!(asked(Some(Confidence::USUAL)).is_some_and(|aim| aim > 64));
+    }
+
+    #[test]
     fn tiles_do_not_lag_far_behind_a_neighbour_that_needs_more() {
         let mut found = film(64, 0.0, 9.0);
         found.tiles_mut()[4].next = 64 * LAG + LAG;
@@ -229,7 +245,7 @@ mod tests {
 
     #[test]
     fn time_goes_where_it_gains_most_and_none_lags_far_behind() {
-        let goal = Goal { error: None, time: Some(Duration::from_secs(1)) };
+        let goal = Goal { time: Some(Duration::from_secs(1)), ..Goal::default() };
         let aims = |found: &mut Film| {
             assert!(Plan::new(goal, MOST).aim(found).is_some());
             found.tiles().iter().map(|tile| tile.aim).collect::<Vec<_>>()

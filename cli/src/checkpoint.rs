@@ -27,10 +27,27 @@ pub(crate) struct CheckpointArgs {
     #[arg(long)]
     pub(crate) resume: bool,
     /// Seconds between two checkpoints, or four times as long as one takes; each waits a few seconds
-    /// for what is being measured; 0 for none, not even after Ctrl-C
-    #[arg(long = "checkpoint", value_name = "SECONDS", default_value = "60", value_parser = seconds)]
-    every: Duration,
+    /// for what is being measured; 0 for none, not even after Ctrl-C [default: 60]
+    #[arg(long = "checkpoint", value_name = "SECONDS", value_parser = seconds)]
+    every: Option<Duration>,
 }
+
+impl CheckpointArgs {
+    /// Time between two checkpoints; zero for none.
+    fn every(self) -> Duration {
+        self.every.unwrap_or(USUAL)
+    }
+
+    /// Whether somebody counts on checkpoints: who asks for them, or for a picture that takes longer than
+    /// it is until the first.
+    pub(crate) fn are_missed(self, goal: Goal) -> bool {
+        let is_long = goal.error.is_some() || goal.time.is_some_and(|time| time >= self.every());
+        !self.every().is_zero() && (self.every.is_some() || is_long)
+    }
+}
+
+/// Time between two checkpoints if nobody says otherwise.
+const USUAL: Duration = Duration::from_secs(60);
 
 /// Time that may go into checkpoints: one part for so many of rendering.
 const SHARE: u32 = 4;
@@ -130,7 +147,7 @@ impl Checkpoint {
             "error": asked.error,
             "confidence": asked.confidence.map(Confidence::share),
         });
-        let every = Some(args.every).filter(|every| !every.is_zero() && can_go_on(stage));
+        let every = Some(args.every()).filter(|every| !every.is_zero() && can_go_on(stage));
         let next = every.and_then(|every| Instant::now().checked_add(every));
         let place = output.exr.with_extension("checkpoint");
         let kept = Self { place, about, every, next, before: 0.0, given: asked.time };
@@ -361,6 +378,20 @@ mod tests {
         assert_eq!(time(Some(0.25), Some(0.5)), (Some(0.25), half));
         assert_eq!(time(Some(0.25), Some(0.0)), (Some(0.25), None));
         assert_eq!(time(Some(0.25), None), (Some(0.25), None));
+    }
+
+    #[test]
+    fn checkpoints_are_missed_where_they_are_asked_for_or_the_picture_takes_long() {
+        let missed = |every: Option<u64>, goal| {
+            let every = every.map(Duration::from_secs);
+            CheckpointArgs { resume: false, every }.are_missed(goal)
+        };
+        let time = |seconds| Goal { time: Some(Duration::from_secs(seconds)), ..Goal::default() };
+        let error = Goal { error: Some(0.01), ..Goal::default() };
+        assert!(missed(None, time(60)) && missed(None, error) && missed(Some(5), Goal::default()));
+        assert!(
+            !missed(None, Goal::default()) && !missed(None, time(59)) && !missed(Some(0), error)
+        );
     }
 
     #[test]

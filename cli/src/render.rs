@@ -180,6 +180,11 @@ fn begin(
         let message = "an integrator that owns the whole picture records nothing beside colour";
         report::warning(message);
     }
+    if !can_go_on(stage) && args.checkpoint.are_missed(options.goal) {
+        let message = "this integrator owns the whole picture, and its passes depend on each other: nothing is \
+                       kept to go on with, also not after Ctrl-C";
+        report::warning(message);
+    }
     if !args.checkpoint.resume {
         if kept.left()? == Left::Same {
             let place = kept.place().display();

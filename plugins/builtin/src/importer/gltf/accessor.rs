@@ -13,6 +13,14 @@ impl Source<'_> {
         self.root.get(index).ok_or_else(|| format!("there is no accessors[{i}]"))
     }
 
+    /// Whether an accessor's elements have four numbers.
+    ///
+    /// # Errors
+    /// If there is no such accessor.
+    pub(super) fn has_four(&self, index: Index<Accessor>) -> Result<bool, String> {
+        Ok(self.accessor(index)?.type_ == Checked::Valid(Type::Vec4))
+    }
+
     /// Elements of `N` numbers; whole numbers that are marked so count as fractions.
     ///
     /// # Errors

@@ -32,10 +32,19 @@ pub(super) struct Made {
     pub(super) double_sided: bool,
 }
 
+/// What multiplies a material's base colour.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Paint {
+    /// Nothing.
+    Plain,
+    /// The colours of the mesh's corners.
+    Corners,
+}
+
 /// What has been made of the file's materials.
 #[derive(Default)]
 pub(super) struct Materials {
-    made: HashMap<Option<usize>, Made>,
+    made: HashMap<(Option<usize>, Paint), Made>,
     images: HashMap<(usize, &'static str, &'static str, [u32; 4]), usize>,
 }
 
@@ -52,9 +61,13 @@ const ROUGHNESS: Channel = Channel { space: "raw", channel: "g" };
 const METALLIC: Channel = Channel { space: "raw", channel: "b" };
 
 impl Builder<'_> {
-    /// A material, or that of primitives without one; made once.
-    pub(super) fn material(&mut self, index: Option<Index<Material>>) -> Result<Made, String> {
-        let key = index.map(|index| index.value());
+    /// A material, or that of primitives without one; made once for each paint.
+    pub(super) fn material(
+        &mut self,
+        index: Option<Index<Material>>,
+        paint: Paint,
+    ) -> Result<Made, String> {
+        let key = (index.map(|index| index.value()), paint);
         if let Some(made) = self.materials.made.get(&key) {
             return Ok(made.clone());
         }
@@ -67,20 +80,21 @@ impl Builder<'_> {
             }
             None => &plain,
         };
-        let made = self.make_material(material)?;
+        let made = self.make_material(material, paint)?;
         self.materials.made.insert(key, made.clone());
         Ok(made)
     }
 
-    fn make_material(&mut self, material: &Material) -> Result<Made, String> {
+    fn make_material(&mut self, material: &Material, paint: Paint) -> Result<Made, String> {
         let name = material.name.as_deref().unwrap_or("");
         let pbr = &material.pbr_metallic_roughness;
         let [r, g, b, a] = pbr.base_color_factor.0;
         let base = pbr.base_color_texture.as_ref();
         let both = pbr.metallic_roughness_texture.as_ref();
         let (metallic, roughness) = (pbr.metallic_factor.0, pbr.roughness_factor.0);
+        let base_color = self.textured(base, COLOUR, [r, g, b])?;
         let mut params = vec![
-            ("base_color", self.textured(base, COLOUR, [r, g, b])?),
+            ("base_color", self.painted(base_color, paint)),
             ("metallic", self.textured_number(both, METALLIC, metallic)?),
             ("roughness", self.textured_number(both, ROUGHNESS, roughness)?),
         ];
@@ -133,6 +147,15 @@ impl Builder<'_> {
         let image = self.image(info, channel)?;
         let plain = factor.iter().all(|x| *x >= 1.0);
         Ok(ImportValue::Node(if plain { image } else { self.scaled(image, rgb(factor)) }))
+    }
+
+    /// A colour times that of the corners (glTF 2.0 §3.9.2).
+    fn painted(&mut self, color: ImportValue, paint: Paint) -> ImportValue {
+        if paint == Paint::Plain {
+            return color;
+        }
+        let corners = self.add(Kind::Texture, "vertex_color", "", vec![]);
+        ImportValue::Node(self.scaled(corners, color))
     }
 
     /// A number in [0, 1], or a channel of a texture times it.

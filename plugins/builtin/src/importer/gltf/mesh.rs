@@ -9,7 +9,8 @@ use gltf::json::{Accessor, Index};
 use luxel_sdk::kind::{ImportValue, Kind};
 
 use super::Builder;
-use crate::stop::gather;
+use super::material::Paint;
+use crate::stop::{gather, wanted};
 
 /// What has been made of the file's meshes and accessors.
 #[derive(Default)]
@@ -24,6 +25,7 @@ pub(super) struct Meshes {
 enum Use {
     Vectors,
     Coordinates,
+    Colours,
     Indices,
 }
 
@@ -52,6 +54,10 @@ impl Builder<'_> {
                 }
             }
         }
+        let more = Checked::Valid(Semantic::Colors(1));
+        if mesh.primitives.iter().any(|p| p.attributes.contains_key(&more)) {
+            self.warn("COLOR_1 and later are not supported: COLOR_0 is used alone".to_owned());
+        }
         if mesh.primitives.iter().any(|p| p.targets.is_some()) {
             self.warn("morph targets are not supported: the base shape is used".to_owned());
         }
@@ -64,7 +70,9 @@ impl Builder<'_> {
         let points = attribute(Semantic::Positions).ok_or(Refusal::skip("no POSITION"))?;
         let points = self.table(points, Use::Vectors)?;
         let n_points = points.len() / 3;
-        let material = self.material(primitive.material)?;
+        let colours = attribute(Semantic::Colors(0));
+        let paint = if colours.is_some() { Paint::Corners } else { Paint::Plain };
+        let material = self.material(primitive.material, paint)?;
         let mut params = vec![
             ("indices", ImportValue::Table(self.triangles(primitive, n_points)?)),
             ("material", ImportValue::Node(material.node)),
@@ -76,7 +84,8 @@ impl Builder<'_> {
         let normals = attribute(Semantic::Normals).map(|n| (n, Use::Vectors, 3, "normals"));
         let uvs = attribute(Semantic::TexCoords(material.uv_set));
         let uvs = uvs.map(|uv| (uv, Use::Coordinates, 2, "uvs"));
-        for (accessor, table_use, width, param) in normals.into_iter().chain(uvs) {
+        let colours = colours.map(|c| (c, Use::Colours, 3, "colors"));
+        for (accessor, table_use, width, param) in normals.into_iter().chain(uvs).chain(colours) {
             let table = self.table(accessor, table_use)?;
             if table.len() / width != n_points {
                 let n = table.len() / width;
@@ -113,6 +122,7 @@ impl Builder<'_> {
                 let uvs = self.source.floats::<2>(index)?;
                 gather(uvs.into_iter().flat_map(|[u, v]| [u, 1.0 - v]), self.source.context)?.into()
             }
+            Use::Colours => self.colours(index)?,
             Use::Indices => {
                 let indices = self.source.indices(index)?;
                 gather(indices.into_iter().map(f64::from), self.source.context)?.into()
@@ -120,6 +130,21 @@ impl Builder<'_> {
         };
         self.meshes.tables.insert(key, table.clone());
         Ok(table)
+    }
+
+    /// Linear colours, which glTF 2.0 §3.7.2.1 has from 0 to 1. Their alpha is not used.
+    fn colours(&mut self, index: Index<Accessor>) -> Result<Arc<[f64]>, String> {
+        let colours: Vec<[f64; 3]> = if self.source.has_four(index)? {
+            let all = self.source.floats::<4>(index)?;
+            if wanted(&all, self.source.context).any(|[_, _, _, a]| *a < 1.0) {
+                self.warn("COLOR_0: the alpha of points is not supported".to_owned());
+            }
+            gather(all.into_iter().map(|[r, g, b, _]| [r, g, b]), self.source.context)?
+        } else {
+            self.source.floats::<3>(index)?
+        };
+        let clamped = colours.into_iter().flatten().map(|x| x.clamp(0.0, 1.0));
+        Ok(gather(clamped, self.source.context)?.into())
     }
 
     fn triangles(&mut self, primitive: &Primitive, n: usize) -> Result<Arc<[f64]>, Refusal> {

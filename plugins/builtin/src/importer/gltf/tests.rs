@@ -191,6 +191,47 @@ fn materials_carry_textures_factors_and_emission() {
 }
 
 #[test]
+fn colours_of_points_multiply_the_base_colour() {
+    // The bytes of the second point, 1 0 0, are the colours.
+    let painted = |kind: &str, count: u32, material: &str| {
+        let mesh = r#""meshes":[{"primitives":[
+            {"attributes":{"POSITION":0,"COLOR_0":2},"indices":1,"mode":5,"material":0},
+            {"attributes":{"POSITION":0},"indices":1,"mode":5,"material":0}]}]"#;
+        let file = file(&format!(r#"{mesh},"nodes":[{{"mesh":0}}],"materials":[{{{material}}}]"#));
+        let colours = format!(
+            r#"{{"bufferView":0,"byteOffset":12,"componentType":5121,"normalized":true,
+                "count":{count},"type":"{kind}"}}"#
+        );
+        import(&file.replacen(r#""SCALAR"}"#, &format!(r#""SCALAR"}},{colours}"#), 1))
+    };
+    let red = r#""pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1]}"#;
+    let found = painted("VEC3", 4, red).unwrap();
+    let (first, second) = (&found.nodes[found.placed[0].0], &found.nodes[found.placed[1].0]);
+    let bytes = [1.0f32, 0.0, 0.0].map(f32::to_le_bytes).concat();
+    let truth: Vec<f64> = bytes.iter().map(|x| f64::from(*x) / 255.0).collect();
+    assert_eq!(table(first, "colors"), truth);
+    assert!(second.params.iter().all(|(name, _)| *name != "colors"));
+    let material = |shape: &ImportNode| match param(shape, "material") {
+        ImportValue::Node(i) => found.nodes[*i].clone(),
+        other => panic!("{other:?}"),
+    };
+    let ImportValue::Node(scaled) = param(&material(first), "base_color").clone() else {
+        panic!("{first:?}")
+    };
+    let scaled = &found.nodes[scaled];
+    assert_eq!(param(scaled, "factor"), &ImportValue::Rgb([1.0, 0.5, 0.25]));
+    let ImportValue::Node(corners) = param(scaled, "value") else { panic!("{scaled:?}") };
+    assert_eq!(found.nodes[*corners].class, "vertex_color");
+    // The same material without colours is the factor alone.
+    assert_eq!(param(&material(second), "base_color"), &ImportValue::Rgb([1.0, 0.5, 0.25]));
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    let found = painted("VEC4", 4, red).unwrap();
+    assert_eq!(found.warnings, ["COLOR_0: the alpha of points is not supported"]);
+    let faults = painted("VEC3", 3, red).unwrap_err();
+    assert!(faults[0].message.contains("3 colors for 4 points"), "{faults:?}");
+}
+
+#[test]
 fn cameras_and_lights_keep_their_amounts() {
     let found = import(
         r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],

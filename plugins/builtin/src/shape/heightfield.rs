@@ -9,6 +9,7 @@ use luxel_sdk::num::{Bounds3, Ray};
 use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared, Table};
 
 use super::mesh;
+use crate::stop::{gather, go_on, wanted};
 use crate::texture::decode;
 
 /// A landscape: heights over a grid on the ground, open below.
@@ -80,7 +81,7 @@ impl Build<Arc<TriangleMesh>> for Heightfield<'_> {
             bytes.and_then(|bytes| self.of_picture(&bytes, context).map_err(fault))
         };
         let field = if path.is_empty() { "heights" } else { "file" };
-        grid.and_then(|grid| self.triangles(&grid, field))
+        grid.and_then(|grid| self.triangles(&grid, field, context))
             .map(Arc::new)
             .map_err(|fault| vec![fault])
     }
@@ -114,10 +115,16 @@ impl Heightfield<'_> {
             return Err(format!("{columns} × {rows} pixels: a landscape takes at most {MOST}"));
         }
         let at = |i: usize| f64::from(picture.luminance(i % columns, i / columns)) * self.height;
-        Ok(Grid { heights: (0..columns * rows).map(at).collect(), columns })
+        Ok(Grid { heights: gather((0..columns * rows).map(at), context)?, columns })
     }
 
-    fn triangles(&self, grid: &Grid, field: &'static str) -> Result<TriangleMesh, Fault> {
+    fn triangles(
+        &self,
+        grid: &Grid,
+        field: &'static str,
+        context: &dyn BuildContext,
+    ) -> Result<TriangleMesh, Fault> {
+        let stopped = |message| Fault::mesh(field, message);
         let Grid { heights, columns } = grid;
         let rows = heights.len() / columns;
         if heights.len() > MOST {
@@ -136,16 +143,20 @@ impl Heightfield<'_> {
             let (x, z) = place(i);
             self.center + DVec3::new((x - 0.5) * self.width, *height, (z - 0.5) * self.depth)
         };
-        let points: Vec<DVec3> = heights.iter().enumerate().map(point).collect();
-        let mut mesh = TriangleMesh::rebased(&points, grid.cells(rows));
+        let points = heights.iter().enumerate().map(point);
+        let points = gather(points, context).map_err(stopped)?;
+        let cells = grid.cells(rows, context).map_err(stopped)?;
+        let mut mesh = TriangleMesh::rebased(&points, cells);
         // The middles of pixels, so that the same picture as a texture shows its own heights.
         let middle = |i: usize| Vec2::new((i % columns) as f32, (i / columns) as f32) + 0.5;
         let uv = |at: Vec2| at / Vec2::new(*columns as f32, rows as f32);
         let uvs = (0..heights.len()).map(middle).map(uv);
-        mesh.uvs = uvs.map(|at| Vec2::new(at.x, 1.0 - at.y)).collect();
+        let uvs = uvs.map(|at| Vec2::new(at.x, 1.0 - at.y));
+        mesh.uvs = gather(uvs, context).map_err(stopped)?;
         if self.smooth {
             let step = (self.width / last_column, self.depth / last_row);
-            mesh.normals = (0..heights.len()).map(|i| grid.normal(i, rows, step)).collect();
+            let normals = (0..heights.len()).map(|i| grid.normal(i, rows, step));
+            mesh.normals = gather(normals, context).map_err(stopped)?;
         }
         Ok(mesh)
     }
@@ -153,23 +164,26 @@ impl Heightfield<'_> {
 
 impl Grid {
     /// Two triangles for each cell, upwards, split along the flatter of its diagonals.
-    fn cells(&self, rows: usize) -> Vec<[u32; 3]> {
-        let mut out = Vec::with_capacity(2 * (rows - 1) * (self.columns - 1));
-        for row in 0..rows - 1 {
-            for column in 0..self.columns - 1 {
-                let a = row * self.columns + column;
-                let [a, b, c, d] = [a, a + 1, a + self.columns, a + self.columns + 1];
-                let rise = |i: usize, j: usize| (self.heights[i] - self.heights[j]).abs();
-                let split = if rise(b, c) <= rise(a, d) {
-                    [[a, c, b], [b, c, d]]
-                } else {
-                    [[a, c, d], [a, d, b]]
-                };
-                let narrow = |i| u32::try_from(i).expect("a landscape has fewer heights");
-                out.extend(split.map(|corners| corners.map(narrow)));
-            }
+    ///
+    /// # Errors
+    /// If the work is not wanted any more.
+    fn cells(&self, rows: usize, context: &dyn BuildContext) -> Result<Vec<[u32; 3]>, String> {
+        let across = self.columns - 1;
+        let mut out = Vec::with_capacity(2 * (rows - 1) * across);
+        for i in wanted(0..(rows - 1) * across, context) {
+            let a = i / across * self.columns + i % across;
+            let [a, b, c, d] = [a, a + 1, a + self.columns, a + self.columns + 1];
+            let rise = |i: usize, j: usize| (self.heights[i] - self.heights[j]).abs();
+            let split = if rise(b, c) <= rise(a, d) {
+                [[a, c, b], [b, c, d]]
+            } else {
+                [[a, c, d], [a, d, b]]
+            };
+            let narrow = |i| u32::try_from(i).expect("a landscape has fewer heights");
+            out.extend(split.map(|corners| corners.map(narrow)));
         }
-        out
+        go_on(context)?;
+        Ok(out)
     }
 
     /// The normal of the parabolas through a height and its neighbours.
@@ -232,6 +246,8 @@ mod tests {
     use luxel_sdk::params::Text;
 
     use super::*;
+    use crate::stop::STRIDE;
+    use crate::stop::testing::ends_wherever;
 
     /// A file system with one file in it.
     struct One(Vec<u8>);
@@ -308,6 +324,14 @@ mod tests {
             assert!((found - truth).abs() <= 8.0 * f64::from(f32::EPSILON) * 10.0, "{found}");
         }
         assert_eq!((mesh.points.len(), mesh.indices.len()), (6, 4));
+    }
+
+    #[test]
+    fn a_landscape_ends_soon_after_it_is_not_wanted_any_more() {
+        let heights: Vec<f64> = (0..40_000).map(f64::from).collect();
+        let looks = ends_wherever(|patience| field(&heights, "").build(patience));
+        // Points, cells, coordinates and normals.
+        assert!(looks >= 4 * heights.len() / STRIDE, "{looks} looks");
     }
 
     #[test]

@@ -85,7 +85,7 @@ pub(crate) struct Curves<'a> {
 }
 
 impl Build<Arc<Strands>> for Curves<'_> {
-    fn build(&self, _: &dyn BuildContext) -> Result<Arc<Strands>, Vec<Fault>> {
+    fn build(&self, context: &dyn BuildContext) -> Result<Arc<Strands>, Vec<Fault>> {
         let given = strand::Given {
             points: self.points.get(),
             radius: self.radius,
@@ -95,7 +95,7 @@ impl Build<Arc<Strands>> for Curves<'_> {
             basis: self.basis,
             form: self.form,
         };
-        given.strands().map(Arc::new).map_err(|fault| vec![fault])
+        given.strands(context).map(Arc::new).map_err(|fault| vec![fault])
     }
 }
 

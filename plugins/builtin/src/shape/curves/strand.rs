@@ -2,10 +2,11 @@
 
 use glam::{DVec3, DVec4};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
-use luxel_sdk::params::Fault;
+use luxel_sdk::params::{BuildContext, Fault};
 
 use super::cubic::{Cubic, segments};
 use super::{Basis, Form};
+use crate::stop::{STRIDE, gather, go_on};
 
 /// What a scene says of curves.
 pub(super) struct Given<'a> {
@@ -66,20 +67,28 @@ const POINT: f64 = 4.0 * ROUNDING;
 
 impl Given<'_> {
     /// The strands.
-    pub(super) fn strands(&self) -> Result<Strands, Fault> {
-        let points = triples("points", self.points)?;
+    pub(super) fn strands(&self, context: &dyn BuildContext) -> Result<Strands, Fault> {
+        let points = triples("points", self.points, context)?;
         let radii = self.all_radii(points.len())?;
-        let normals = triples("normals", self.normals)?;
+        let normals = triples("normals", self.normals, context)?;
         if !normals.is_empty() && normals.len() != points.len() {
             let message = format!("{} normals for {} points", normals.len(), points.len());
             return Err(Fault::mesh("normals", message));
         }
         let (mut strands, mut bounds, mut at, mut first) = (vec![], Bounds3::EMPTY, 0, 0);
+        let mut looked = 0;
         for n in self.counts(points.len())? {
+            if at >= looked {
+                go_on(context).map_err(stopped)?;
+                looked = at + STRIDE;
+            }
             let range = at..at + n;
             let normals = if normals.is_empty() { &normals[..] } else { &normals[range.clone()] };
-            let strand =
-                self.strand((&points[range.clone()], &radii[range], normals), at, first)?;
+            let strand = self.strand(
+                (&points[range.clone()], &radii[range], normals),
+                (at, first),
+                context,
+            )?;
             bounds = bounds.union(strand.bounds);
             first += strand.count();
             at += n;
@@ -144,8 +153,8 @@ impl Given<'_> {
     fn strand(
         &self,
         (points, radii, normals): (&[DVec3], &[f64], &[DVec3]),
-        at: usize,
-        first: u32,
+        (at, first): (usize, u32),
+        context: &dyn BuildContext,
     ) -> Result<Strand, Fault> {
         let widest = radii.iter().fold(0.0, |a: f64, r| a.max(*r));
         if widest <= 0.0 {
@@ -156,22 +165,17 @@ impl Given<'_> {
         let reach = points.iter().map(|p| (*p - centre).length()).fold(0.0, f64::max) + widest;
         // The next power of two, of which products are exact.
         let unit = reach.log2().ceil().exp2();
-        let local: Vec<DVec4> = points
-            .iter()
-            .zip(radii)
-            .map(|(p, r)| ((*p - centre) / unit).extend(r / unit))
-            .collect();
-        let mut across = across(&local, normals, at)?;
+        let local = points.iter().zip(radii);
+        let local = local.map(|(p, r)| ((*p - centre) / unit).extend(r / unit));
+        let local = long(local, context)?;
+        let mut across = across(&local, normals, at, context)?;
         if self.form == Form::Ribbon {
             across.iter_mut().zip(&local).for_each(|(b, p)| *b *= p.w);
         }
         let is_bspline = self.basis == Basis::Bspline;
         let curves = segments(&local, is_bspline);
-        let segments: Vec<Segment> = curves
-            .into_iter()
-            .zip(segments(&across, is_bspline))
-            .map(|(curve, across)| Segment { curve, across })
-            .collect();
+        let both = curves.into_iter().zip(segments(&across, is_bspline));
+        let segments = long(both.map(|(curve, across)| Segment { curve, across }), context)?;
         let mut boxes = Vec::with_capacity(2 * segments.len());
         let hull = self.hull(&segments, &mut boxes);
         let room = DVec3::splat(unit * POINT) + (centre.abs() + unit) * gamma64(8);
@@ -215,7 +219,21 @@ fn whole(x: f64, i: usize) -> Result<usize, Fault> {
     Err(Fault::mesh("strands", format!("{x} in place {i} is no number of points")))
 }
 
-fn triples(field: &'static str, numbers: &[f64]) -> Result<Vec<DVec3>, Fault> {
+/// All of what may be many; of a short strand, without a look at whether it is still wanted.
+fn long<I: ExactSizeIterator>(items: I, context: &dyn BuildContext) -> Result<Vec<I::Item>, Fault> {
+    if items.len() < STRIDE { Ok(items.collect()) } else { gather(items, context).map_err(stopped) }
+}
+
+/// The fault of strands that are not wanted any more.
+fn stopped(message: String) -> Fault {
+    Fault::mesh("points", message)
+}
+
+fn triples(
+    field: &'static str,
+    numbers: &[f64],
+    context: &dyn BuildContext,
+) -> Result<Vec<DVec3>, Fault> {
     if !numbers.len().is_multiple_of(3) {
         let message = format!("{} numbers: x y z of each point are wanted", numbers.len());
         return Err(Fault::mesh(field, message));
@@ -224,7 +242,7 @@ fn triples(field: &'static str, numbers: &[f64]) -> Result<Vec<DVec3>, Fault> {
         let message = format!("{:e} at point {}: it is beyond every measure", numbers[i], i / 3);
         return Err(Fault::mesh(field, message));
     }
-    Ok(numbers.chunks_exact(3).map(DVec3::from_slice).collect())
+    long(numbers.chunks_exact(3).map(DVec3::from_slice), context)
 }
 
 /// Unit vectors across the curve at its points: square to where each faces, or, from level, carried
@@ -232,8 +250,13 @@ fn triples(field: &'static str, numbers: &[f64]) -> Result<Vec<DVec3>, Fault> {
 ///
 /// # Source
 /// Wang et al. 2008, "Computation of rotation minimizing frames": two reflections per step.
-fn across(points: &[DVec4], normals: &[DVec3], at: usize) -> Result<Vec<DVec3>, Fault> {
-    let tangents = tangents(points);
+fn across(
+    points: &[DVec4],
+    normals: &[DVec3],
+    at: usize,
+    context: &dyn BuildContext,
+) -> Result<Vec<DVec3>, Fault> {
+    let tangents = tangents(points, context)?;
     if !normals.is_empty() {
         let square = |(i, (n, t)): (usize, (&DVec3, &DVec3))| {
             let n = n.normalize_or_zero();
@@ -246,7 +269,10 @@ fn across(points: &[DVec4], normals: &[DVec3], at: usize) -> Result<Vec<DVec3>, 
     let mut b =
         if level.length() > LEVEL { level.normalize() } else { square_to(tangents[0], DVec3::X) };
     let mut all = vec![b];
-    for (p, t) in points.windows(2).zip(tangents.windows(2)) {
+    for (i, (p, t)) in points.windows(2).zip(tangents.windows(2)).enumerate() {
+        if i % STRIDE == STRIDE - 1 {
+            go_on(context).map_err(stopped)?;
+        }
         let step = p[1].truncate() - p[0].truncate();
         let first = mirror(step);
         let (b1, t1) = (first(b), first(t[0]));
@@ -271,18 +297,17 @@ pub(super) fn square_to(t: DVec3, b: DVec3) -> DVec3 {
 }
 
 /// Unit tangents at the points, from their neighbours; where those coincide, that before.
-fn tangents(points: &[DVec4]) -> Vec<DVec3> {
+fn tangents(points: &[DVec4], context: &dyn BuildContext) -> Result<Vec<DVec3>, Fault> {
     let between =
         |i: usize, j: usize| (points[j].truncate() - points[i].truncate()).try_normalize();
     let last = points.len() - 1;
     let some = (1..=last).find_map(|i| between(0, i));
     let mut before = some.unwrap_or(DVec3::Z);
-    (0..=last)
-        .map(|i| {
-            before = between(i.saturating_sub(1), (i + 1).min(last)).unwrap_or(before);
-            before
-        })
-        .collect()
+    let at = |i: usize| {
+        before = between(i.saturating_sub(1), (i + 1).min(last)).unwrap_or(before);
+        before
+    };
+    long((0..points.len()).map(at), context)
 }
 
 impl Strand {

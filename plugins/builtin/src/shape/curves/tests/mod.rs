@@ -13,6 +13,8 @@ use luxel_sdk::sampling::Rng;
 
 use super::{Basis, Curves, Form, Strand, Strands};
 use crate::shape::testing::{check_turning, direction};
+use crate::stop::STRIDE;
+use crate::stop::testing::ends_wherever;
 
 struct Nothing;
 
@@ -251,5 +253,18 @@ fn normals_of_strands_turn_as_those_beside_them() {
         let given = Given { form, ..Given::new(&points, &[0.2, 0.25, 0.1, 0.15]) };
         let n = given.ask(|curves| check_turning(&curves, 801, 0.0));
         assert!(n > 50, "{n}");
+    }
+}
+
+#[test]
+fn strands_end_soon_after_they_are_not_wanted_any_more() {
+    let points: Vec<[f64; 3]> =
+        (0..30_001).map(|i| [f64::from(i), f64::from(i % 7), f64::from(i % 5)]).collect();
+    // One of all, and many short ones.
+    for (points, each) in [(&points[..], 30_001.0), (&points[..30_000], 4.0)] {
+        let given = Given { strands: vec![each], ..Given::new(points, &[0.1]) };
+        let none = Arc::new(Strands { strands: vec![], bounds: Bounds3::EMPTY });
+        let looks = given.with(&none, |curves| ends_wherever(|patience| curves.build(patience)));
+        assert!(looks >= 2 * points.len() / STRIDE, "{looks} looks");
     }
 }

@@ -57,6 +57,11 @@ impl Edit {
         matches!(self, Self::Words | Self::Camera | Self::Material | Self::Place | Self::Settings)
     }
 
+    /// Whether all that stands in the world stays as it is.
+    pub(super) fn keeps_world(self) -> bool {
+        matches!(self, Self::Words | Self::Camera)
+    }
+
     /// Whether no tree of a mesh has to be built for it.
     pub(super) fn keeps_trees(self) -> bool {
         self.keeps_shapes() || self == Self::Part

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use luxel_core::diag::Diagnostic;
 use luxel_core::files::MemoryFiles;
 use luxel_core::object::ColorMode;
-use luxel_core::stage::{Anew, Stage};
+use luxel_core::stage::{Anew, LightSource, Stage};
 
 use super::draft::{SCENE, octahedron};
 use super::made;
@@ -20,6 +20,7 @@ fn stages(texts: &[&str]) -> Vec<(Stage, Anew, Vec<Diagnostic>)> {
     for text in texts {
         let files = MemoryFiles::default()
             .with("a.obj", octahedron(0).as_bytes())
+            .with("flat.obj", octahedron(3).as_bytes())
             .with(SCENE, format!("scene 1\n{text}").as_bytes());
         let (built, told) = made(&registry, &files, stages.last().map(|it| &it.0));
         let (stage, anew) = built.unwrap_or_else(|| panic!("{text}: {told:?}"));
@@ -64,4 +65,49 @@ fn a_cutter_that_moves_leaves_the_tree_of_what_it_cuts() {
     let made = built.iter().map(|(_, anew, _)| (anew.shapes, anew.trees));
     // However long the solid has stood before the first of these edits.
     assert_eq!(made.collect::<Vec<_>>(), [(1, 1), (0, 0), (0, 0), (0, 0), (1, 0), (1, 0)]);
+}
+
+#[test]
+fn what_is_looked_with_leaves_the_world_and_what_was_told_of_it() {
+    let world = "light area { shape = shape mesh { file = \"flat.obj\", unit = 20 cm }, radiance = 9 W/m^2/sr }\n\
+                 let many = group { shape mesh { file = \"flat.obj\", unit = 30 cm } }\n\
+                 place many { transform = move((1, 0, 0) m) }\nplace many {}\n";
+    let settings = [
+        String::new(),
+        "film rgb { resolution = (9, 9) }\nintegrator direct {}\n".to_owned(),
+        "// moved\nfilter box {}\nsampler sobol { samples = 3 }\nfilm rgb {}\n".to_owned(),
+    ];
+    let texts = settings.map(|settings| {
+        format!("film rgb {{}}\n{CAMERA}{world}").replacen("film rgb {}\n", &settings, 1)
+    });
+    let built = stages(&texts.each_ref().map(String::as_str));
+    let cold = |text: &String| stages(&[text]).remove(0).2;
+    for ((before, after), text) in built.iter().zip(&built[1..]).zip(&texts[1..]) {
+        let ((before, ..), (after, anew, told)) = (before, after);
+        assert!(Arc::ptr_eq(&before.placements, &after.placements));
+        assert!(Arc::ptr_eq(&before.lights, &after.lights));
+        assert!(Arc::ptr_eq(&before.top, &after.top));
+        assert_eq!((anew.shapes, anew.trees), (0, 0));
+        assert!(!told.is_empty() && *told == cold(text), "{told:?}");
+    }
+}
+
+#[test]
+fn a_lamp_that_stays_is_chosen_from_as_before() {
+    let scene = |paint: f64, at: f64| {
+        format!(
+            "{CAMERA}light area {{ shape = shape mesh {{ file = \"a.obj\", unit = 20 cm }}, \
+             radiance = 9 W/m^2/sr, transform = move(({at}, 3, 0) m) }}\n\
+             shape sphere {{ radius = 1 m, material = material diffuse {{ reflectance = {paint} }} }}\n"
+        )
+    };
+    let texts = [scene(0.5, 1.0), scene(0.6, 1.0), scene(0.6, 1.5)];
+    let built = stages(&texts.each_ref().map(String::as_str));
+    let facets = |stage: &Stage| {
+        let LightSource::Surface { triangles, .. } = &stage.lights.sources[0] else { panic!() };
+        triangles.clone().unwrap()
+    };
+    let [a, b, c] = [0, 1, 2].map(|i| facets(&built[i].0));
+    assert!(Arc::ptr_eq(&a, &b) && !Arc::ptr_eq(&b, &c));
+    assert!(!Arc::ptr_eq(&built[0].0.placements, &built[1].0.placements));
 }

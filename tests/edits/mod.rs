@@ -37,6 +37,8 @@ struct Tally {
     turned: u32,
     /// Stages for which a solid was made, but no tree.
     solids: u32,
+    /// Stages whose world is that of the one before.
+    taken: u32,
     /// Stages for which a picture was read again.
     pictures: u32,
 }
@@ -51,8 +53,8 @@ fn edits_show_what_a_new_beginning_shows_and_keep_the_trees_of_meshes() {
     }
     println!("{seeds} sequences of {EDITS} edits: {tally:?}");
     assert_eq!(tally.by_edit.len(), 11, "{tally:?}");
-    let Tally { by_edit: _, faulty, warned, kept, made, turned, solids, pictures } = tally;
-    let all = [faulty, warned, kept, made, turned, solids, pictures];
+    let Tally { by_edit: _, faulty, warned, kept, made, turned, solids, taken, pictures } = tally;
+    let all = [faulty, warned, kept, made, turned, solids, taken, pictures];
     assert!(all.iter().all(|n| *n > 0), "{tally:?}");
 }
 
@@ -110,8 +112,13 @@ impl Tally {
         if all(Edit::keeps_trees) && anew.trees > 0 {
             return Err("trees were built");
         }
+        let is_taken = Arc::ptr_eq(&before.placements, &now.placements);
+        if all(Edit::keeps_world) && !is_taken {
+            return Err("the world was made");
+        }
+        self.taken += u32::from(is_taken);
         if let ([Edit::Contents], [file]) = (edits, changed)
-            && file.ends_with(".hdr")
+            && Path::new(file).extension().is_some_and(|it| it == "hdr")
         {
             let readers = readers(&now.scene, file);
             let shapes = readers.iter().filter(|kind| **kind == Kind::Shape).count();

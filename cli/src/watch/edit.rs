@@ -43,15 +43,11 @@ impl Edit {
             told.push(format!("{} more", changes.len() - MOST));
         }
         let told = told.join("; ") + if told.is_empty() { "" } else { " · " };
-        let parts = [(*objects, "object"), (*shapes, "shape"), (*trees, "tree")];
-        let parts = &parts[..if *trees == 0 { 2 } else { 3 }];
-        let made = match (objects, shapes) {
-            (0, 0) => "nothing made anew".to_owned(),
-            _ => {
-                let parts: Vec<_> = parts.iter().map(|(n, what)| count(*n, what)).collect();
-                format!("made anew: {}", parts.join(", "))
-            }
-        };
+        let mut parts = vec![count(*objects, "object"), count(*shapes, "shape")];
+        parts.extend((*trees > 0).then(|| count(*trees, "tree")));
+        let is_new = *objects > 0 || *shapes > 0;
+        let made = format!("made anew: {}", parts.join(", "));
+        let made = if is_new { made } else { "nothing made anew".to_owned() };
         format!("{told}{made} · {}", brief(*seconds))
     }
 

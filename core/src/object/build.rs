@@ -60,6 +60,8 @@ pub struct Objects {
     pub trees_made: usize,
     /// Objects of no node: what the host takes where a scene says nothing.
     presets: Vec<Arc<Object>>,
+    /// How many of those by content, and of the presets, are of the world: they were made first.
+    of_world: [usize; 2],
     /// Raised by each object that fails, of this build and of those before and after it.
     pub alarm: Alarm,
 }
@@ -137,6 +139,28 @@ impl<'a> Builder<'a> {
             refused: HashSet::new(),
             diagnostics: vec![],
         }
+    }
+
+    /// Takes over all of which the world was made before, if that is still what it was.
+    pub(crate) fn take_world_over(&mut self) -> bool {
+        let [objects, presets] = self.before.of_world;
+        let presets = &self.before.presets[..presets];
+        let by_content = self.before.by_content.now().values().take(objects);
+        let may_stay = |it: &Arc<Object>| {
+            it.is_current(self.registry) && it.is_unchanged(self.files, &self.embedded)
+        };
+        if !by_content.chain(presets).all(may_stay) {
+            return false;
+        }
+        self.objects.by_content.take(&self.before.by_content, objects);
+        self.objects.trees.take(&self.before.trees, usize::MAX);
+        self.objects.presets.extend(presets.iter().cloned());
+        true
+    }
+
+    /// What is built from now on is not of the world.
+    pub(crate) fn end_world(&mut self) {
+        self.objects.of_world = [self.objects.by_content.now().len(), self.objects.presets.len()];
     }
 
     /// The object of a node. `None` when something is wrong with it, which has then been said.

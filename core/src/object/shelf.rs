@@ -54,6 +54,12 @@ impl<K: Eq + Hash + Copy, V: Kept> Shelf<K, V> {
         self.now.insert(key, thing);
     }
 
+    /// This build uses the first `n` things that an earlier one has used.
+    pub fn take(&mut self, before: &Self, n: usize) {
+        let first = before.now.iter().take(n);
+        self.now.extend(first.map(|(key, thing)| (*key, thing.clone())));
+    }
+
     /// Everything there is of this key, the latest first.
     pub fn all(&self, key: K) -> impl Iterator<Item = &V> {
         let past = self.past.iter().filter(move |past| past.key == key);

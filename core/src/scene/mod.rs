@@ -16,6 +16,7 @@ mod pose;
 mod print;
 mod setting;
 mod value;
+mod world;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luxel_sdk::kind::{Kind, LightForm, Wants};
+use luxel_sdk::kind::{Kind, LightForm};
 use luxel_sdk::num::Transform;
 
 use super::analytic::Analytic;
@@ -12,8 +12,10 @@ use super::kept::{Anew, Cache, Shaped};
 use super::lights::LightSource;
 use super::made::{Made, Settings};
 use super::motion::{Motion, Splits};
+use super::shining::Lamps;
+use super::world::World;
 use super::{Film, Geometry, Mesh, Place, Placement, Reasons, Skin, Stage};
-use super::{failures, features, import, shining};
+use super::{eye, failures, features, import, shining};
 use crate::accel::{BuildError, Watch};
 use crate::cast::{index, whole};
 use crate::diag::{Diagnostic, Span};
@@ -78,28 +80,29 @@ pub fn build_watched(
         import::expand(scene, (registry, files), &cache.assets, watch);
     let film = Film::of_scene(&scene);
     let mode = features::color_mode(&scene, film.color);
-    let mut reasons = Reasons::default();
-    reasons.add_settings(&scene, (mode, &film));
+    let mut setting_reasons = Reasons::default();
+    setting_reasons.add_settings(&scene, (mode, &film));
     let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(&mesh_part);
     builder.watch = Some(watch);
-    let during = film.during();
+    let world = before.and_then(|it| World::taken(it, (&scene, &film, mode), &mut builder));
     let mut maker = Maker {
         scene: &scene,
-        during,
+        during: film.during(),
         splits: Splits::default(),
         builder,
         cache,
-        made: Made { assets, reasons, ..Made::default() },
+        lamps: before.filter(|_| world.is_none()).map(Lamps::of).unwrap_or_default(),
+        made: Made { assets, setting_reasons, ..Made::default() },
         watch,
     };
-    match flatten(&scene) {
-        Ok(flats) => {
-            flats.iter().take_while(|_| !watch.is_cancelled()).for_each(|flat| maker.place(flat));
-        }
-        Err(diagnostic) => diagnostics.push(*diagnostic),
+    match &world {
+        Some(_) => maker.made.shapes.take(&cache.shapes, usize::MAX),
+        None => maker.world().unwrap_or_else(|told| diagnostics.push(*told)),
     }
+    maker.builder.end_world();
+    let n_of_world = maker.builder.diagnostics.len();
     if watch.is_cancelled() {
         return Err(Unbuilt::Cancelled);
     }
@@ -107,16 +110,18 @@ pub fn build_watched(
     if watch.is_cancelled() {
         return Err(Unbuilt::Cancelled);
     }
+    let warnings = maker.builder.diagnostics[..n_of_world].to_vec();
     diagnostics.append(&mut maker.builder.diagnostics);
-    let (made, objects) = (maker.made, maker.builder.objects);
+    let (mut made, objects) = (maker.made, maker.builder.objects);
     let trees = made.new_trees + objects.trees_made;
     let anew = Anew { objects: objects.made, shapes: made.new_shapes, trees };
     match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
-            let stage = made.finish(settings, objects, (scene, film, mode), cache, watch);
-            let stage = stage.ok_or(Unbuilt::Cancelled)?;
+            let world = world.or_else(|| made.world((&scene, &film, mode), &warnings, watch));
+            let world = world.ok_or(Unbuilt::Cancelled)?;
+            let stage = made.finish((world, settings), objects, (scene, film, mode), cache);
             let mut found = stage.failures();
-            found.extend(unseen(&stage));
+            found.extend(eye::unseen(&stage));
             found.extend(features::lacking(&stage));
             if found.is_empty() {
                 return Ok(Built { stage, warnings: diagnostics, anew });
@@ -138,6 +143,7 @@ struct Maker<'a> {
     splits: Splits,
     builder: Builder<'a>,
     cache: &'a Cache,
+    lamps: Lamps<'a>,
     made: Made,
     watch: &'a Watch,
 }
@@ -148,6 +154,20 @@ const GROUPS: usize = 32;
 const GROUP_NAME: usize = 32;
 
 impl Maker<'_> {
+    /// All that stands in the world, and what is around it.
+    ///
+    /// # Errors
+    /// There is too much of it.
+    fn world(&mut self) -> Result<(), Box<Diagnostic>> {
+        let flats = flatten(self.scene);
+        for flat in flats.iter().flatten().take_while(|_| !self.watch.is_cancelled()) {
+            self.place(flat);
+        }
+        let outside = self.scene.medium.filter(|_| !self.scene.leaves_out(Feature::Media));
+        self.made.outside = outside.and_then(|id| self.medium(id));
+        flats.map(drop)
+    }
+
     fn place(&mut self, flat: &Flat) {
         if self.scene.node(flat.node).kind == Kind::Shape {
             self.shape(flat, flat.node, None);
@@ -285,7 +305,7 @@ impl Maker<'_> {
     fn shining(&mut self, object: Arc<Object>, placement: &Placement, span: Span) {
         let place = index(self.made.placements.len());
         let geometry = &self.made.geometries[placement.geometry as usize];
-        let (area, triangles) = shining::measured(geometry, placement, self.during);
+        let (area, triangles) = shining::measured(geometry, placement, self.during, &self.lamps);
         let shape = (self.scene, placement.node);
         self.builder.diagnostics.extend(shining::doubts(geometry, area, shape, span));
         let quad = shining::sheared(geometry, placement);
@@ -433,10 +453,8 @@ impl Maker<'_> {
         if let (Some(id), Some(place)) = (scene.camera, &camera_place)
             && place.is_moving()
         {
-            self.requires(Feature::Motion, id);
+            self.made.setting_reasons.add(Feature::Motion, id, scene.node(id).span);
         }
-        let has_media = !scene.leaves_out(Feature::Media);
-        let outside = scene.medium.filter(|_| has_media).and_then(|id| self.medium(id));
         let mut pick = |id: Option<NodeId>, setting: Setting| match id {
             Some(id) => self.builder.build(id),
             None => Some(self.builder.preset(setting.kind(), setting.default_class())),
@@ -450,7 +468,6 @@ impl Maker<'_> {
             integrator: integrator?,
             sampler: sampler?,
             filter: filter?,
-            outside,
         })
     }
 }
@@ -467,20 +484,4 @@ fn name(node: &Node) -> String {
 
 fn mesh_error(error: BuildError, span: Span) -> Diagnostic {
     Diagnostic::error("E0411", span, error.to_string())
-}
-
-/// An integrator that looks for the camera from where light is, and a camera that is no point.
-fn unseen(stage: &Stage) -> Option<Diagnostic> {
-    let integrator = stage.integrator.fixed().integrator();
-    let looks = integrator.as_picture().is_some() && integrator.wants().has(Wants::SIGHT);
-    if !looks || stage.eye.is_some() {
-        return None;
-    }
-    let name = stage.integrator.class().name;
-    let message = format!("`{name}` needs a camera whose lens is a point, as `perspective`");
-    let camera = stage.scene.camera.map(|id| stage.scene.node(id).span);
-    Some(match camera {
-        Some(span) => Diagnostic::error("E0422", span, message).label(span, "this camera"),
-        None => Diagnostic::unplaced("E0422", message),
-    })
 }

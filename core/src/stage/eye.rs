@@ -1,10 +1,11 @@
 //! The camera as paths from lights find it: a point, and which pixels look where.
 
 use glam::{DVec2, DVec3, UVec2};
-use luxel_sdk::kind::{Camera, CameraRay, Filter, Raster};
+use luxel_sdk::kind::{Camera, CameraRay, Filter, Raster, Wants};
 use luxel_sdk::num::unit_and_length;
 
-use super::Moment;
+use super::{Moment, Stage};
+use crate::diag::Diagnostic;
 
 /// Where the camera stands, if its lens is a point.
 #[derive(Clone, Copy, Debug)]
@@ -125,4 +126,20 @@ impl Moment<'_> {
         let p = place.map_or(p, |transform| transform.inverse_point(p));
         self.camera.fixed().camera().project(raster, p)
     }
+}
+
+/// An integrator that looks for the camera from where light is, and a camera that is no point.
+pub(super) fn unseen(stage: &Stage) -> Option<Diagnostic> {
+    let integrator = stage.integrator.fixed().integrator();
+    let looks = integrator.as_picture().is_some() && integrator.wants().has(Wants::SIGHT);
+    if !looks || stage.eye.is_some() {
+        return None;
+    }
+    let name = stage.integrator.class().name;
+    let message = format!("`{name}` needs a camera whose lens is a point, as `perspective`");
+    let camera = stage.scene.camera.map(|id| stage.scene.node(id).span);
+    Some(match camera {
+        Some(span) => Diagnostic::error("E0422", span, message).label(span, "this camera"),
+        None => Diagnostic::unplaced("E0422", message),
+    })
 }

@@ -119,6 +119,15 @@ impl Reasons {
         self.0.entry(feature).or_default().entry(id).or_insert(span);
     }
 
+    /// Others, each where its node is written in this scene.
+    pub(super) fn add_all(&mut self, others: &Self, scene: &Scene) {
+        for (feature, ids) in &others.0 {
+            for id in ids.keys() {
+                self.add(*feature, *id, scene.node(*id).span);
+            }
+        }
+    }
+
     /// The feature is not modelled after all.
     pub(super) fn clear(&mut self, feature: Feature) {
         self.0.remove(&feature);

@@ -34,7 +34,7 @@ pub enum LightSource {
         /// Its area in the world, m².
         area: f64,
         /// For meshes: their triangles.
-        triangles: Option<Facets>,
+        triangles: Option<Arc<Facets>>,
         /// For sheared parallelograms: what they are.
         quad: Option<Quad>,
     },
@@ -203,7 +203,7 @@ impl Moment<'_> {
         let u = [u[1], u[2]];
         let found = match chosen.source {
             LightSource::Surface { object, placement, area, triangles, quad } => {
-                let triangles = triangles.as_ref().filter(|_| CHOICE);
+                let triangles = triangles.as_deref().filter(|_| CHOICE);
                 let triangles = triangles.map(|facets| (facets, chosen.u));
                 let (placement, area, quad) = (*placement, *area, quad.as_ref());
                 let light = SurfaceLight { object, placement, area, triangles, quad };
@@ -389,7 +389,7 @@ impl Moment<'_> {
         let shape = match &*self.geometries[placement.geometry as usize] {
             Geometry::Analytic(shape) => shape.object().fixed().shape(),
             Geometry::Mesh(mesh) => {
-                let Some(facets) = triangles else { return Ok(0.0) };
+                let Some(facets) = triangles.as_deref() else { return Ok(0.0) };
                 let lit = Lit { mesh, facets, transform, from, time: self.time };
                 if let Some(pdf) = lit.pdf(face) {
                     return Ok(pdf);

@@ -9,10 +9,12 @@ use luxel_sdk::num::Bounds3;
 use super::kept::{Assets, Cache, Shaped};
 use super::lights::LightSource;
 use super::nesting;
+use super::world::World;
 use super::{
     Eye, Features, Film, Geometry, Lights, MediumStack, Place, Placement, Reasons, Skin, Stage,
 };
 use crate::accel::{Box64, TopBvh, Watch};
+use crate::diag::Diagnostic;
 use crate::object::{ColorMode, Object, Objects, Shelf};
 use crate::scene::{Feature, Hash, NodeId, Scene};
 
@@ -22,7 +24,6 @@ pub(super) struct Settings {
     pub(super) integrator: Arc<Object>,
     pub(super) sampler: Arc<Object>,
     pub(super) filter: Arc<Object>,
-    pub(super) outside: Option<u32>,
     pub(super) camera_place: Place,
 }
 
@@ -48,19 +49,21 @@ pub(super) struct Made {
     pub(super) group_names: Vec<Arc<str>>,
     pub(super) group_of: Vec<Option<u32>>,
     pub(super) default_material: Option<u32>,
+    /// What fills the space that no shape encloses.
+    pub(super) outside: Option<u32>,
+    /// Who of the world requires what, and which settings do.
     pub(super) reasons: Reasons,
+    pub(super) setting_reasons: Reasons,
 }
 
 impl Made {
-    /// The stage; `None` once the watch is cancelled.
-    pub(super) fn finish(
-        mut self,
-        settings: Settings,
-        objects: Objects,
-        (scene, film, mode): (Scene, Film, ColorMode),
-        before: &Cache,
+    /// What stands in the world, of which so much was told; `None` once the watch is cancelled.
+    pub(super) fn world(
+        &mut self,
+        (scene, film, mode): (&Scene, &Film, ColorMode),
+        warnings: &[Diagnostic],
         watch: &Watch,
-    ) -> Option<Stage> {
+    ) -> Option<World> {
         let during = film.during();
         let boxed = |placement: &Placement| {
             let local = self.geometries[placement.geometry as usize].bounds();
@@ -72,20 +75,49 @@ impl Made {
         let groups = (std::mem::take(&mut self.group_names), std::mem::take(&mut self.group_of));
         let lights = Lights::new(std::mem::take(&mut self.lights), sphere.1, mode);
         let lights = lights.in_groups(groups.0, groups.1);
-        let needed = self.needed(&scene, &boxes, &lights);
+        let needed = self.needed(scene, &boxes, &lights);
         watch.name("the scene");
         let top = TopBvh::build_watched(&boxes, watch)?;
+        drop(boxes);
+        Some(World {
+            lights: lights.into(),
+            top: top.into(),
+            geometries: std::mem::take(&mut self.geometries).into(),
+            placements: std::mem::take(&mut self.placements).into(),
+            materials: std::mem::take(&mut self.materials).into(),
+            material_nodes: std::mem::take(&mut self.material_nodes).into(),
+            media: std::mem::take(&mut self.media).into(),
+            outside: self.outside,
+            sphere,
+            needed,
+            reasons: std::mem::take(&mut self.reasons),
+            warnings: warnings.into(),
+        })
+    }
+
+    /// The stage of a world.
+    pub(super) fn finish(
+        self,
+        (world, settings): (World, Settings),
+        objects: Objects,
+        (scene, film, mode): (Scene, Film, ColorMode),
+        before: &Cache,
+    ) -> Stage {
         let mut cache = Cache { assets: self.assets, objects, shapes: self.shapes };
         cache.inherit(before);
+        let mut reasons = self.setting_reasons;
+        reasons.add_all(&world.reasons, &scene);
+        let (mut needed, sphere) = (world.needed, world.sphere);
+        needed.motion |= settings.camera_place.is_moving();
         let mut stage = Stage {
-            lights,
-            top,
-            geometries: self.geometries,
-            placements: self.placements,
-            materials: self.materials,
-            material_nodes: self.material_nodes,
-            media: self.media,
-            outside: settings.outside,
+            lights: world.lights.clone(),
+            top: world.top.clone(),
+            geometries: world.geometries.clone(),
+            placements: world.placements.clone(),
+            materials: world.materials.clone(),
+            material_nodes: world.material_nodes.clone(),
+            media: world.media.clone(),
+            outside: world.outside,
             camera: settings.camera,
             camera_place: settings.camera_place,
             integrator: settings.integrator,
@@ -94,10 +126,11 @@ impl Made {
             reach: sphere.1,
             camera_media: MediumStack::default(),
             eye: None,
+            world,
             cache,
             features: needed.and_required(&scene),
             needed,
-            reasons: self.reasons,
+            reasons,
             scene,
             film,
             mode,
@@ -112,10 +145,11 @@ impl Made {
                 stage.camera_media = stage.opening().media_at(eye);
             }
         }
-        Some(stage)
+        stage
     }
 
-    /// What is to be modelled; who requires it is noted, and what moves and what is filled is already.
+    /// What is to be modelled of the world; who requires it is noted, and what moves and what is filled
+    /// is already.
     fn needed(&mut self, scene: &Scene, boxes: &[Box64], lights: &Lights) -> Features {
         let media = !self.media.is_empty();
         let (places, shapes) = (&mut self.placements, &self.geometries);

@@ -26,6 +26,7 @@ mod settings;
 mod shining;
 mod trace;
 mod turning;
+mod world;
 
 use std::sync::Arc;
 
@@ -38,6 +39,7 @@ use crate::object::{ColorMode, Object, Objects};
 use crate::registry::dynamic::{Alarm, FAILED};
 use crate::scene::{Hash, NodeId, Scene};
 use kept::Cache;
+use world::World;
 
 pub use analytic::Analytic;
 pub use batch::{Asked, Rooms};
@@ -67,21 +69,21 @@ pub struct Stage {
     /// Size, exposure, observer, output.
     pub film: Film,
     /// Geometry, each once.
-    pub geometries: Vec<Arc<Geometry>>,
+    pub geometries: Arc<[Arc<Geometry>]>,
     /// Geometry in its places.
-    pub placements: Vec<Placement>,
+    pub placements: Arc<[Placement]>,
     /// Over the placements' boxes.
-    pub top: TopBvh,
+    pub top: Arc<TopBvh>,
     /// Materials that placements use.
-    pub materials: Vec<Arc<Object>>,
+    pub materials: Arc<[Arc<Object>]>,
     /// The node of each material.
-    pub material_nodes: Vec<NodeId>,
+    pub material_nodes: Arc<[NodeId]>,
     /// Media that placements use.
-    pub media: Vec<Arc<Object>>,
+    pub media: Arc<[Arc<Object>]>,
     /// What fills the space that no shape encloses: an index into `media`.
     pub outside: Option<u32>,
     /// Sources of light and how one is chosen.
-    pub lights: Lights,
+    pub lights: Arc<Lights>,
     /// The camera.
     pub camera: Arc<Object>,
     /// From the frame that the camera's parameters speak of to the world.
@@ -107,7 +109,8 @@ pub struct Stage {
     pub camera_media: MediumStack,
     /// The camera as paths from lights find it; `None` where its lens is no point.
     pub eye: Option<Eye>,
-    /// For the next build.
+    /// For the next build: what stands in the world, and all that has been made.
+    world: World,
     cache: Cache,
 }
 

@@ -1,26 +1,68 @@
 //! Geometry that shines: how large it is, and whether its points can be chosen.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use glam::DVec3;
-use luxel_sdk::num::Bounds3;
+use luxel_sdk::num::{Bounds3, Transform};
 use luxel_sdk::sampling::{Alias, sobol_owen_2d};
 
-use super::lights::{Facets, Quad};
-use super::{Geometry, Placement};
+use super::lights::{Facets, LightSource, Quad};
+use super::{Geometry, Placement, Stage};
 use crate::cast::index;
 use crate::diag::{Diagnostic, Span};
 use crate::object::{Object, carried_area};
 use crate::scene::{NodeId, Scene};
 
+/// What shines by the triangles of a mesh in the stage before: how those are chosen depends on nothing
+/// but the mesh and where it stands.
+#[derive(Default)]
+pub(super) struct Lamps<'a>(HashMap<Standing, (f64, &'a Arc<Facets>), foldhash::fast::RandomState>);
+
+/// A geometry by its address, and the bits of the transform to the world.
+type Standing = (usize, Option<[u64; 12]>);
+
+fn standing(geometry: &Arc<Geometry>, placement: &Placement) -> Option<Standing> {
+    let is_moving = match &**geometry {
+        Geometry::Mesh(mesh) => mesh.is_moving(),
+        Geometry::Analytic(_) => true,
+    };
+    let bits = |place: &Transform| place.affine().to_cols_array().map(f64::to_bits);
+    let place = &placement.place;
+    let stands = !(is_moving || place.is_moving());
+    stands.then(|| (Arc::as_ptr(geometry).addr(), place.first().map(bits)))
+}
+
+impl<'a> Lamps<'a> {
+    /// Those of a stage, which holds their geometries for as long as these are known by their address.
+    pub(super) fn of(stage: &'a Stage) -> Self {
+        let of = |source: &'a LightSource| {
+            let LightSource::Surface { placement, area, triangles, .. } = source else {
+                return None;
+            };
+            let placement = &stage.placements[*placement as usize];
+            let geometry = &stage.geometries[placement.geometry as usize];
+            Some((standing(geometry, placement)?, (*area, triangles.as_ref()?)))
+        };
+        Self(stage.lights.sources.iter().filter_map(of).collect())
+    }
+}
+
 /// Area in the world, m², and the triangles of a mesh.
 pub(super) fn measured(
-    geometry: &Geometry,
+    geometry: &Arc<Geometry>,
     placement: &Placement,
     [open, close]: [f64; 2],
-) -> (f64, Option<Facets>) {
-    let mesh = match geometry {
+    lamps: &Lamps<'_>,
+) -> (f64, Option<Arc<Facets>>) {
+    let mesh = match &**geometry {
         Geometry::Analytic(shape) => return (world_area(shape.object(), placement), None),
         Geometry::Mesh(mesh) => mesh,
     };
+    let known = standing(geometry, placement).and_then(|it| lamps.0.get(&it));
+    if let Some((area, facets)) = known {
+        return (*area, Some((*facets).clone()));
+    }
     let triangles = 0..index(mesh.triangles().indices.len());
     let areas = |time: f64| -> Vec<f64> {
         let mut room = None;
@@ -35,12 +77,12 @@ pub(super) fn measured(
         let others = [areas(0.5 * open + 0.5 * close), areas(close)];
         let all = first.iter().zip(&others[0]).zip(&others[1]);
         let mean: Vec<f64> = all.map(|((a, b), c)| (a + b + c) / 3.0).collect();
-        return (area, Alias::new(&mean).ok().map(|choice| Facets::new(choice, None)));
+        return (area, Alias::new(&mean).ok().map(|choice| Facets::new(choice, None).into()));
     }
     let transform = placement.place.first();
     let world = |p: DVec3| transform.map_or(p, |transform| transform.point(p));
     let corners: Vec<_> = triangles.map(|i| mesh.opening_corners(i).map(world)).collect();
-    (area, Alias::new(&first).ok().map(|choice| Facets::new(choice, Some(&corners))))
+    (area, Alias::new(&first).ok().map(|choice| Facets::new(choice, Some(&corners)).into()))
 }
 
 /// The parallelogram of a shape that its placement shears.

@@ -130,7 +130,7 @@ impl Moment<'_> {
         let placement = &self.placements[*place as usize];
         let (mut surface, face, mut pdf) = match &*self.geometries[placement.geometry as usize] {
             Geometry::Mesh(mesh) => {
-                let facets = triangles.as_ref()?;
+                let facets = triangles.as_deref()?;
                 let triangle = index(facets.choice.sample(left).index);
                 let [_, b, c] = uniform_triangle(u.point).map(f64::from);
                 let surface =

@@ -68,7 +68,7 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
 }
 
 /// The last five are not among `all`: they take long, or another program, or measure nothing new.
-const BENCHES: [Bench; 24] = [
+const BENCHES: [Bench; 25] = [
     of_crates("parse", |_| parse::run().and_then(|()| evaluate::run())),
     of_crates("evaluate", |_| evaluate::run()),
     of_crates("editor", |_| {
@@ -103,6 +103,7 @@ const BENCHES: [Bench; 24] = [
     of_program("lean", |plan| lean::run(plan.lean.as_deref())),
     of_program("tables", tables::run),
     of_program("soak", |plan| watch::soak(&plan.luxel)),
+    of_program("crowd", |plan| watch::crowd(&plan.luxel)),
     of_program("tables-short", tables::short),
     of_crates("leaks-long", |plan| {
         rays::leaks(plan.embree.as_deref(), plan.python.as_deref(), 1_000_000);

@@ -64,22 +64,28 @@ pub(super) fn run(watching: &Watching, subject: &mut Subject) -> Result<(), Stri
     Ok(())
 }
 
-/// Edits the camera while the finished picture before is being written.
+/// Makes edits of one kind, each up to so many seconds after the picture before, and prints how long
+/// they took to be seen.
 ///
 /// # Errors
 /// The program's words.
-pub(super) fn writing(watching: &Watching, subject: &mut Subject) -> Result<(), String> {
+pub(super) fn alike(
+    watching: &Watching,
+    what: &str,
+    pause: f64,
+    mut edit: impl FnMut() -> Result<Instant, String>,
+) -> Result<(), String> {
     let mut generation = first(watching)?;
     let (mut times, mut rng) = (Times::default(), Rng::new(10));
     for _ in 0..ROUNDS {
-        // It is shown when it is finished, and then written.
-        let pause = 50.0 * rng.f64();
-        watching.until(Instant::now() + Duration::from_secs_f64(pause / 1e3)).for_each(drop);
-        let saved = subject.edit(Kind::Camera, Way::Renamed)?;
+        let pause = pause * rng.f64();
+        watching.until(Instant::now() + Duration::from_secs_f64(pause)).for_each(drop);
+        let saved = edit()?;
         generation = follow(watching, (saved, generation), &mut times)?;
     }
-    let [noticed, coarse] = [times.noticed, times.coarse].map(|ms| told(&Series::from(ms)));
-    println!("camera, while a finished picture is written: noticed {noticed}, coarse {coarse}");
+    let columns = [times.noticed, times.coarse, times.whole].map(|ms| told(&Series::from(ms)));
+    let [noticed, coarse, whole] = columns;
+    println!("{what}: noticed {noticed}, coarse {coarse}, 1 spp {whole}");
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 mod cancel;
 mod client;
+mod crowd;
 mod latency;
 mod soak;
 mod subject;
@@ -13,7 +14,8 @@ use std::time::Instant;
 use crate::process::{Luxel, has_mitsuba, here};
 use crate::series::Series;
 use client::Watching;
-use subject::Subject;
+use crowd::Crowd;
+use subject::{Kind, Subject, Way};
 
 pub(crate) use soak::run as soak;
 
@@ -35,8 +37,11 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
     latency::run(&watching, &mut subject)?;
     drop(watching);
     let watching = Watching::start(luxel, &subject.scene(), &["--spp", "1"])?;
-    latency::writing(&watching, &mut subject)?;
+    // A finished picture is shown, and then written.
+    let edit = || subject.edit(Kind::Camera, Way::Renamed);
+    latency::alike(&watching, "camera, while a finished picture is written", 0.05, edit)?;
     drop(watching);
+    crowd(luxel)?;
     let ends = cancel::run(&subject)?;
     let [p50, p95, p99] = [50, 95, 99].map(|percent| ends.percentile(percent));
     println!("end of a render after it is asked (goal p99 10): {p50:.1} / {p95:.1} / {p99:.1} ms");
@@ -55,6 +60,16 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
     command.arg(here().join("watch_mitsuba.py")).arg(subject.mesh()).arg(subject.texture());
     let status = command.status().map_err(|error| format!("{}: {error}", python.display()))?;
     if status.success() { Ok(()) } else { Err("watch_mitsuba.py failed".to_owned()) }
+}
+
+/// Prints latencies of edits of the camera among many placements.
+///
+/// # Errors
+/// A program's words.
+pub(crate) fn crowd(luxel: &Luxel) -> Result<(), String> {
+    let mut crowd = Crowd::new()?;
+    let watching = Watching::start(luxel, &crowd.scene(), &[])?;
+    latency::alike(&watching, "camera, 100,000 placements", 0.25, || crowd.edit())
 }
 
 /// Milliseconds from the start of the program to its end, with one sample per pixel.

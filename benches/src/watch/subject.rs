@@ -168,7 +168,7 @@ shape rectangle {{ center = (0, -0.1, 0) m, u = (4, 0, 0) m, v = (0, 0, -4) m, m
 }
 
 #[expect(clippy::disallowed_methods, reason = "a save as editors make it")]
-fn put(path: &Path, bytes: &[u8], way: Way) -> Result<Instant, String> {
+pub(super) fn put(path: &Path, bytes: &[u8], way: Way) -> Result<Instant, String> {
     let told = |error: std::io::Error| format!("{}: {error}", path.display());
     let part = path.with_extension("part");
     let place = if way == Way::Renamed { &part } else { path };

@@ -135,7 +135,7 @@ fn what_cannot_be_a_part_is_told_at_its_place() {
     let (code, text) = wrong(
         "shape union {
            a = shape sphere { radius = 1 m }, smooth = 1 cm
-           b = shape cylinder { radius = 1 m, height = 1 m, caps = true }
+           b = shape cone { radius = 1 m, height = 1 m, caps = true }
          }",
     );
     assert!(code == "E0405" && text.contains("does not know its distance"), "{text}");

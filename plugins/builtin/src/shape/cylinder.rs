@@ -123,6 +123,14 @@ impl Shape for Cylinder {
         self.caps
     }
 
+    /// Of a solid rod: that of the rectangle which it is around its axis.
+    fn distance(&self, p: DVec3) -> Option<f64> {
+        let q = self.local(p - self.base);
+        let half = 0.5 * self.height;
+        let out = DVec2::new(q.truncate().length() - self.radius, (q.z - half).abs() - half);
+        self.caps.then(|| out.max(DVec2::ZERO).length() + out.max_element().min(0.0))
+    }
+
     fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
         let round = NormalDerivatives { dn_du: at.dp_du / self.radius, dn_dv: DVec3::ZERO };
         Some(if hit.face == SIDE { round } else { NormalDerivatives::FLAT })
@@ -312,6 +320,18 @@ mod tests {
         // Closed, as in a tube one side hides another, which the samples do not see.
         let c = cylinder(DVec3::ZERO, 1.0, 2.0, true);
         check_solid_angle(&c, c.z * 3.0 + c.x * 3.0, 43);
+    }
+
+    #[test]
+    fn distances_are_to_the_side_to_a_cap_or_to_its_rim() {
+        let c = cylinder(DVec3::ONE, 1.0, 2.0, true);
+        let at = |x: f64, z: f64| c.distance(c.base + c.x * x + c.z * z).unwrap();
+        for (x, z, truth) in
+            [(3.0, 1.0, 2.0), (0.5, 4.0, 2.0), (4.0, 6.0, 5.0), (0.8, 1.0, -0.2), (0.0, 0.3, -0.3)]
+        {
+            assert!((at(x, z) - truth).abs() < 1e-14, "{x} {z}: {}", at(x, z));
+        }
+        assert!(cylinder(DVec3::ONE, 1.0, 2.0, false).distance(DVec3::ZERO).is_none());
     }
 
     #[test]

@@ -49,9 +49,15 @@ struct Pair<'s> {
     b: ShapeRef<'s>,
     smooth: f64,
     bounds: Bounds3,
+    /// Whether each knows its distance, and so does not cross itself: 1 or 0.
+    plain: [u32; 2],
 }
 
 impl<'s> Pair<'s> {
+    fn found_plain(a: &ShapeRef<'_>, b: &ShapeRef<'_>) -> [u32; 2] {
+        [a, b].map(|part| u32::from(part.distance(part.bounds().centre()).is_some()))
+    }
+
     fn blend(&self) -> Blend<'s> {
         Blend::new(self.op, self.a, self.b, self.smooth)
     }
@@ -87,7 +93,8 @@ impl<'s> Pair<'s> {
             if smooth > 0.0 && part.distance(part.bounds().centre()).is_none() {
                 let message = format!(
                     "`{field}` does not know its distance from a point, by which parts are blended: \
-                     leave `smooth` out, or use spheres, boxes, capsules, tori and gyroid walls"
+                     leave `smooth` out, or use spheres, boxes, capsules, cylinders with caps, tori \
+                     and gyroid walls"
                 );
                 return Err(Fault::range(field, message));
             }
@@ -164,6 +171,9 @@ macro_rules! solid {
             /// The box around it.
             #[param(derived)]
             bounds: [DVec3; 2],
+            /// Which parts know their distance.
+            #[param(derived)]
+            plain: [u32; 2],
         }
 
         impl Build<Area> for $name<'_> {
@@ -175,8 +185,8 @@ macro_rules! solid {
         impl<'a> $name<'a> {
             fn pair(&self) -> Pair<'a> {
                 let [min, max] = self.bounds;
-                let bounds = Bounds3 { min, max };
-                Pair { op: Op::$op, a: self.a, b: self.b, smooth: self.smooth, bounds }
+                let Self { a, b, smooth, plain, .. } = *self;
+                Pair { op: Op::$op, a, b, smooth, bounds: Bounds3 { min, max }, plain }
             }
         }
 
@@ -184,6 +194,7 @@ macro_rules! solid {
             fn prepare(&mut self) {
                 let found = Pair::found_bounds(Op::$op, &self.a, &self.b, self.smooth);
                 self.bounds = [found.min, found.max];
+                self.plain = Pair::found_plain(&self.a, &self.b);
             }
 
             fn check(&self) -> Result<(), Fault> {

@@ -16,7 +16,7 @@ fn pair<'s, A: Shape, B: Shape>(op: Op, a: &'s A, b: &'s B, smooth: f64) -> Soli
     let (a, b) = (ShapeRef::new(a), ShapeRef::new(b));
     Pair::check(op, &a, &b, smooth).unwrap();
     let bounds = Pair::found_bounds(op, &a, &b, smooth);
-    Solid(Pair { op, a, b, smooth, bounds })
+    Solid(Pair { op, a, b, smooth, bounds, plain: Pair::found_plain(&a, &b) })
 }
 
 /// A pair as a shape, so that it may be a part.

@@ -29,6 +29,8 @@ struct Crossing {
 /// A part along the ray.
 struct Follower<'s> {
     part: ShapeRef<'s>,
+    /// Whether it does not cross itself.
+    plain: bool,
     /// How often it is inside now, and after its next crossing.
     depth: u32,
     then: u32,
@@ -36,10 +38,10 @@ struct Follower<'s> {
 }
 
 impl<'s> Follower<'s> {
-    fn new(part: ShapeRef<'s>, ray: &Ray) -> Self {
+    fn new((part, plain): (ShapeRef<'s>, u32), ray: &Ray) -> Self {
         let whole = Ray { t_max: f64::INFINITY, ..*ray };
         let next = crossing(&part, &whole, 0.0);
-        let mut found = Self { part, depth: 0, then: 0, next };
+        let mut found = Self { part, plain: plain > 0, depth: 0, then: 0, next };
         if found.next.is_some() && part.bounds().contains(ray.o) {
             found.depth = found.deep(&whole, None);
         }
@@ -80,7 +82,7 @@ impl<'s> Follower<'s> {
         let first = after.map_or(self.next, |passed| following(&self.part, passed, ray));
         let Some(first) = first else { return 0 };
         let least = u32::from(!first.enters);
-        if self.part.distance(first.surface.p).is_some() {
+        if self.plain {
             return least;
         }
         let (mut left, mut next) = (0i32, Some(first));
@@ -133,11 +135,11 @@ pub(super) fn first(pair: &Pair<'_>, ray: &Ray) -> Option<Hit> {
     {
         return None;
     }
-    let mut a = Follower::new(pair.a, ray);
+    let mut a = Follower::new((pair.a, pair.plain[0]), ray);
     if pair.op != Op::Union && a.next.is_none() {
         return None;
     }
-    let mut b = Follower::new(pair.b, ray);
+    let mut b = Follower::new((pair.b, pair.plain[1]), ray);
     for _ in 0..MOST {
         let (pass_a, pass_b) = match (&a.next, &b.next) {
             (None, None) => return None,

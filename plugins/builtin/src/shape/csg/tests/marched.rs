@@ -102,7 +102,7 @@ fn blended_solids_are_met_where_their_sign_changes_first() {
                 continue;
             }
             let bounds = Pair::found_bounds(op, &a, &b, k);
-            let whole = Solid(Pair { op, a, b, smooth: k, bounds });
+            let whole = Solid(Pair { op, a, b, smooth: k, bounds, plain: [1; 2] });
             n_hits += check_rays(&whole, 193);
             // As a part of another one.
             n_hits += check_rays(&pair(Op::Union, &whole, &thin, 0.05), 194);

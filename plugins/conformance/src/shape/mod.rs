@@ -15,6 +15,9 @@ use crate::statistics::{deviation, mean_error};
 use crate::subject::Subject;
 use crate::sweep::Set;
 
+/// The row of a shape of which no ray is asked.
+const HITS: &str = "hits";
+
 /// Crossings of one line with a shape that are followed.
 const CROSSINGS: usize = 64;
 
@@ -22,7 +25,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
     for (set, mut rng) in subject.usual() {
         look_at(subject, set, &mut rng, judge);
     }
-    for (set, mut rng) in placed::sets(subject) {
+    for (set, mut rng) in placed::sets(subject, judge) {
         look_at(subject, &set, &mut rng, judge);
     }
     judge.skip_untried(turning::TURNS, "it nowhere says how its normals turn");
@@ -47,6 +50,8 @@ fn look_at(subject: &Subject<'_>, set: &Set, rng: &mut Rng, judge: &mut Judge) {
         let shape = resolved.shape();
         if let Some(mesh) = shape.mesh() {
             is_a_mesh(&mesh, shape.bounds(), set, judge);
+            judge.skip(HITS, "triangles, which the host meets and samples: their tables alone");
+            judge.skip(turning::TURNS, "triangles, of which the host says how their normals turn");
             return;
         }
         let Some(look) = Look::new(shape, set) else {

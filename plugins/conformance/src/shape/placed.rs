@@ -4,33 +4,48 @@ use luxel_core::scene::Value;
 use luxel_sdk::params::{Param, Preset, Type};
 use luxel_sdk::sampling::Rng;
 
+use crate::report::Judge;
 use crate::subject::Subject;
-use crate::sweep::{FAR, Given, Set, own, part};
+use crate::sweep::{FAR, Given, Set, own, part, said};
 use crate::values::{Level, dimension};
 
-/// Factors of every length.
-const SCALES: [f64; 2] = [1e-6, 1e6];
+/// Factors of every length, and the checks that there is such a shape.
+const SCALES: [(f64, &str); 2] =
+    [(1e-6, "a millionth as large"), (1e6, "a million times as large")];
+const AWAY: &str = "far away";
 
-/// The usual shape with all lengths scaled, and moved. Without such parameters, or where they are
-/// refused, there is none.
-pub(super) fn sets(subject: &Subject<'_>) -> Vec<(Set, Rng)> {
+/// The usual shape with all lengths scaled, and moved. Where it has none, or they are refused, there is
+/// no such set, and a row that says so.
+pub(super) fn sets(subject: &Subject<'_>, judge: &mut Judge) -> Vec<(Set, Rng)> {
     let Some(usual) = subject.sets.first() else { return vec![] };
     let scaled = |i: usize| {
-        let scale = SCALES[i];
+        let (scale, check) = SCALES[i];
         let change = move |_: &Param, x: &[f64]| x.iter().map(|x| x * scale).collect();
-        (format!("scaled by {scale:e}"), changed(subject, usual, 1 + i, change))
+        (check, format!("scaled by {scale:e}"), changed(subject, usual, 1 + i, change))
     };
     let moved = changed(subject, usual, 1 + SCALES.len(), |param, x| {
         let far = |i: usize| if is_place(param) { FAR[i % 3] } else { 0.0 };
         x.iter().enumerate().map(|(i, x)| x + far(i)).collect()
     });
-    let all = [scaled(0), scaled(1)].into_iter().chain([(format!("moved by {FAR}"), moved)]);
-    let sets = all.zip(0u64..).filter_map(|((label, given), i)| {
-        let object = subject.bench.build(&subject.class, &given?, usual.mode).ok()?;
+    let all = [scaled(0), scaled(1), (AWAY, format!("moved by {FAR}"), moved)];
+    let mut made = vec![];
+    for ((check, label, given), i) in all.into_iter().zip(0u64..) {
+        let Some(given) = given else {
+            judge.skip(check, "no parameter is such a length or place");
+            continue;
+        };
+        let object = match subject.bench.build(&subject.class, &given, usual.mode) {
+            Ok(object) => object,
+            Err(found) => {
+                judge.skip(check, format!("{label}, it is refused: {}", said(&found)));
+                continue;
+            }
+        };
+        judge.holds(check, true, || label.clone());
         let set = Set { label, given: vec![], object, level: Level::Usual, mode: usual.mode };
-        Some((set, Rng::new(subject.options.seed.wrapping_add(1000 + i))))
-    });
-    sets.collect()
+        made.push((set, Rng::new(subject.options.seed.wrapping_add(1000 + i))));
+    }
+    made
 }
 
 /// A place and not an extent: the origin unless given; or a table of places, by its name.

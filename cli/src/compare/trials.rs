@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use glam::UVec2;
 use luxel_core::files::MemoryFiles;
+use luxel_core::film::Rect;
 use luxel_core::registry::Registry;
 use luxel_core::render::{Control, Options, render};
 use luxel_core::stage::{self, Stage};
@@ -59,7 +61,10 @@ fn stage(scene: &str, rho: &str) -> Stage {
     for classes in luxel_builtin::CLASSES {
         registry.add("builtin", classes).unwrap();
     }
-    let files = MemoryFiles::default().with("a.scene", scene.as_bytes());
+    let reflectance = &include_bytes!("../../../scenes/cornell/reflectance.csv")[..];
+    let files = MemoryFiles::default()
+        .with("a.scene", scene.as_bytes())
+        .with("cornell/reflectance.csv", reflectance);
     let settings =
         luxel_lang::Settings { set: vec![("rho".into(), rho.into())], ..Default::default() };
     let loaded = luxel_lang::load(Path::new("a.scene"), &files, &registry, &settings);
@@ -188,6 +193,96 @@ fn a_bias_of_a_hundredth_in_one_material_is_found_with_the_stated_power() {
          mean, {seen} or less of which was stated to be found; {least} are asked for."
     );
     published::hold("accuracy.md", "trials-different", &told);
+}
+
+/// The Cornell box as it ships, its lamp of a brightness that can be set.
+fn cornell() -> String {
+    let (lamp, whole) = ("  scale    = 2\n", "film spectral { resolution = (512, 512) }");
+    let text = include_str!("../../../scenes/cornell.scene");
+    assert!(text.contains(lamp) && text.contains(whole), "the scene is as it was");
+    let small = "film spectral { resolution = (64, 64) }";
+    let text = text.replace(lamp, "  scale    = 4 * rho\n").replace(whole, small);
+    text.replace("scene 1\n", "scene 1\nparam rho: float = 0.5\n")
+}
+
+/// Lamp and ceiling about it.
+const ABOUT_THE_LAMP: Rect = Rect { min: UVec2::new(20, 4), size: UVec2::new(24, 12) };
+
+/// Biases that are injected are so many times the one that a typical pair is stated to tell.
+const OVER: f64 = 1.2;
+
+/// Pairs that are tried of each of these.
+const FEW: u32 = 60;
+
+/// A scene, the part of it that is looked at, and samples.
+struct Injected {
+    scene: String,
+    crop: Option<Rect>,
+    spp: u32,
+}
+
+/// What of a picture's mean is stated to be told, at the median pair; how large the bias is that was
+/// injected; and how many pairs of it are `different`, of those that were stated to tell it, and of all.
+fn injected(of: &Injected) -> ([f64; 2], [usize; 3]) {
+    let picture = |stage: &Stage, seed: u32, spp: u32| {
+        let options =
+            Options { seed: Some(seed), spp: Some(spp), crop: of.crop, ..Options::default() };
+        let film = render(stage, &options, &Control::default()).0;
+        picture::reread(&film, &Notes { json: format!(r#"{{"seed":{seed}}}"#) })
+    };
+    let plain = stage(&of.scene, "0.5");
+    let other = |seed: u32| picture(&plain, seed + 100_000, of.spp);
+    let mut seen: Vec<f64> =
+        (0..FEW).map(|seed| verdict(picture(&plain, seed, of.spp), other(seed)).1).collect();
+    seen.sort_by(f64::total_cmp);
+    let seen = seen[seen.len() / 2];
+    // Equal seeds: nearly all of the noise is common, and what is left is the bias. It is nearly
+    // proportional to what is added, so that two steps find how much that is to be.
+    let bias = |rho: f64| {
+        let brighter = stage(&of.scene, &format!("{rho}"));
+        let pictures = [&brighter, &plain].map(|stage| picture(stage, 1, 4 * of.spp));
+        let [a, b] = pictures;
+        verdict(a, b).2
+    };
+    let mut more = 0.5 * OVER * seen;
+    for _ in 0..2 {
+        more *= OVER * seen / bias(0.5 + more);
+    }
+    let brighter = stage(&of.scene, &format!("{}", 0.5 + more));
+    let (mut told, mut found, mut all) = (0, 0, 0);
+    for seed in 0..FEW {
+        let (word, stated, _) = verdict(picture(&brighter, seed, of.spp), other(seed));
+        let is_found = word == Word::Different;
+        let is_stated = stated <= OVER * seen;
+        all += usize::from(is_found);
+        told += usize::from(is_stated);
+        found += usize::from(is_found && is_stated);
+    }
+    ([seen, bias(0.5 + more)], [found, told, all])
+}
+
+#[test]
+fn a_bias_of_what_is_stated_is_found_with_a_lamp_in_view_and_in_a_caustic() {
+    let caustic = |sampler| CAUSTIC.replace("SAMPLER", sampler);
+    let scenes = [
+        ("Cornell box, lamp in view", cornell(), Some(ABOUT_THE_LAMP), 32),
+        ("caustic, independent", caustic("independent"), None, 48),
+        ("caustic, Sobol'", caustic("sobol"), None, 48),
+    ];
+    let mut rows = vec![
+        "| scene | stated to be told | injected | found, of those that state it | found, of all |"
+            .to_owned(),
+        "|---".repeat(5) + "|",
+    ];
+    for (name, scene, crop, spp) in scenes {
+        let ([seen, bias], [found, told, all]) = injected(&Injected { scene, crop, spp });
+        let [seen, bias] = [seen, bias].map(|share| format!("{:.2} %", share * 100.0));
+        rows.push(format!("| {name} | {seen} | {bias} | {found} of {told} | {all} of {FEW} |"));
+        println!("{}", rows[rows.len() - 1]);
+        let told = u32::try_from(told).unwrap();
+        assert!(found >= least(told, POWER) as usize, "{rows:?}");
+    }
+    published::hold("accuracy.md", "trials-injected", &rows.join("\n"));
 }
 
 #[test]

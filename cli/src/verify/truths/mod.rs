@@ -4,6 +4,7 @@
 mod bench;
 mod colour;
 mod estimators;
+mod lamps;
 mod list;
 mod photometry;
 mod rays;

@@ -6,7 +6,7 @@ use luxel_core::files::MemoryFiles;
 pub(super) const LIST: &str = include_str!("truths.txt");
 
 /// Measured reflectances of a colour chart.
-pub(super) const CHART: &str = include_str!("colour/colorchecker_n_ohta.csv");
+const CHART: &str = include_str!("colour/colorchecker_n_ohta.csv");
 
 const SCENES: [(&str, &str); 42] = [
     ("absorbing.scene", include_str!("absorbing.scene")),

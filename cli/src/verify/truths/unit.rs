@@ -8,11 +8,12 @@ use luxel_sdk::color::{
 };
 use luxel_sdk::kind::{Phase, Raster};
 use luxel_sdk::scattering::{
-    conductor_reflectance, dielectric_reflectance, film_reflectance, refract,
+    conductor_reflectance, dielectric_reflectance, film_reflectance, polarised_reflectances,
+    refract,
 };
 
 use super::bench::Bench;
-use super::{estimators, photometry, rays, walks};
+use super::{estimators, lamps, photometry, rays, walks};
 use crate::exit::Failure;
 use crate::verify::row::Row;
 
@@ -37,6 +38,7 @@ pub(super) fn rows(bench: &Bench<'_>) -> Result<Vec<Row>, Failure> {
         estimators::rows(bench)?,
         walks::rows(bench)?,
         rays::rows(bench)?,
+        lamps::rows(bench)?,
     ]
     .concat())
 }
@@ -71,7 +73,13 @@ fn dielectric() -> Vec<Row> {
     };
     let mut rows = cases.map(|case| row("fresnel.dielectric", case)).to_vec();
     // Half of what is reflected of the one polarisation that is.
-    rows.push(row("fresnel.brewster", (56.309932474020215, 0.07396449704142012)));
+    let brewster = 56.309932474020215;
+    rows.push(row("fresnel.brewster", (brewster, 0.07396449704142012)));
+    let [parallel, across] = polarised_reflectances(direction(brewster).z, 1.5);
+    for (case, expected, measured) in [("Rs", 0.14792899408284024, across), ("Rp", 0.0, parallel)] {
+        let values = (expected, f64::from(measured));
+        rows.push(Row::exact("fresnel.brewster", case, values, (1e-5, 1e-7)));
+    }
     rows
 }
 

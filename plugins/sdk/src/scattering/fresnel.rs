@@ -20,6 +20,17 @@ pub fn dielectric_reflectance(cos_i: f32, eta: f32) -> f32 {
     (0.5 * (parallel + perpendicular)) as f32
 }
 
+/// The same of light of each polarisation: parallel and perpendicular to the plane of incidence. Their mean
+/// is `dielectric_reflectance`.
+///
+/// # Source
+/// PBR4 §9.3.5, eqs. 9.3 and 9.4, squared.
+#[expect(clippy::cast_possible_truncation, reason = "rounds; the result is in [0, 1]")]
+pub fn polarised_reflectances(cos_i: f32, eta: f32) -> [f32; 2] {
+    let (c, eta) = (f64::from(cos_i).clamp(0.0, 1.0), f64::from(eta));
+    beyond(c, eta).map_or([1.0; 2], |h| polarised(c, eta, h).map(|share| share as f32))
+}
+
 /// Fractions of light of the two polarisations, parallel and perpendicular to the plane of incidence;
 /// `h` as `beyond` gives it.
 fn polarised(c: f64, eta: f64, h: f64) -> [f64; 2] {

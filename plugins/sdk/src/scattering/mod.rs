@@ -3,7 +3,10 @@
 mod fresnel;
 mod ggx;
 
-pub use fresnel::{conductor_reflectance, dielectric_reflectance, film_reflectance, refract};
+pub use fresnel::{
+    conductor_reflectance, dielectric_reflectance, film_reflectance, polarised_reflectances,
+    refract,
+};
 pub use ggx::{Ggx, SMOOTH_ALPHA};
 
 use glam::Vec3;

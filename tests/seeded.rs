@@ -100,6 +100,17 @@ fn mistakes(text: &str) -> Vec<Mistake> {
     blocks.map(|block| one(block).unwrap_or_else(|| panic!("no mistake: {block}"))).collect()
 }
 
+/// A scene of that folder with every mistake that its file names.
+pub(crate) fn planted(path: &Path) -> String {
+    let right = text(path);
+    let mistakes = mistakes(&text(&path.with_extension("mistakes")));
+    let mut lines: Vec<&str> = right.split('\n').collect();
+    for mistake in &mistakes {
+        lines[mistake.line - 1] = &mistake.text;
+    }
+    lines.join("\n")
+}
+
 /// What was told of mistakes.
 #[derive(Default)]
 struct Tally {

@@ -1,5 +1,8 @@
 //! `luxel check --fix` and the pages of codes, as a person meets them.
 
+use crate::disk::{files_below, root};
+use crate::seeded::planted;
+
 use super::program::{Folder, SCENE};
 
 fn text(folder: &Folder, name: &str) -> String {
@@ -100,6 +103,41 @@ fn statements_on_one_line_are_put_on_their_own() {
     let folder = folder.with("b.scene", &dos(&format!("{SCENE}let a = 1 let b = 2\n")));
     assert_eq!(folder.luxel(&["check", "b.scene", "--fix"]).code, 0);
     assert_eq!(text(&folder, "b.scene"), dos(&format!("{SCENE}let a = 1\nlet b = 2\n")));
+}
+
+/// Mends that are sure and alone, of what is told of a scene.
+fn sure(folder: &Folder) -> Vec<String> {
+    let done = folder.luxel(&["check", "a.scene", "--json"]);
+    let told =
+        done.out.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    let is_sure = |told: &serde_json::Value| {
+        let fixes = told["fixes"].as_array().unwrap();
+        fixes.iter().filter(|fix| fix["grade"] == "sure").count() == 1
+    };
+    told.filter(is_sure).map(|told| told.to_string()).collect()
+}
+
+#[test]
+fn a_mend_beside_another_mistake_is_applied() {
+    let object = "shape sphere { radius 1m center (0 1 0) m }";
+    let folder = Folder::new("fix-several-of-one")
+        .with("a.scene", &format!("{SCENE}{object}\nlet a = 5 +\n"));
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert!(done.code == 1 && done.err.contains("E0015"), "{done:?}");
+    let mended = "shape sphere { radius = 1m, center = (0, 1, 0) m }";
+    assert_eq!(text(&folder, "a.scene"), format!("{SCENE}{mended}\nlet a = 5 +\n"));
+    assert_eq!(sure(&folder), [""; 0]);
+}
+
+#[test]
+fn no_mend_that_is_sure_is_left() {
+    let seeded = root().join("tests/seeded");
+    let scenes = files_below(&seeded, "scene");
+    for path in scenes.iter().filter(|path| path.parent() == Some(&seeded)) {
+        let folder = Folder::new("fix-seeded").with("a.scene", &planted(path));
+        folder.luxel(&["check", "a.scene", "--fix"]);
+        assert_eq!(sure(&folder), [""; 0], "{}", path.display());
+    }
 }
 
 #[test]

@@ -37,8 +37,9 @@ pub(super) fn mended(
         let Text { diagnostics, sources, files, .. } = &text;
         let may =
             |id| is_scene(diagnostics, id) && is_file(files, sources.name(id), sources.text(id));
-        let mut found = mend(diagnostics, sources, may);
-        found.retain(|mended| is_better(mended, sources));
+        let found = mend(diagnostics, sources, may).into_iter();
+        let found: Vec<_> =
+            found.filter_map(|mended| bettered(mended, diagnostics, sources)).collect();
         if found.is_empty() {
             return Ok(());
         }
@@ -65,28 +66,68 @@ fn is_scene(diagnostics: &[Diagnostic], id: SourceId) -> bool {
     !diagnostics.iter().filter(of_file).any(|found| found.code == "E0001")
 }
 
-/// Whether mends of what is written wrongly leave less of it, or the same mistake further on: of several
-/// missing commas the first is told. Mends of names and values are not asked for that.
-fn is_better(mended: &Mended, sources: &Sources) -> bool {
-    if !mended.changes.iter().any(|(code, _)| code.starts_with("E00")) {
-        return true;
+/// The mends of a text that make it better: all of them, or else those that do so by themselves. Mends of
+/// names and values are not asked for that.
+fn bettered(all: Mended, found: &[Diagnostic], sources: &Sources) -> Option<Mended> {
+    let text = sources.text(all.source);
+    let is_written = |code: &str| code.starts_with("E00");
+    if !all.changes.iter().any(|(code, _)| is_written(code)) {
+        return Some(all);
     }
+    let before = faults(text);
+    if is_better(&before, &faults(&all.text)) {
+        return Some(all);
+    }
+    let own = |fix: &Fix| found.iter().find(|found| found.fixes.contains(fix));
+    let goes_on = |fix: &Fix| {
+        own(fix).is_some_and(|own| goes_on(own, fix, &before, &faults(&fix.applied(text))))
+    };
+    let Mended { source, mut changes, .. } = all;
+    changes.retain(|(code, fix)| !is_written(code) || goes_on(fix));
+    let text = changes.iter().rev().fold(text.to_owned(), |text, (_, fix)| fix.applied(&text));
+    (!changes.is_empty()).then_some(Mended { source, text, changes })
+}
+
+/// A mistake of what is written, and where it begins.
+type Fault = (String, usize);
+
+fn fault(found: &Diagnostic) -> Fault {
     // Anything may be unexpected: there the words tell what.
-    let kind = |found: &Diagnostic| match found.code {
+    let kind = match found.code {
         "E0023" => found.message.clone(),
         code => code.to_owned(),
     };
-    let faults = |text: &str| -> Vec<(String, usize)> {
-        let (_, found) = luxel_lang::parse_only(text, &Budgets::default());
-        let errors = found.iter().filter(|found| found.is_error());
-        errors.map(|it| (kind(it), it.span().map_or(0, |span| span.range().start))).collect()
-    };
-    let (before, after) = (faults(sources.text(mended.source)), faults(&mended.text));
+    (kind, found.span().map_or(0, |span| span.range().start))
+}
+
+fn faults(text: &str) -> Vec<Fault> {
+    let (_, found) = luxel_lang::parse_only(text, &Budgets::default());
+    found.iter().filter(|found| found.is_error()).map(fault).collect()
+}
+
+/// Whether a text has fewer mistakes, or the same ones further on: of several missing commas the first is
+/// told.
+fn is_better(before: &[Fault], after: &[Fault]) -> bool {
     let is_further = || {
-        let mut pairs = before.iter().zip(&after);
+        let mut pairs = before.iter().zip(after);
         before.len() == after.len() && pairs.all(|(b, a)| b.0 == a.0 && b.1 < a.1)
     };
     after.is_empty() || after.len() < before.len() || is_further()
+}
+
+/// Whether a mend by itself takes its own mistake away, and what is told for it lies further on: reading
+/// its statement went on.
+fn goes_on(own: &Diagnostic, fix: &Fix, before: &[Fault], after: &[Fault]) -> bool {
+    let (own, fixed) = (fault(own), fix.span.range());
+    let end = fixed.start + fix.replacement.len();
+    // Where a place of the new text was in the old one.
+    let old =
+        |place: usize| if place < end { place.min(fixed.start) } else { place - end + fixed.end };
+    let mut new = after.iter().map(|(kind, place)| (kind, old(*place)));
+    new.all(|(kind, place)| {
+        let is_old = before.iter().any(|(of, at)| of == kind && *at == place);
+        place > own.1 || is_old && (kind, place) != (&own.0, own.1)
+    })
 }
 
 fn tell(mended: &Mended, sources: &Sources, form: Form) -> Result<(), Failure> {

@@ -191,8 +191,11 @@ impl Scanner<'_> {
                 return;
             }
         }
-        let unclosed = self.open.iter().map(|&open| Fault::Unclosed { open });
-        self.out.faults.extend(unclosed);
+        // What a comment has swallowed may have closed them.
+        if !matches!(self.out.faults.last(), Some(Fault::Comment { .. })) {
+            let unclosed = self.open.iter().map(|&open| Fault::Unclosed { open });
+            self.out.faults.extend(unclosed);
+        }
     }
 
     fn next_is(&self, byte: u8) -> bool {

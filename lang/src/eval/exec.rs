@@ -22,19 +22,22 @@ pub(super) enum Place {
     Object,
 }
 
-/// The fields that a block gives, and whether something in it could not be read.
+/// The fields that a block gives, and what of it is not known.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) place: Place,
     pub(super) fields: Vec<FieldValue>,
+    /// A condition or a call in it gave nothing.
     pub(super) broken: bool,
+    /// Statements of it that cannot be read.
+    pub(super) unread: Vec<Span>,
     /// The class whose parameters the fields are, if it is known.
     pub(super) class: Option<Class>,
 }
 
 impl Body {
     pub(super) fn new(place: Place) -> Self {
-        Self { place, fields: vec![], broken: false, class: None }
+        Self { place, fields: vec![], broken: false, unread: vec![], class: None }
     }
 }
 
@@ -99,7 +102,7 @@ impl Evaluator<'_> {
             StmtNode::Units(_) => {}
             StmtNode::Broken { defines } => {
                 self.damaged = true;
-                body.broken = true;
+                body.unread.push(stmt.span);
                 for name in defines {
                     env.define(&name.text, Value::Poison);
                 }

@@ -51,12 +51,29 @@ impl Evaluator<'_> {
         body.class = head.as_ref().and_then(class).copied();
         self.block(&object.body, env, &mut body);
         match head {
-            Some(head) if !body.broken => self.build(&head, body.fields),
-            _ => {
+            Some(head) if !body.broken && body.unread.is_empty() => self.build(&head, body.fields),
+            head => {
                 self.damaged = true;
+                if let (Some(head), Some(class), false) = (head, body.class, body.broken) {
+                    self.look_over(&head, &class, &body);
+                }
                 Value::Poison
             }
         }
+    }
+
+    /// Tells what is wrong with an object beside fields of it that cannot be read.
+    fn look_over(&mut self, head: &Head, class: &Class, body: &Body) {
+        let mut meant = self.taken(class, &body.fields).meant;
+        for span in &body.unread {
+            let text = self.sources.text(span.source).get(span.range()).unwrap_or("");
+            let word = text.trim_start().split(|c: char| !c.is_alphanumeric() && c != '_').next();
+            let known = Registry::params(class).map(|param| param.name);
+            // What begins with no parameter may be any, and so may what goes on in other lines.
+            let name = near(word.unwrap_or(""), known).map(|near| near.name);
+            meant.push(name.filter(|_| !text.trim().contains('\n')));
+        }
+        self.complete(class, head, &body.fields, &meant);
     }
 
     fn head(&mut self, object: &Object, span: Span) -> Option<Head> {
@@ -67,11 +84,17 @@ impl Evaluator<'_> {
             let found = Diagnostic::error("E0401", category.span, message)
                 .meant(category.span, near(&category.text, words().chain(["units"])));
             let kinds = Kind::ALL.iter().filter(|(kind, _)| {
-                self.registry.class(*kind, &category.text).is_some() && object.kind.is_none()
+                let name = category.text.to_lowercase();
+                self.registry.class(*kind, &name).is_some() && object.kind.is_none()
             });
             let start = Span { end: category.span.start, ..category.span };
-            let found =
-                kinds.fold(found, |found, (_, word)| found.guess(start, format!("{word} ")));
+            let found = kinds.fold(found, |found, (_, word)| {
+                let name = category.text.to_lowercase();
+                if name == *category.text {
+                    return found.guess(start, format!("{word} "));
+                }
+                found.guess(category.span, format!("{word} {name}"))
+            });
             let known: Vec<_> = words().collect();
             self.tell(found.help(format!("known are {}", known.join(", "))));
             return None;

@@ -245,7 +245,13 @@ impl Evaluator<'_> {
             };
             let changed: Vec<Option<Rc<ObjectValue>>> = objects
                 .into_iter()
-                .map(|object| object.and_then(|object| self.changed(&object, &set)))
+                // One that cannot be changed so may be changed otherwise, and that may be wrong too.
+                .map(|object| {
+                    let object = object?;
+                    let changed = self.changed(&object, &set);
+                    self.damaged |= changed.is_none();
+                    changed.or(Some(object))
+                })
                 .collect();
             self.labels.objects.insert(set.label.text.clone(), changed);
         }

@@ -16,6 +16,12 @@ const LOOKED_AT: usize = 30_000;
 /// Functions that take the name of something measured, as a text.
 const NAMED: [&str; 3] = ["metal", "glass", "illuminant"];
 
+/// What other languages call a vector.
+const VECTORS: [&str; 11] = [
+    "vec", "vec2", "vec3", "vec4", "vector", "vector3", "float3", "point", "point3", "dvec3",
+    "xyz3",
+];
+
 impl Resolver<'_> {
     /// Whether an argument is a text without its quotes, which is told: `metal(Au)`.
     pub(super) fn is_unquoted(&mut self, function: &str, value: &Expr) -> bool {
@@ -94,6 +100,11 @@ impl Resolver<'_> {
             found = found.help("`not` is written `!`").guess(place, "!");
         } else if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
             found = found.meant(place, Some(near));
+        } else if VECTORS.contains(&&*shown.to_lowercase()) {
+            found = found.help("a vector is written without a word: `(0, 1, 0)`");
+            if self.text.get(place.range().end..).is_some_and(|rest| rest.starts_with('(')) {
+                found = found.fix(place, "");
+            }
         } else if shown == "range" {
             found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
         } else {

@@ -349,6 +349,19 @@ impl Builder<'_> {
         Name { text: make::unescape(body.as_str()), span }
     }
 
+    /// `640x480` with its place, if a unit of that kind stands behind a number.
+    fn size(&self, pair: &Pair<'_, Rule>) -> Option<(Span, String)> {
+        let (unit, height) = (self.span(pair), pair.as_str().strip_prefix(['x', 'X'])?);
+        let before = &pair.get_input()[..pair.as_span().start()];
+        let digits = before.bytes().rev().take_while(u8::is_ascii_digit).count();
+        if digits == 0 || height.is_empty() || !height.bytes().all(|b| b.is_ascii_digit()) {
+            return None;
+        }
+        let size = format!("({}, {height})", &before[before.len() - digits..]);
+        let range = unit.range();
+        Some((Span::new(unit.source, range.start - digits, range.end), size))
+    }
+
     /// The unit that a token names; `None` if it is none, which is told.
     pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Arc<Unit>> {
         let text = pair.as_str();
@@ -358,6 +371,10 @@ impl Builder<'_> {
         };
         let span = self.span(pair);
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
+        if let Some((all, size)) = self.size(pair) {
+            self.sink.push(diagnostic.help("a size is a vector").guess(all, size));
+            return None;
+        }
         match suggest_unit(&bad) {
             Some((unit, grade)) => {
                 diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));

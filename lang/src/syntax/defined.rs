@@ -40,6 +40,10 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     if gives(1) && mark(1) != "(" {
         return glued(first.text).map(|text| name(text, first, first)).collect();
     }
+    // `material gold = conductor { … }`
+    if let Some(second) = word(1).filter(|_| is_category(first.text) && mark(2) == "=") {
+        return Box::new([name(second.text, second, second)]);
+    }
     let begins = DEFINING.contains(&first.text);
     // `lte x = 5`, `var x = 5` were to define something too.
     let is_other = STATEMENTS.contains(&first.text) || is_category(first.text);

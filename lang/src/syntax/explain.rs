@@ -6,6 +6,7 @@ use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, near};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category};
+use super::foreign::body_of_steps;
 use super::habits::habit;
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
@@ -89,9 +90,12 @@ pub(super) fn explain(
     }
     let around = Around { text, tokens, at: index, open, source, end: chunk.end, place };
     let diagnostic = around.diagnose();
+    // Of steps where a value is wanted, none is looked at for itself.
+    let has_steps = body_of_steps(&around).is_some();
     let blocks = around
         .open
         .iter()
+        .filter(|_| !has_steps)
         .filter(|i| around.tokens[**i].text == "{")
         .map(|i| (around.tokens[*i].start, around.within(*i)));
     let swallowed = around.swallowed().and_then(|back| around.before(back));

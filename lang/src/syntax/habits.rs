@@ -4,6 +4,7 @@ use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, is_category};
 use super::defined::stem;
+use super::foreign::foreign;
 use super::lex::{Token, TokenKind};
 use super::type_names;
 
@@ -36,6 +37,7 @@ pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| quotes(around))
         .or_else(|| lettered(around))
         .or_else(|| hash(around))
+        .or_else(|| foreign(around))
         .or_else(|| operator(around))
         .or_else(|| word_operator(around))
         .or_else(|| word(around))

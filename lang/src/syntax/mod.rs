@@ -12,6 +12,7 @@ mod direct;
 mod explain;
 mod expr;
 mod fault;
+mod foreign;
 mod gaps;
 mod habits;
 mod head;

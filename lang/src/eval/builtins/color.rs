@@ -35,6 +35,9 @@ pub(super) enum Make {
 /// Steps of looking a file up that was read before, by its path.
 const KNOWN: u64 = 10;
 
+/// A component of a screen's colour beyond which it is none: brighter ones are made by a factor.
+const SCREEN: f64 = 16.0;
+
 /// A file of spectra and the column that is wanted of it.
 pub(in crate::eval) type SpectrumFile = (PathBuf, Option<Arc<str>>);
 
@@ -86,12 +89,34 @@ impl Evaluator<'_> {
         for (i, c) in c.iter_mut().enumerate() {
             *c = self.number_arg(call, i, Dimension::NONE)?;
         }
+        if make == Make::Srgb && c.iter().any(|x| *x > SCREEN) {
+            self.of_bytes(call);
+            return None;
+        }
         let rgb = linear_srgb(make, c);
         if rgb.iter().all(|x| x.is_finite()) {
             return Some(Color::Rgb(rgb));
         }
         self.poison("E0209", call.span, "the colour is not finite");
         None
+    }
+
+    /// `rgb.srgb(255, 128, 0)`
+    fn of_bytes(&mut self, call: &Call<'_>) {
+        let message = "the components of `rgb.srgb` are from 0 to 1, not to 255";
+        let mut found = Diagnostic::error("E0210", call.span, message);
+        let args: Vec<Span> = (0..3).filter_map(|i| call.arg(i)).map(|arg| arg.span).collect();
+        if let [first, .., last] = args[..] {
+            let text = self.sources.text(first.source);
+            let parts = args.iter().map(|span| text.get(span.range()).unwrap_or_default());
+            let is_number = |part: &str| part.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+            let parts: Vec<String> =
+                parts.filter(|p| is_number(p)).map(|p| format!("{p} / 255")).collect();
+            if parts.len() == args.len() {
+                found = found.guess(first.to(last), parts.join(", "));
+            }
+        }
+        self.tell(found.help("divide what a screen or a style sheet gives by 255"));
     }
 
     fn blackbody(&mut self, call: &Call<'_>) -> Option<Color> {

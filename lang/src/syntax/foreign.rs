@@ -1,0 +1,210 @@
+//! What has another shape here than where somebody learnt to write it: loops without an end, vectors
+//! without brackets, objects that are named by `=`.
+
+use std::ops::Range;
+
+use luxel_core::diag::{Diagnostic, Grade, Span};
+use luxel_sdk::params::Unit;
+
+use super::around::{Around, Place, is_category};
+use super::lex::{Token, TokenKind};
+
+/// Numbers that stand side by side in a vector, at most.
+const WIDEST: usize = 4;
+
+/// Why the place cannot be read, if it has another language's shape.
+pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
+    looping(around)
+        .or_else(|| returned(around))
+        .or_else(|| steps(around))
+        .or_else(|| lone_if(around))
+        .or_else(|| named_object(around))
+        .or_else(|| set(around))
+        .or_else(|| placed(around))
+        .or_else(|| bare_vector(around))
+        .or_else(|| braced_vector(around))
+        .or_else(|| called_parameter(around))
+}
+
+fn told(span: Span, message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error("E0023", span, message)
+}
+
+/// The token that begins a statement with one of these words, at most two before the place.
+fn beginning<'a>(around: &'a Around<'_>, words: &[&str]) -> Option<(&'a Token<'a>, &'a Token<'a>)> {
+    (around.at.saturating_sub(2)..=around.at).rev().find_map(|i| {
+        let (word, next) = (around.tokens.get(i)?, around.tokens.get(i + 1)?);
+        let is_one = words.contains(&word.text) && around.begins(i) && !next.first_on_line;
+        (is_one && next.text != "=").then_some((word, next))
+    })
+}
+
+/// `while true { … }`
+fn looping(around: &Around<'_>) -> Option<Diagnostic> {
+    let (word, _) = beginning(around, &["while", "until"])?;
+    let found = told(around.span(word), format!("`{}` begins no loop", word.text));
+    Some(found.help("a loop runs over a range or a list: `for i in 0..10 { … }`"))
+}
+
+/// `return y` in a block.
+fn returned(around: &Around<'_>) -> Option<Diagnostic> {
+    let (word, _) = beginning(around, &["return"])?;
+    let found = told(around.span(word), "what a function gives stands behind its `=`");
+    Some(found.help("it is written `fn f(x: float) = x + 1`"))
+}
+
+/// The brace that stands where the value of a function does, if what is in it are no fields.
+pub(super) fn body_of_steps(around: &Around<'_>) -> Option<usize> {
+    let first = around.tokens.iter().position(|t| t.kind != TokenKind::Doc)?;
+    let brace = *around.open.iter().find(|open| around.word(**open) == "{")?;
+    let is_value = around.word(first) == "fn" && brace > 0 && around.word(brace - 1) == "=";
+    let is_field = around.is_word(brace + 1)
+        && matches!(around.word(brace + 2), "=" | ":")
+        && !matches!(around.word(brace + 1), "let" | "return");
+    (is_value && !is_field).then_some(brace)
+}
+
+/// `fn f(x: int) = { let y = x; y * 2 }`
+fn steps(around: &Around<'_>) -> Option<Diagnostic> {
+    let brace = &around.tokens[body_of_steps(around)?];
+    let found = told(around.span(brace), "the value of a function is one expression");
+    Some(
+        found.help(
+            "it is written `fn f(x: int) = x * 2`; a step before it is a function of its own",
+        ),
+    )
+}
+
+/// The bracket that closes token `open`.
+fn closing(around: &Around<'_>, open: usize) -> Option<usize> {
+    let mut depth = 0_usize;
+    (open..around.tokens.len()).find(|i| {
+        match around.word(*i) {
+            "(" | "[" | "{" => depth += 1,
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0
+    })
+}
+
+/// `let x = if a { 3 }`
+fn lone_if(around: &Around<'_>) -> Option<Diagnostic> {
+    let word = (0..around.at).rev().find(|i| around.word(*i) == "if")?;
+    let before = around.tokens.get(word.checked_sub(1)?)?;
+    let is_value = before.is_operator() || matches!(before.text, "(" | "," | "[" | "=>");
+    let brace = (word..around.at).find(|i| around.word(*i) == "{").filter(|_| is_value)?;
+    let end = closing(around, brace)?;
+    // Reading stopped right behind it, or at it.
+    if around.word(end + 1) == "else" || !(end..=end + 1).contains(&around.at) {
+        return None;
+    }
+    let found =
+        told(around.span(&around.tokens[word]), "an `if` that gives a value wants an `else`");
+    Some(found.help("it is written `if x > 1 { a } else { b }`"))
+}
+
+/// `material gold = conductor { … }`
+fn named_object(around: &Around<'_>) -> Option<Diagnostic> {
+    let start = (around.at.saturating_sub(4)..around.at)
+        .rev()
+        .find(|i| around.begins(*i) && is_category(around.word(*i)))?;
+    let words = around.tokens.get(start..start + 4)?;
+    let [category, name, equals, kind] = words else { return None };
+    let are_words = [name, kind].iter().all(|t| t.kind == TokenKind::Word && !t.first_on_line);
+    let opens = matches!(around.word(start + 4), "{" | ".");
+    if !are_words || equals.text != "=" || !opens || around.inner() == Place::Fields {
+        return None;
+    }
+    let all = around.span(category).to(around.span(kind));
+    let (category, name, kind) = (category.text, name.text, kind.text);
+    let found = told(all, "an object is given a name by `let`");
+    let named = format!("let {name} = {category} {kind}");
+    // One that stands somewhere may be meant to stand there.
+    Some(if matches!(category, "material" | "texture" | "phase" | "medium") {
+        found.fix(all, named)
+    } else {
+        found.guess(all, named).guess(all, format!("{category} {kind} \"{name}\""))
+    })
+}
+
+/// `ball.radius = 3 m`
+fn set(around: &Around<'_>) -> Option<Diagnostic> {
+    let start = around.at.checked_sub(3).filter(|start| around.begins(*start))?;
+    let words = around.is_word(start) && around.is_word(start + 2);
+    let is_member = around.word(start + 1) == "." && around.word(around.at) == "=";
+    if !words || !is_member || around.inner() == Place::Fields {
+        return None;
+    }
+    let (first, last) = (&around.tokens[start], &around.tokens[start + 2]);
+    let gap = Span::new(around.source, first.start, first.start);
+    let place = around.span(first).to(around.span(last));
+    let found = told(place, "a parameter of an object in the scene is changed by `set`");
+    Some(found.help("`set` names the label of the object").fix(gap, "set "))
+}
+
+/// `place "ball"`
+fn placed(around: &Around<'_>) -> Option<Diagnostic> {
+    let label = around.current().filter(|t| t.kind == TokenKind::Text && !t.first_on_line)?;
+    let word = around.before(1).filter(|t| t.text == "place" && around.begins(around.at - 1))?;
+    let name = label.text.trim_matches('"');
+    let found = told(around.span(label), format!("`{}` takes a name, not a label", word.text));
+    Some(
+        found.help(format!(
+            "give the object a name, `let {name} = shape …`, and write `place {name}`"
+        )),
+    )
+}
+
+fn a_vector(around: &Around<'_>, all: Range<usize>, numbers: &[&str]) -> Diagnostic {
+    let span = Span::new(around.source, all.start, all.end);
+    let found = told(span, "a vector stands between `(` and `)`, with commas");
+    found.guess(span, format!("({})", numbers.join(", ")))
+}
+
+/// `center = 0 0 0`
+fn bare_vector(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.checked_sub(1).filter(|first| *first > 0)?;
+    let is_number = |t: &&Token<'_>| t.kind == TokenKind::Number && !t.first_on_line;
+    let numbers: Vec<&Token<'_>> = around.tokens[first..].iter().take_while(is_number).collect();
+    if around.word(first - 1) != "=" || !(2..=WIDEST).contains(&numbers.len()) {
+        return None;
+    }
+    let texts: Vec<&str> = numbers.iter().map(|t| t.text).collect();
+    Some(a_vector(around, numbers[0].start..numbers[numbers.len() - 1].end(), &texts))
+}
+
+/// `center = {0, 1, 0}`
+fn braced_vector(around: &Around<'_>) -> Option<Diagnostic> {
+    let brace = around.at.checked_sub(1).filter(|i| around.word(*i) == "{")?;
+    let end = closing(around, brace)?;
+    let before = around.before(2)?;
+    let is_value = before.is_operator() || matches!(before.text, "(" | "," | "[");
+    let inside = &around.tokens[brace + 1..end];
+    let is_list = inside.iter().all(|t| t.kind == TokenKind::Number || matches!(t.text, "," | "-"));
+    let place = around.tokens[brace].end()..around.tokens[end].start;
+    let texts: Vec<&str> = around.text[place].split(',').map(str::trim).collect();
+    if !is_value || !is_list || !(2..=WIDEST).contains(&texts.len()) {
+        return None;
+    }
+    Some(a_vector(around, around.tokens[brace].start..around.tokens[end].end(), &texts))
+}
+
+/// `center (0, 1, 0) m` among parameters: it was read as a call.
+fn called_parameter(around: &Around<'_>) -> Option<Diagnostic> {
+    let unit = (around.at.saturating_sub(2)..=around.at).rev().find(|i| {
+        let is_unit = around.is_word(*i) && Unit::named(around.word(*i)).is_some();
+        is_unit && *i > 0 && around.word(i - 1) == ")" && !around.tokens[*i].first_on_line
+    })?;
+    let open = (0..unit)
+        .rev()
+        .find(|i| around.word(*i) == "(" && closing(around, *i) == Some(unit - 1))?;
+    let name = open.checked_sub(1).filter(|i| around.is_word(*i) && around.begins(*i))?;
+    let name = &around.tokens[name];
+    if around.inner() != Place::Fields || is_category(name.text) {
+        return None;
+    }
+    let gap = Span::new(around.source, name.end(), name.end());
+    let message = format!("`=` is missing between `{}` and its value", name.text);
+    Some(around.error("E0012", &around.tokens[open], message).mend(gap, " =", Grade::Sure))
+}

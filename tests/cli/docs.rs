@@ -15,6 +15,12 @@ fn the_reference_has_a_page_for_each_class_and_every_link_leads_somewhere() {
     assert!(page("language.html").contains("<h2 id=\"objects\">"));
     assert!(page("search.js").contains("\"title\":\"material conductor\""));
     let search = page("search.js");
+    // Parameters and headings are found too, and what stands under a heading.
+    assert!(search.contains("\"page\":\"shape-sphere.html#radius\""));
+    let laid_out = search
+        .split("{\"page\":")
+        .find(|it| it.starts_with("\"language.html#how-scenes-are-laid-out"));
+    assert!(laid_out.is_some_and(|it| it.contains("luxel fmt")), "{laid_out:?}");
     for text in [page("functions.html"), page("index.html")] {
         assert!(text.contains("href=\"functions.html\""));
     }

@@ -16,17 +16,20 @@ use crate::words::{self, Word};
 pub(super) fn class(entry: &Entry, drawn: Option<&Shown<'_>>) -> Page {
     let class = &entry.class;
     let (kind, name) = (class.kind.word(), class.name);
-    let title = format!("{kind} {name}");
+    let title = title_of(entry);
+    let [own, common, read] =
+        [rows(class.params), rows(common_params(class.kind)), fields(words::fields_of(class.kind))];
     let file = format!("{kind}-{name}");
     let body = format!(
         "<h1>{title}</h1>\n<p class=\"origin\">{}</p>\n{}{}{}{}{}",
         escaped(&entry.origin),
         drawn.map_or(String::new(), figure),
         markdown::html(class.doc.trim()),
-        table("Parameters", &rows(class.params)),
-        table(COMMON, &rows(common_params(class.kind))),
-        table("Read by the language", &fields(words::fields_of(class.kind))),
+        table("Parameters", &own),
+        table(COMMON, &common),
+        table("Read by the language", &read),
     );
+    let all = own.into_iter().chain(common).chain(read).collect::<Vec<_>>();
     let params: Vec<&str> = class.params.iter().map(|param| param.name).collect();
     Page {
         summary: summary(class.doc),
@@ -36,8 +39,18 @@ pub(super) fn class(entry: &Entry, drawn: Option<&Shown<'_>>) -> Page {
         title,
         body,
         picture: drawn.map(Shown::file),
-        parts: vec![],
+        parts: all.into_iter().map(|row| part(&title_of(entry), row)).collect(),
     }
+}
+
+/// What a class is called.
+fn title_of(entry: &Entry) -> String {
+    format!("{} {}", entry.class.kind.word(), entry.class.name)
+}
+
+/// A parameter or field of something, to be found by its name.
+fn part(of: &str, [name, facts, doc]: [String; 3]) -> Part {
+    Part { anchor: name.clone(), title: format!("{name} · {of}"), words: format!("{facts} {doc}") }
 }
 
 /// The picture of what a manual shows, and for which files others stand in it.
@@ -75,7 +88,7 @@ pub(super) fn word(word: &Word, drawn: Option<&Shown<'_>>) -> Page {
         words: text.to_owned(),
         body,
         picture: drawn.map(Shown::file),
-        parts: vec![],
+        parts: fields(word.fields).into_iter().map(|row| part(word.name, row)).collect(),
     }
 }
 

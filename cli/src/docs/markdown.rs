@@ -56,13 +56,24 @@ pub(super) fn inline(text: &str) -> String {
     out.strip_prefix("<p>").and_then(|it| it.strip_suffix("</p>")).unwrap_or(out).to_owned()
 }
 
-/// The headings of a text.
+/// The headings of a text, with what stands under each up to the next one.
 pub(super) fn headings(text: &str) -> Vec<Part> {
-    let events: Vec<Event<'_>> = Parser::new(text).collect();
-    let part = |title: String| Part { anchor: anchor(&title), title, words: String::new() };
-    let starts =
-        (0..events.len()).filter(|i| matches!(events[*i], Event::Start(Tag::Heading { .. })));
-    starts.map(|i| part(heading(&events[i + 1..]))).collect()
+    let events: Vec<Event<'_>> = Parser::new_ext(text, Options::ENABLE_TABLES).collect();
+    let is_start = |event: &Event<'_>| matches!(event, Event::Start(Tag::Heading { .. }));
+    let part = |i: usize| {
+        let (title, inside) = (heading(&events[i + 1..]), events[i + 1..].iter());
+        let words = inside.take_while(|event| !is_start(event)).filter_map(words);
+        Part { anchor: anchor(&title), title, words: words.collect::<Vec<_>>().join(" ") }
+    };
+    (0..events.len()).filter(|i| is_start(&events[*i])).map(part).collect()
+}
+
+/// The text of what is text or code.
+fn words<'e>(event: &'e Event<'_>) -> Option<&'e str> {
+    match event {
+        Event::Text(text) | Event::Code(text) => Some(text),
+        _ => None,
+    }
 }
 
 /// Text as it stands in HTML.
@@ -106,11 +117,7 @@ fn anchor(title: &str) -> String {
 /// The words of the heading that has just begun.
 fn heading(events: &[Event<'_>]) -> String {
     let inside = events.iter().take_while(|it| !matches!(it, Event::End(TagEnd::Heading(_))));
-    let words = inside.filter_map(|event| match event {
-        Event::Text(text) | Event::Code(text) => Some(&**text),
-        _ => None,
-    });
-    words.collect()
+    inside.filter_map(words).collect()
 }
 
 #[cfg(test)]
@@ -130,6 +137,9 @@ mod tests {
         let found = headings("# One\ntext\n## Two `b`\n");
         let found: Vec<_> = found.iter().map(|part| (&*part.anchor, &*part.title)).collect();
         assert_eq!(found, [("one", "One"), ("two-b", "Two b")]);
+        let under: Vec<_> =
+            headings("# One\na `set`\n## Two\nb\n").into_iter().map(|it| it.words).collect();
+        assert_eq!(under, ["One a  set", "Two b"]);
         assert_eq!(inline("a *b* < c"), "a <em>b</em> &lt; c");
         assert_eq!(inline("`id=\"b\"`"), "<code>id=&quot;b&quot;</code>");
         assert_eq!(html("<!--\nto do\n-->\n\nb\n"), "<p>b</p>\n");

@@ -2,13 +2,21 @@
 const field = document.getElementById("search");
 const found = document.getElementById("found");
 
+const split = (text) => text.toLowerCase().split(/[^\p{L}\p{N}]+/u).filter(Boolean);
+
+// Whole words of a title count most, then parts of it, then whole words of the text by how much of it they
+// are, then parts of it. What stands under a heading comes before the page that holds it.
 function rank(page, words) {
   const title = page.title.toLowerCase();
+  const titled = split(page.title);
   const rest = (page.summary + " " + page.words).toLowerCase();
-  let sum = 0;
+  const told = split(rest);
+  let sum = page.page.includes("#") ? 0.1 : 0;
   for (const word of words) {
-    if (title.split(/[ _]/).includes(word)) sum += 4;
-    else if (title.includes(word)) sum += 2;
+    const often = told.filter((one) => one === word).length;
+    if (titled.includes(word)) sum += 4;
+    else if (often > 0) sum += 1.2 + Math.min((10 * often) / told.length, 1);
+    else if (title.includes(word)) sum += 1.1;
     else if (rest.includes(word)) sum += 1;
     else return 0;
   }

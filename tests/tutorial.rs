@@ -65,3 +65,26 @@ fn every_mistake_of_the_tutorial_is_told_by_the_code_that_it_says() {
     }
     assert_eq!(told, 2);
 }
+
+#[test]
+fn what_the_tutorial_expects_of_its_picture_is_so() {
+    let page = text(&root().join("docs/tutorial.md"));
+    let (_, rest) = page.split_once("\n```expect\n").unwrap();
+    let (said, _) = rest.split_once("\n```").unwrap();
+    let mut files = MemoryFiles::default();
+    for (name, body) in texts(&page) {
+        let last = if name == "mine.scene" { said } else { "" };
+        files = files.with(name, format!("{body}\n{last}\n").as_bytes());
+    }
+    let loaded = load("mine.scene", &files);
+    assert_eq!(loaded.diagnostics, []);
+    let mut scene = loaded.scene.unwrap();
+    assert_eq!(scene.expectations.len(), 1);
+    scene.set_resolution(UVec2::new(48, 30));
+    let built = stage::build(&scene, &registry(), &files, None).unwrap();
+    let options = Options { spp: Some(16), ..Options::default() };
+    let mean = render(&built.stage, &options, &Control::default()).0.mean().0.y;
+    let expected: f64 = said.split(['=', '±']).nth(1).unwrap().trim().parse().unwrap();
+    // As `luxel verify` measured it: 1.1e-4 of 64 samples of 100 times as many pixels, five times that.
+    assert!((mean - expected).abs() < 5.0 * 1.1e-4 * 20.0, "{mean}");
+}

@@ -92,7 +92,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse_from(watch::with_address(std::env::args_os())) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are errors to clap; they go to stdout with code 0.

@@ -29,6 +29,7 @@ mod plugin;
 pub(crate) mod program;
 mod resume;
 mod study;
+mod tev;
 mod verify;
 mod watch;
 

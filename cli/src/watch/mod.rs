@@ -29,6 +29,8 @@ use crate::isolate::IsolateArgs;
 use crate::preview::{EditorArgs, PageArgs};
 use crate::report::Form;
 
+pub(crate) use self::tev::with_address;
+
 /// Render a scene again whenever it, or a file that it reads, is saved
 ///
 /// A save during a render ends that render. A save that changes no byte does nothing. After a
@@ -38,6 +40,7 @@ use crate::report::Form;
 Examples:
   luxel watch scenes/cornell.scene
   luxel watch scenes/cornell.scene --preview
+  luxel watch scenes/cornell.scene --tev 127.0.0.1:14158
   luxel watch scenes/cornell.scene --exec 'cp $LUXEL_PNG last.png'
   luxel watch scenes/cornell.scene --preview --editor 'vscode://file/{file}:{line}:{column}'
   luxel watch scenes/cornell.scene -o small --size 320x320 --spp 16
@@ -78,7 +81,8 @@ struct ThenArgs {
     /// `LUXEL_EXR` and `LUXEL_PNG` in its environment
     #[arg(long, value_name = "COMMAND")]
     exec: Option<OsString>,
-    /// Show every picture in tev too, which listens at this address
+    /// Show every picture in tev too, which listens at this address: 127.0.0.1:14158 unless HOST:PORT
+    /// follows
     #[arg(
         long,
         value_name = "HOST:PORT",

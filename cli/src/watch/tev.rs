@@ -4,6 +4,7 @@
 //! little-endian, texts end with a zero. An image is created with its channels, then updated with the
 //! planes of all of them.
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
@@ -23,6 +24,30 @@ const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 /// So long tev may take to answer, and to take a picture.
 const PATIENCE: Duration = Duration::from_secs(2);
+
+/// The words of a command line, with the address behind a `--tev` joined to it: a word that has the shape of
+/// `HOST:PORT` is one, any other may be the scene.
+pub(crate) fn with_address(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = vec![];
+    for word in words {
+        let is_watch = joined.get(1).is_some_and(|command| command == "watch");
+        let is_over = joined.iter().any(|word| word == "--");
+        match joined.last_mut().filter(|last| is_watch && !is_over && *last == "--tev") {
+            Some(last) if word.to_str().is_some_and(is_address) => {
+                last.push("=");
+                last.push(word);
+            }
+            _ => joined.push(word),
+        }
+    }
+    joined
+}
+
+fn is_address(word: &str) -> bool {
+    word.rsplit_once(':').is_some_and(|(host, port)| {
+        !host.is_empty() && !host.contains(['/', '\\']) && port.parse::<u16>().is_ok()
+    })
+}
 
 /// A tev that is shown every picture.
 pub(super) struct Tev(Mailbox<Picture>);
@@ -165,6 +190,28 @@ mod tests {
     use luxel_core::film::Rect;
 
     use super::*;
+
+    #[test]
+    fn a_word_behind_tev_is_an_address_if_it_looks_like_one() {
+        let joined = |line: &str| {
+            let words = with_address(line.split(' ').map(OsString::from));
+            words.join(OsString::from(" ").as_os_str()).into_string().unwrap()
+        };
+        for (line, wanted) in [
+            ("luxel watch --tev box:1 a.scene", "luxel watch --tev=box:1 a.scene"),
+            ("luxel watch a.scene --tev [::1]:14158", "luxel watch a.scene --tev=[::1]:14158"),
+            ("luxel watch --tev=box:1 b:2", "luxel watch --tev=box:1 b:2"),
+            ("luxel watch --tev a.scene", "luxel watch --tev a.scene"),
+            ("luxel watch --tev ./a:1", "luxel watch --tev ./a:1"),
+            ("luxel watch --tev C:\\1", "luxel watch --tev C:\\1"),
+            ("luxel watch --tev :1", "luxel watch --tev :1"),
+            ("luxel watch --tev a:99999", "luxel watch --tev a:99999"),
+            ("luxel watch -- --tev a:1", "luxel watch -- --tev a:1"),
+            ("luxel render --tev a:1", "luxel render --tev a:1"),
+        ] {
+            assert_eq!(joined(line), wanted);
+        }
+    }
 
     #[test]
     fn tev_is_told_to_make_an_image_and_then_what_it_shows() {

@@ -4,6 +4,8 @@ use std::sync::mpsc::{self, RecvTimeoutError, TryRecvError};
 use std::thread::{Scope, ScopedJoinHandle};
 use std::time::Duration;
 
+use luxel_core::render::{Courtesy, give_way};
+
 use super::changes::Noticed;
 use crate::exit::{Exit, Failure};
 use crate::isolate::Beat;
@@ -27,14 +29,20 @@ pub(super) enum Ended<T> {
 pub(super) struct Attempts<'scope, 'env> {
     scope: &'scope Scope<'scope, 'env>,
     beat: Beat,
+    /// Whether its threads let others go first.
+    courtesy: Option<Courtesy>,
     /// What did not end when it was asked to: a decoder, or a plugin, that does not look. One at most, so
     /// that what nobody wants does not fill the machine.
     left: Option<ScopedJoinHandle<'scope, ()>>,
 }
 
 impl<'scope, 'env> Attempts<'scope, 'env> {
-    pub(super) fn new(scope: &'scope Scope<'scope, 'env>, beat: Beat) -> Self {
-        Self { scope, beat, left: None }
+    pub(super) fn new(
+        scope: &'scope Scope<'scope, 'env>,
+        beat: Beat,
+        courtesy: Option<Courtesy>,
+    ) -> Self {
+        Self { scope, beat, courtesy, left: None }
     }
 
     /// Does some work for as long as `look`, which waits a moment, notices nothing; then `cancel` asks it
@@ -50,7 +58,9 @@ impl<'scope, 'env> Attempts<'scope, 'env> {
     ) -> Result<Ended<T>, Failure> {
         let lost = || Failure::new(Exit::Ours, "the scene could not be made ready");
         let (give, take) = mpsc::channel();
+        let courtesy = self.courtesy;
         let thread = self.scope.spawn(move || {
+            courtesy.into_iter().for_each(give_way);
             // Whoever has left does not take it.
             let _ = give.send(work());
         });
@@ -117,7 +127,7 @@ mod tests {
     #[test]
     fn work_that_nothing_comes_between_is_done() {
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope, Beat::silent());
+            let mut attempts = Attempts::new(scope, Beat::silent(), None);
             let ended = attempts.run(
                 || {
                     sleep(LONG / 40);
@@ -137,7 +147,7 @@ mod tests {
     fn work_that_does_not_look_is_left_before_it_ends() {
         let ends = AtomicBool::new(false);
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope, Beat::silent());
+            let mut attempts = Attempts::new(scope, Beat::silent(), None);
             let deaf = || {
                 while !ends.load(Ordering::SeqCst) {
                     sleep(Duration::from_micros(100));
@@ -161,7 +171,7 @@ mod tests {
             Ok(())
         };
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope, Beat::silent());
+            let mut attempts = Attempts::new(scope, Beat::silent(), None);
             for _ in 0..4 {
                 let ended = attempts.run(deaf, save, || {});
                 assert!(matches!(ended, Ok(Ended::Left(_))), "{ended:?}");
@@ -174,7 +184,7 @@ mod tests {
     fn work_that_looks_ends_when_it_is_asked_to() {
         let asked = AtomicBool::new(false);
         std::thread::scope(|scope| {
-            let mut attempts = Attempts::new(scope, Beat::silent());
+            let mut attempts = Attempts::new(scope, Beat::silent(), None);
             let work = || {
                 while !asked.load(Ordering::SeqCst) {
                     sleep(Duration::from_micros(100));

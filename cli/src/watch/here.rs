@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
 use luxel_core::film::Film;
-use luxel_core::render::{Control, Reached};
+use luxel_core::render::{Control, Courtesy, Reached};
 use luxel_core::scene::Scene;
 use luxel_core::stage::Anew;
 use luxel_lang::Kept;
@@ -105,7 +105,7 @@ pub(super) fn watch(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
             guard: &guard,
             beat,
             audience: &audience,
-            attempts: Attempts::new(scope, beat.clone()),
+            attempts: Attempts::new(scope, beat.clone(), args.preview.then_some(Courtesy::Ready)),
             in_hand,
             libraries: plugins.watched.clone(),
             plugins: Arc::new(plugins),

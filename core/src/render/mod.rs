@@ -25,7 +25,7 @@ use luxel_sdk::kind::{PictureIntegrator, Wants};
 use rayon::prelude::*;
 
 use self::goal::Plan;
-use self::passes::{SLOW, passes, slices};
+use self::passes::{SLOW, Turn, passes, slices};
 use crate::film::{COARSEST, Film, Holds, Rect};
 use crate::registry::dynamic::remote;
 use crate::stage::Stage;
@@ -52,7 +52,8 @@ pub struct Options {
     /// those who look on. Changes no bit.
     pub coarse: bool,
     /// Whether threads let others of the machine go first, as who draws the picture for those who look
-    /// on. On Linux alone; changes no bit.
+    /// on: on Linux they are nicer, and until each pixel has a sample there is one of three or more less.
+    /// Changes no bit.
     pub courteous: bool,
 }
 
@@ -245,13 +246,8 @@ pub fn render_on(
     control: &Control,
     look: &mut Look<'_>,
 ) -> Outcome {
-    let threads = options.threads.map_or(0, NonZeroUsize::get);
-    let courteous = options.courteous;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .start_handler(move |_| give_way(courteous))
-        .build()
-        .expect("the system gives threads");
+    let [first, all] = crews(options);
+    let (pool, first) = (crew(all, options), (first < all).then(|| crew(first, options)));
     // No count of failures is known: the stage may have failed before, when it was asked for a pixel.
     let failures = AtomicU64::new(u64::MAX);
     let end = options.goal.time.and_then(|time| Instant::now().checked_add(time));
@@ -272,7 +268,7 @@ pub fn render_on(
                 .in_turns(turns)
                 .recording(&holds)
         };
-        passes(film, &plan, options.coarse, &mut |film, turn| {
+        let mut pass = |film: &mut Film, turn: Turn| {
             slices(film, turn, SLOW, look, &mut |film, ends, late| {
                 // Until each pixel has a sample no time is over.
                 let end = end.filter(|_| film.tiles().iter().all(|tile| tile.next > 0));
@@ -296,6 +292,10 @@ pub fn render_on(
                 }
                 !stop.is_asked()
             })
+        };
+        passes(film, &plan, options.coarse, &mut |film, turn| match &first {
+            Some(few) if film.samples() == 0 => few.install(|| pass(film, turn)),
+            _ => pass(film, turn),
         });
     });
     match (stop.is_failure(), stop.is_asked()) {
@@ -305,17 +305,53 @@ pub fn render_on(
     }
 }
 
-/// Lets other threads of the machine go first: a third of the share of those that do not.
-#[cfg(target_os = "linux")]
-fn give_way(courteous: bool) {
-    if courteous {
-        // A system that refuses has its reasons.
-        let _ = rustix::process::nice(COURTESY);
-    }
+/// How many threads render until each pixel has a sample, and how many from then on: while there is little
+/// to be seen, whoever draws it for those who look on has a core of its own, if there are three.
+fn crews(options: &Options) -> [usize; 2] {
+    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let all = options.threads.map_or_else(cores, NonZeroUsize::get);
+    let spared = usize::from(options.courteous && all >= ENOUGH);
+    [all - spared, all]
 }
 
+fn crew(threads: usize, options: &Options) -> rayon::ThreadPool {
+    let courteous = options.courteous;
+    let begun = move |_| {
+        if courteous {
+            give_way(Courtesy::Render);
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).start_handler(begun);
+    pool.build().expect("the system gives threads")
+}
+
+/// Of what the threads are that let others of the machine go first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Courtesy {
+    /// They make a scene ready, for which somebody waits: before those that render, with two thirds of the
+    /// share of those that do not give way.
+    Ready,
+    /// They render: with a third of that share.
+    Render,
+}
+
+/// Has the calling thread, and those that it starts, let others of the machine go first. On Linux alone.
+#[cfg(target_os = "linux")]
+pub fn give_way(courtesy: Courtesy) {
+    let steps = match courtesy {
+        Courtesy::Ready => 2,
+        Courtesy::Render => 5,
+    };
+    // A system that refuses has its reasons.
+    let _ = rustix::process::nice(steps);
+}
+
+/// Has the calling thread, and those that it starts, let others of the machine go first. On Linux alone.
 #[cfg(not(target_os = "linux"))]
-fn give_way(_: bool) {}
+pub fn give_way(_: Courtesy) {}
+
+/// With fewer threads than this one less would cost more than it gives.
+const ENOUGH: usize = 3;
 
 /// So long a render is held at most.
 const LONGEST: Duration = Duration::from_millis(100);
@@ -325,10 +361,6 @@ const HELD: Duration = Duration::from_micros(200);
 
 /// Tiles side by side whose pixels of a coarse step are measured together.
 const STRIP: usize = 16;
-
-/// Steps of niceness.
-#[cfg(target_os = "linux")]
-const COURTESY: i32 = 5;
 
 /// Whether to go on: polled between rounds.
 #[derive(Clone, Copy)]
@@ -405,15 +437,40 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn courteous_threads_are_nice_and_no_others() {
-        let nice = |courteous: bool| {
+    fn threads_that_give_way_and_those_that_they_start_are_nice_and_no_others() {
+        let own = || rustix::process::getpriority_process(None).unwrap();
+        let nice = |courtesy: Option<Courtesy>| {
             let asked = move || {
-                give_way(courteous);
-                rustix::process::getpriority_process(None).unwrap()
+                courtesy.into_iter().for_each(give_way);
+                std::thread::spawn(own).join().unwrap()
             };
             std::thread::spawn(asked).join().unwrap()
         };
-        let [before, courteous, after] = [false, true, false].map(nice);
-        assert_eq!((courteous, after), (19.min(before + COURTESY), before));
+        let before = nice(None);
+        assert_eq!(nice(Some(Courtesy::Ready)), 19.min(before + 2));
+        assert_eq!(nice(Some(Courtesy::Render)), 19.min(before + 5));
+        assert_eq!(nice(None), before);
+        for (courteous, wanted) in [(false, before), (true, 19.min(before + 5))] {
+            let crew = crew(2, &Options { courteous, ..Options::default() });
+            assert_eq!(crew.broadcast(|_| own()), [wanted; 2]);
+        }
+    }
+
+    #[test]
+    fn one_core_of_three_is_spared_until_each_pixel_has_a_sample() {
+        for (threads, alone, watched) in [
+            (1, [1, 1], [1, 1]),
+            (2, [2, 2], [2, 2]),
+            (3, [3, 3], [2, 3]),
+            (16, [16, 16], [15, 16]),
+        ] {
+            for (courteous, wanted) in [(false, alone), (true, watched)] {
+                let threads = NonZeroUsize::new(threads);
+                let options = Options { threads, courteous, ..Options::default() };
+                assert_eq!(crews(&options), wanted);
+            }
+        }
+        let cores = std::thread::available_parallelism().unwrap().get();
+        assert_eq!(crews(&Options::default()), [cores; 2]);
     }
 }

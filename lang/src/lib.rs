@@ -70,7 +70,8 @@ pub struct ParamInfo {
     pub name: String,
     /// Its type as it is written: `length`.
     pub ty: String,
-    /// The SI unit of its type; empty for a plain number and for what is no number.
+    /// The SI unit of its type, or of the numbers of a vector; empty for plain numbers and for what is no
+    /// number.
     pub unit: String,
     /// Its doc comment, lines joined by newlines.
     pub doc: String,
@@ -97,7 +98,16 @@ pub enum ParamValue {
     Bool(bool),
     /// Text.
     Text(String),
-    /// A list, a colour, or what a mistake has left.
+    /// A vector or a list of a few numbers.
+    Numbers {
+        /// In SI units.
+        values: Vec<f64>,
+        /// Whether it is written `[1, 2]` and not `(1, 2)`.
+        is_list: bool,
+    },
+    /// A colour that is given by linear sRGB.
+    Color([f64; 3]),
+    /// A longer list or one of other things, a spectrum, or what a mistake has left.
     Other,
 }
 

@@ -85,6 +85,23 @@ export async function view(...args) {
   return { url, port: new URL(url).port, token: new URL(url).searchParams.get("token"), end: () => child.kill("SIGINT") };
 }
 
+export const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true, colorScheme: "dark" };
+
+// Everything that is touched is 40 pixels wide and high at least, and within a window of that width.
+export async function roomy(page, where) {
+  const small = await page.evaluate(() => {
+    const wide = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than its window"] : [];
+    const all = [...document.querySelectorAll("button, select, #bar input, #rows input, #facts a")].filter((each) => each.checkVisibility({ visibilityProperty: true }));
+    const of = (each) => (each.type === "checkbox" ? each.closest("label") : each).getBoundingClientRect();
+    const bad = all.filter((each) => {
+      const { width, height, left, right } = of(each);
+      return width < 40 || height < 40 || left < 0 || right > innerWidth;
+    });
+    return [...wide, ...bad.map((each) => `${each.id || each.name || each.textContent} ${JSON.stringify(of(each))}`)];
+  });
+  assert.deepEqual(small, [], where);
+}
+
 // What a page of elsewhere tries, which knows the port and has stolen the token.
 export async function attacked(browser, one) {
   const server = createServer((_, answer) => answer.setHeader("content-type", "text/html").end("<!doctype html>evil"));

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { basename, join } from "node:path";
-import { attacked, isHidden, mean, open, press, readback, root, run, shots, text, until, view } from "./common.mjs";
+import { PHONE, attacked, isHidden, mean, open, press, readback, roomy, root, run, shots, text, until, view } from "./common.mjs";
 import { begun, CAMERA, coarse, corner, done, facts, isWiped, rendered, scene, shows, SIZE, slide, watch, WINDOW, wiped, words, worst } from "./watching.mjs";
 
 const tests = {
@@ -175,6 +175,52 @@ const tests = {
     await end();
   },
 
+  async "colours and rows of numbers have fields that say what a command line says"({ browser }) {
+    const params = "param tint: color = rgb.srgb(0.5, 0.25, 1)\nparam at: vec3 = (0, 0, -20) cm\nparam sizes: length[] = [90 cm, 1 m]\nparam lamp: color = illuminant(\"D65\")";
+    const content = scene({ params, grey: "tint", radius: "sizes[0]" }).replace(", material = grey }", ", center = at, material = grey }");
+    const { page, end } = await begun(browser, content);
+    const before = (await readback(page)).data;
+    const input = (name) => page.locator(`#rows input[name=${name}]`);
+    const values = (...names) => Promise.all(names.map((name) => input(name).inputValue()));
+    const type = async (name, value) => {
+      await input(name).fill(value);
+      await input(name).press("Enter");
+      await input(name).blur();
+    };
+    const line = (wanted) => until(`the line ${wanted}`, async () => (await text(page, "set-text")) === wanted);
+    const names = await page.evaluate(() => [...document.querySelectorAll("#rows .row > span:first-child")].map((name) => name.textContent));
+    assert.deepEqual(names, ["tint", "at", "sizes"]);
+    assert.deepEqual(await values("tint-colour", "at-0", "at-2", "sizes-0", "sizes-1"), ["#8040ff", "0", "-20", "90", "100"]);
+    assert.deepEqual(await values("tint-0", "tint-1", "tint-2"), ["0.214", "0.05088", "1"]);
+    // Whatever is picked is sRGB, and stands beside it as linear numbers.
+    await page.evaluate(() => {
+      const picker = document.querySelector("#rows input[name=tint-colour]");
+      picker.value = "#ff8000";
+      picker.dispatchEvent(new Event("input", { bubbles: true }));
+    });
+    await line("--set 'tint=rgb.srgb(1, 0.502, 0)'");
+    await shows(page, rendered(content, ...words(await text(page, "set-text"))));
+    await until("the numbers", async () => (await values("tint-0", "tint-1", "tint-2")).join() === "1,0.2159,0");
+    // One number of three: the others stay as they are to the last bit, not as they are shown.
+    await type("tint-2", "0.25");
+    await until("the line", async () => /^--set 'tint=rgb\.linear_srgb\(1, 0\.21\d{8,}, 0\.25\)'$/.test(await text(page, "set-text")));
+    const tint = await text(page, "set-text");
+    await until("the colour", async () => (await values("tint-colour"))[0] === "#ff8089");
+    await type("at-1", "-12.5");
+    await line(`${tint} --set 'at=(0, -12.5, -20) cm'`);
+    // A number may bring its own unit.
+    await type("sizes-0", "700 mm");
+    await line(`${tint} --set 'at=(0, -12.5, -20) cm' --set 'sizes=[700 mm, 100 cm]'`);
+    await until("the number", async () => (await values("sizes-0"))[0] === "70");
+    await shows(page, rendered(content, ...words(await text(page, "set-text"))));
+    assert.equal(await isHidden(page, "problems"), true);
+    await page.locator("#params-reset").click();
+    await until("the file's picture", async () => worst((await readback(page)).data, before) === 0);
+    await until("the file's values", async () => (await values("tint-colour", "sizes-0", "at-1")).join() === "#8040ff,90,0");
+    await done(page);
+    await end();
+  },
+
   async "a value that the scene refuses is told as any mistake"({ browser }) {
     const content = scene({ params: "param n: int = 1 in 1..=9\nassert n < 5, \"too many\"", radius: "n * 1 m / 2" });
     const { page, end } = await begun(browser, content);
@@ -266,30 +312,16 @@ const tests = {
   },
 
   async "it can be used on a phone with fingers"({ browser }) {
-    const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true, colorScheme: "dark" };
-    const params = "/// How large.\nparam radius_of_the_ball: length = 90 cm in 30 cm..=2 m\nparam dark: bool = false\nparam of: string = \"oak\"";
+    const params = "/// How large.\nparam radius_of_the_ball: length = 90 cm in 30 cm..=2 m\nparam dark: bool = false\nparam of: string = \"oak\"\nparam tint: color = rgb.srgb(1, 0, 0)\nparam at: vec3 = (1, 2, 3) cm";
     const content = scene({ params, radius: "radius_of_the_ball" });
-    const { page, end } = await begun(browser, content, phone, "--editor", "zed://file/{file}:{line}");
+    const { page, end } = await begun(browser, content, PHONE, "--editor", "zed://file/{file}:{line}");
     await press(page, "f");
-    const roomy = async (where) => {
-      const small = await page.evaluate(() => {
-        const wide = document.documentElement.scrollWidth > innerWidth ? ["the page is wider than its window"] : [];
-        const all = [...document.querySelectorAll("button, select, #bar input, #rows input, #facts a")].filter((each) => each.checkVisibility({ visibilityProperty: true }));
-        const of = (each) => (each.type === "checkbox" ? each.closest("label") : each).getBoundingClientRect();
-        const bad = all.filter((each) => {
-          const { width, height, left, right } = of(each);
-          return width < 40 || height < 40 || left < 0 || right > innerWidth;
-        });
-        return [...wide, ...bad.map((each) => `${each.id || each.name || each.textContent} ${JSON.stringify(of(each))}`)];
-      });
-      assert.deepEqual(small, [], where);
-    };
-    await roomy("at first");
+    await roomy(page, "at first");
     const { x, y, width, height } = await page.locator("#picture").boundingBox();
     await page.touchscreen.tap(x + width / 2, y + height / 2);
     await until("the facts", async () => (await facts(page)).shape);
     assert.equal(await page.evaluate(() => document.querySelectorAll("#facts a").length), 2);
-    await roomy("with a pixel");
+    await roomy(page, "with a pixel");
     await page.waitForTimeout(300);
     await page.screenshot({ path: join(shots, "watch-phone-pixel.png") });
     await press(page, "Escape");
@@ -298,7 +330,7 @@ const tests = {
     await until("the params", () => page.locator("#rows").isVisible());
     await slide(page, "radius_of_the_ball", 120);
     await until("the line", async () => !(await isHidden(page, "set-line")));
-    await roomy("with params");
+    await roomy(page, "with params");
     await page.waitForTimeout(300);
     await page.screenshot({ path: join(shots, "watch-phone-params.png") });
     await tap("params-reset");
@@ -313,7 +345,7 @@ const tests = {
     for (let x = 155; x <= 220; x += 13) await touch("touchMove", [x, 200 + (x - 155) / 2]);
     await touch("touchEnd");
     await until("another picture", async () => worst((await readback(page)).data, before) > 20);
-    await roomy("with the camera");
+    await roomy(page, "with the camera");
     const turned = await text(page, "camera-text");
     await touch("touchStart", [150, 200], [230, 200]);
     for (let x = 150; x >= 100; x -= 10) await touch("touchMove", [x, 200], [380 - x, 200]);

@@ -43,6 +43,20 @@ pub(crate) enum Field {
         /// Without quotes.
         value: String,
     },
+    /// A vector or a list of numbers.
+    Numbers {
+        /// In `unit`.
+        value: Vec<f64>,
+        /// As its author writes it, or empty.
+        unit: String,
+        /// Whether it is written `[1, 2]` and not `(1, 2)`.
+        list: bool,
+    },
+    /// A colour.
+    Color {
+        /// Linear sRGB.
+        value: [f64; 3],
+    },
 }
 
 /// Where the camera stands when the shutter opens.

@@ -4,7 +4,7 @@ use luxel_lang::{ParamInfo, ParamLimits, ParamValue};
 
 use crate::preview::{Field, Param};
 
-/// What the page can set: numbers, what is true or false, text.
+/// What the page can set: numbers, alone or a few, what is true or false, text, and colours of sRGB.
 pub(super) fn offered(params: &[ParamInfo], set: &[(String, String)]) -> Vec<Param> {
     let offer = |param: &ParamInfo| {
         let set = set.iter().any(|(name, _)| *name == param.name);
@@ -28,8 +28,20 @@ fn field(param: &ParamInfo) -> Option<Field> {
         }
         ParamValue::Bool(value) => Some(Field::Bool { value: *value }),
         ParamValue::Text(value) => Some(Field::Text { value: value.clone() }),
-        ParamValue::Number(_) | ParamValue::Other => None,
+        ParamValue::Numbers { values, is_list } if is_shown(values) => {
+            let value = values.iter().map(|x| tidy(x / scale)).collect();
+            Some(Field::Numbers { value, unit, list: *is_list })
+        }
+        ParamValue::Color(rgb) if is_shown(rgb) => Some(Field::Color { value: *rgb }),
+        ParamValue::Number(_)
+        | ParamValue::Numbers { .. }
+        | ParamValue::Color(_)
+        | ParamValue::Other => None,
     }
+}
+
+fn is_shown(values: &[f64]) -> bool {
+    !values.is_empty() && values.iter().all(|x| x.is_finite())
 }
 
 /// The ends of a range in a unit: as short as they come out within the range again.
@@ -83,10 +95,13 @@ mod tests {
     fn a_param_is_offered_in_the_unit_of_its_author() {
         let text = "scene 1\n/// How far.\nparam tilt: angle = 30 deg in -90 deg..90 deg\n\
                     param n: int = 3 in 1..=9\nparam lit: bool = true\nparam of: string = \"oak\"\n\
-                    param tint: color = rgb.srgb(1, 0, 0)\n";
+                    param tint: color = rgb.srgb(1, 0, 0)\n\
+                    param at: vec3 = (1, 2.5, -3) cm\nparam some: int[] = [1, 2]\n\
+                    param none: int[] = []\nparam all: bool[] = [true]\n\
+                    param lamp: color = blackbody(3000 K)\n";
         let found = offers(text, &[("tilt", "1 rad")]);
         let names: Vec<_> = found.iter().map(|param| param.name.as_str()).collect();
-        assert_eq!(names, ["tilt", "n", "lit", "of"]);
+        assert_eq!(names, ["tilt", "n", "lit", "of", "tint", "at", "some"]);
         assert!(found[0].set && !found[1].set);
         assert_eq!(found[0].doc, "How far.");
         let Field::Number { value, unit, whole, limits, inclusive } = &found[0].field else {
@@ -104,6 +119,11 @@ mod tests {
         assert_eq!(found[1].field, n);
         assert_eq!(found[2].field, Field::Bool { value: true });
         assert_eq!(found[3].field, Field::Text { value: "oak".into() });
+        assert_eq!(found[4].field, Field::Color { value: [1.0, 0.0, 0.0] });
+        let at = Field::Numbers { value: vec![1.0, 2.5, -3.0], unit: "cm".into(), list: false };
+        assert_eq!(found[5].field, at);
+        let some = Field::Numbers { value: vec![1.0, 2.0], unit: String::new(), list: true };
+        assert_eq!(found[6].field, some);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Span, near};
-use luxel_core::scene::NodeId;
+use luxel_core::scene::{Color, NodeId};
 use luxel_sdk::params::{Dimension, Unit};
 
 use super::Evaluator;
@@ -15,7 +15,7 @@ use super::finish::children;
 use super::include;
 use super::object::merged;
 use super::value::{FieldValue, ObjectValue, Range, Value, What, show_number};
-use crate::syntax::{self, Expr, ExprNode, Name, ParamDef, StmtNode, Tree};
+use crate::syntax::{self, Expr, ExprNode, Form, Name, ParamDef, StmtNode, Tree};
 use crate::{ParamInfo, ParamLimits, ParamValue};
 
 /// Steps that a `set` counts, which builds an object anew: it takes as long as so many others.
@@ -23,6 +23,9 @@ const SET: u64 = 60;
 
 /// Bytes of a parameter: what is known of it, its texts and its statement, which are kept for the whole load.
 pub(super) const PARAM: usize = 1024;
+
+/// Numbers of a list that whoever offers it is told: more are set nowhere else than in the file.
+const MOST_NUMBERS: usize = 16;
 
 impl Evaluator<'_> {
     /// The value of a declared parameter: from outside, or its default.
@@ -114,7 +117,10 @@ impl Evaluator<'_> {
             let text = self.sources.text(span.source);
             text.get(span.range()).unwrap_or_default().to_owned()
         };
-        let dimension = super::types::dimension(&def.ty.name.text).unwrap_or_default();
+        let dimension = match (super::types::dimension(&def.ty.name.text), own) {
+            (None, Value::Numbers(numbers)) => numbers.dimension,
+            (dimension, _) => dimension.unwrap_or_default(),
+        };
         let limits = match range {
             Some((Value::Range(range), _)) if range.dimension == dimension => {
                 Some(ParamLimits { low: range.start, high: range.end, inclusive: range.inclusive })
@@ -336,6 +342,11 @@ fn param_value(value: &Value) -> ParamValue {
         Value::Number(x, _) => ParamValue::Number(*x),
         Value::Bool(b) => ParamValue::Bool(*b),
         Value::Text(text) => ParamValue::Text(text.to_string()),
+        Value::Numbers(numbers) if numbers.data.len() <= MOST_NUMBERS => ParamValue::Numbers {
+            values: numbers.data.to_vec(),
+            is_list: numbers.form == Form::List,
+        },
+        Value::Color(Color::Rgb(rgb), Dimension::NONE) => ParamValue::Color(*rgb),
         _ => ParamValue::Other,
     }
 }
@@ -347,16 +358,23 @@ fn written_unit(
     text: &impl Fn(Span) -> String,
 ) -> Option<(String, f64)> {
     let inner = |expr: &Expr| written_unit(expr, dimension, text);
+    let same = |name: &str, unit: &Unit| Unit::parse(name).is_ok_and(|found| found == *unit);
     match &expr.node {
         ExprNode::Number(_, Some(unit)) if unit.dimension == dimension => {
             let text = text(expr.span);
             // Behind the digits, whose exponent is a letter too, and is no unit with what follows.
             let mut ends = text.char_indices().filter(|(_, c)| c.is_alphabetic());
-            let name = ends.find_map(|(i, _)| {
-                Unit::parse(&text[i..]).is_ok_and(|found| found == **unit).then(|| &text[i..])
-            })?;
+            let name = ends.find_map(|(i, _)| same(&text[i..], unit).then(|| &text[i..]))?;
             Some((name.trim().to_owned(), unit.scale))
         }
+        ExprNode::Numbers { unit: Some(unit), .. } | ExprNode::Items { unit: Some(unit), .. }
+            if unit.dimension == dimension =>
+        {
+            let text = text(expr.span);
+            let (_, name) = text.rsplit_once([')', ']'])?;
+            same(name.trim(), unit).then(|| (name.trim().to_owned(), unit.scale))
+        }
+        ExprNode::Items { items, unit: None, .. } => items.iter().find_map(inner),
         ExprNode::Unary { inner: of, .. } | ExprNode::Paren { inner: of, unit: None } => inner(of),
         ExprNode::Chain { first, rest } => {
             inner(first).or_else(|| rest.iter().find_map(|(_, _, expr)| inner(expr)))

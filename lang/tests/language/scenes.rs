@@ -211,7 +211,45 @@ param far: length = 0.5 m in 0 m..=1e3 mm\nparam w: power = 3 W\nparam tint: col
         (of("far").written.clone(), of("w").written.clone()),
         (Some(("m".into(), 1.0)), Some(("W".into(), 1.0)))
     );
-    assert_eq!(of("tint").value, ParamValue::Other);
+    assert_eq!(of("tint").value, ParamValue::Color([1.0, 0.0, 0.0]));
+}
+
+#[test]
+fn a_param_of_numbers_tells_them_and_the_unit_of_its_author_and_takes_others() {
+    let text = "param at: vec3 = (1, 2, 3) cm\nparam n: int[] = [1, 2]\nparam gaps: length[2] = [1 mm, 2 m]
+param way: vec2 = (0, 1)\nparam far: vec3 = (1 m, -2 m, 3 m)\nparam many: float[] = [for i in 0..17 => i * 1.0]
+param lamp: color = illuminant(\"D65\")\nparam tint: color = rgb.srgb(1, 0, 0)";
+    let loaded = |set: &[(&str, &str)]| {
+        let loaded = load_text(&format!("{HEAD}{text}"), set);
+        assert_eq!(loaded.diagnostics, []);
+        loaded.params
+    };
+    let numbers =
+        |values: &[f64], is_list| ParamValue::Numbers { values: values.to_vec(), is_list };
+    let unit = |name: &str, scale| Some((name.to_owned(), scale));
+    let own = loaded(&[]);
+    let of = |name: &str| own.iter().find(|param| param.name == name).unwrap();
+    assert_eq!(of("at").value, numbers(&[0.01, 0.02, 0.03], false));
+    assert_eq!((of("at").unit.as_str(), &of("at").written), ("m", &unit("cm", 0.01)));
+    assert_eq!((&of("n").value, &of("n").written), (&numbers(&[1.0, 2.0], true), &None));
+    assert_eq!(of("gaps").value, numbers(&[0.001, 2.0], true));
+    assert_eq!(of("gaps").written, unit("mm", 0.001));
+    assert_eq!((&of("way").value, of("way").unit.as_str()), (&numbers(&[0.0, 1.0], false), ""));
+    assert_eq!(of("far").value, numbers(&[1.0, -2.0, 3.0], false));
+    assert_eq!(of("far").written, unit("m", 1.0));
+    assert_eq!((&of("many").value, &of("lamp").value), (&ParamValue::Other, &ParamValue::Other));
+    let set = [
+        ("at", "(1, -2.5, 0) cm"),
+        ("n", "[3, 4, 5]"),
+        ("gaps", "[1, 2] mm"),
+        ("tint", "rgb.linear_srgb(0.25, 0.5, 0.125)"),
+    ];
+    let given = loaded(&set);
+    let of = |name: &str| given.iter().find(|param| param.name == name).unwrap();
+    assert_eq!(of("at").value, numbers(&[0.01, -0.025, 0.0], false));
+    assert_eq!(of("n").value, numbers(&[3.0, 4.0, 5.0], true));
+    assert_eq!(of("gaps").value, numbers(&[0.001, 0.002], true));
+    assert_eq!(of("tint").value, ParamValue::Color([0.25, 0.5, 0.125]));
 }
 
 #[test]

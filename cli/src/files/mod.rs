@@ -19,6 +19,9 @@ pub(crate) use stamp::{Identity, Stamp, identity};
 /// Bytes of one file, at most: far above any mesh, below what would take a machine down.
 const MAX_BYTES: u64 = 4 << 30;
 
+/// Bytes that are hashed at a time: they stay in the processor's cache, and are enough for all its lanes.
+const PIECE: usize = 256 << 10;
+
 /// Hash of a file's bytes, or of the names of the libraries in a folder; `None` when it could not be
 /// read.
 pub(crate) type Seen = Option<blake3::Hash>;
@@ -157,7 +160,25 @@ pub(crate) fn look(path: &Path) -> Seen {
     if path.is_dir() {
         return fs::read_dir(path).ok().map(|entries| names_of_libraries(entries.flatten()));
     }
-    read_regular(path).ok().map(|bytes| blake3::hash(&bytes))
+    hash(path).ok()
+}
+
+/// The hash of a regular file, read piece by piece: room for a whole mesh takes the system longer to give
+/// than its bytes take to read.
+fn hash(path: &Path) -> Result<blake3::Hash, FileError> {
+    let file = open_regular(path, MAX_BYTES)?;
+    let length = file.metadata().map_or(PIECE as u64, |about| about.len());
+    let mut piece = vec![0; usize::try_from(length).map_or(PIECE, |n| n.clamp(1, PIECE))];
+    let (mut file, mut hasher) = (file.take(MAX_BYTES + 1), blake3::Hasher::new());
+    loop {
+        match file.read(&mut piece) {
+            Ok(0) => break,
+            Ok(n) => _ = hasher.update(&piece[..n]),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(told(&error)),
+        }
+    }
+    if file.limit() == 0 { Err(FileError::TooLarge(MAX_BYTES)) } else { Ok(hasher.finalize()) }
 }
 
 /// Other files come and go in a folder of libraries and concern nobody.
@@ -229,6 +250,17 @@ mod tests {
         assert_eq!(files.asked().len(), 4);
         assert!(files.read(&folder.path("scenes/sub")).is_err());
         assert!(files.asked().iter().all(|(path, seen)| look(path) == *seen), "nothing is news");
+    }
+
+    #[test]
+    fn a_file_of_any_length_has_the_hash_of_its_bytes() {
+        let folder = Folder::new("hashes");
+        for n in [0, 1, 1000, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE, 3 * PIECE + 7] {
+            let bytes: Vec<_> = (0..n).map(|i| u8::try_from(i * 7 % 251).unwrap()).collect();
+            folder.write("a", &bytes);
+            assert_eq!(look(&folder.path("a")), Some(blake3::hash(&bytes)), "{n}");
+        }
+        assert_eq!(look(&folder.path("none")), None);
     }
 
     #[test]

@@ -4,6 +4,10 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
+use glam::UVec2;
+use luxel_core::film::{Film, Rect};
+use luxel_core::render::Reached;
+
 use super::*;
 
 fn preview() -> Preview {
@@ -83,6 +87,23 @@ fn tell(stream: &mut TcpStream, text: &str) {
     let mut bytes = vec![0x81, 0x80 | u8::try_from(text.len()).unwrap(), 0, 0, 0, 0];
     bytes.extend(text.bytes());
     stream.write_all(&bytes).unwrap();
+}
+
+/// A picture of that edit, all of it white.
+fn frame(generation: u64, size: UVec2) -> Frame {
+    let film = Film::new(UVec2::ONE, Rect::new(UVec2::ZERO, UVec2::ONE));
+    let seen = Reached { step: 1, samples: 1, left: 0, is_whole: true };
+    let exact = Exact::of_film(&film, 1);
+    let frame = Frame::of_exact(&exact, &stage::Film::default(), (seen, 1));
+    let n = size.x as usize * size.y as usize;
+    Frame { generation, pixels: Pixels::new(size, &vec![1.0; 3 * n], &[], vec![]), ..frame }
+}
+
+/// Of which edit a message shows a picture.
+fn generation(bytes: &[u8]) -> u64 {
+    let head = serde_json::Deserializer::from_slice(&bytes[8..]).into_iter().next();
+    let head: serde_json::Value = head.unwrap().unwrap();
+    head["generation"].as_u64().unwrap()
 }
 
 #[test]
@@ -179,36 +200,147 @@ fn a_giant_head_and_a_half_open_connection_keep_nobody_waiting() {
 }
 
 #[test]
+fn a_name_that_is_allowed_is_answered_with_its_own_origin_alone() {
+    let allow_host = vec!["Box.example:8080".to_owned()];
+    let args = PageArgs { allow_host, ..PageArgs::default() };
+    let preview = Preview::start(&args, "a.exr", None).unwrap();
+    let (port, token) = place(&preview);
+    let ask = |path: &str, host: &str, lines: &str| {
+        let head = format!("GET {path}?token={token} HTTP/1.1\r\nhost: {host}\r\n");
+        say(port, &format!("{head}connection: close\r\n{lines}\r\n"))
+    };
+    let page = ask("/", "box.example:8080", "");
+    let sockets = "connect-src ws://box.example:8080 wss://box.example:8080";
+    assert!(code(&page) == 200 && page.contains(sockets), "{page}");
+    // At the near end of a tunnel it may be https.
+    for origin in ["http://box.example:8080", "https://box.example:8080"] {
+        let lines = format!("origin: {origin}\r\n");
+        assert_eq!(code(&ask("/main.js", "box.example:8080", &lines)), 200, "{origin}");
+    }
+    let mut socket = connect(port);
+    let lines = format!("origin: http://box.example:8080\r\n{UPGRADE}");
+    write!(socket, "GET /ws?token={token} HTTP/1.1\r\nhost: box.example:8080\r\n{lines}\r\n")
+        .unwrap();
+    let mut head = [0; 12];
+    socket.read_exact(&mut head).unwrap();
+    assert_eq!(&head, b"HTTP/1.1 101");
+    let own = format!("http://127.0.0.1:{port}");
+    for origin in [own.as_str(), "http://box.example", "http://evil.example:8080", "null"] {
+        let lines = format!("origin: {origin}\r\n{UPGRADE}");
+        assert_eq!(code(&ask("/ws", "box.example:8080", &lines)), 403, "{origin}");
+    }
+    for host in ["box.example", "box.example:8081", "evil.box.example:8080"] {
+        assert_eq!(code(&ask("/", host, "")), 421, "{host}");
+    }
+}
+
+#[test]
+fn no_other_address_of_the_machine_is_listened_at() {
+    let preview = preview();
+    let (port, _) = place(&preview);
+    // That of the network; asking for the way to somewhere sends nothing.
+    let there = std::net::UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).and_then(|socket| {
+        socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9))?;
+        Ok(socket.local_addr()?.ip())
+    });
+    let other = std::net::IpAddr::from(Ipv4Addr::new(127, 0, 0, 2));
+    for address in there.ok().into_iter().chain([other]) {
+        let address = SocketAddr::new(address, port);
+        let answer = TcpStream::connect_timeout(&address, Duration::from_secs(2));
+        assert!(address.ip() == Ipv4Addr::LOCALHOST || answer.is_err(), "{address}");
+    }
+}
+
+#[test]
+fn who_holds_every_connection_does_not_keep_the_page_out() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let mut page = socket(port, &token);
+    let mut held: Vec<_> = (0..200).map(|_| connect(port)).collect();
+    for (i, stream) in held.iter_mut().enumerate() {
+        // Some say nothing, some do not come to an end.
+        let begun = if i % 2 == 0 { "" } else { "GET / HTTP/1.1\r\nhost:" };
+        let _ = stream.write_all(begun.as_bytes());
+    }
+    let since = Instant::now();
+    assert_eq!(code(&ask(port, &format!("/?token={token}"), "")), 200);
+    let mut second = socket(port, &token);
+    // No head had to run out of time first.
+    assert!(since.elapsed() < Duration::from_secs(4), "{:?}", since.elapsed());
+    // Who had shown the token before stays.
+    preview.screen().status("here");
+    for page in [&mut page, &mut second] {
+        assert!(message(page).1.starts_with(b"{\"title\""));
+        assert_eq!(message(page), (1, b"{\"status\":\"here\"}".to_vec()));
+    }
+}
+
+#[test]
+fn a_page_that_takes_nothing_is_given_up() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let deaf = socket(port, &token);
+    let since = Instant::now();
+    // More than what waits for it on the way.
+    preview.screen().show(&frame(1, UVec2::new(4096, 2048)));
+    let is_over = || since.elapsed() > Duration::from_secs(20);
+    while preview.screen().is_watched() && !is_over() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert!(!preview.screen().is_watched());
+    assert!(since.elapsed() > Duration::from_millis(450), "{:?}", since.elapsed());
+    drop(deaf);
+}
+
+#[test]
+fn an_edit_is_shown_ten_times_a_second_at_most_however_fast_a_page_draws() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let mut page = socket(port, &token);
+    assert_eq!(message(&mut page).0, 1);
+    let (since, screen) = (Instant::now(), preview.screen());
+    let mut at = vec![];
+    std::thread::scope(|scope| {
+        let all = scope.spawn(|| {
+            while since.elapsed() < Duration::from_millis(600) {
+                screen.show(&frame(1, UVec2::ONE));
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            // The first of another edit waits for nothing.
+            screen.show(&frame(2, UVec2::ONE));
+        });
+        loop {
+            let (kind, picture) = message(&mut page);
+            assert_eq!(kind, 2);
+            tell(&mut page, "\"drawn\"");
+            at.push(since.elapsed());
+            if generation(&picture) == 2 {
+                break;
+            }
+        }
+        all.join().unwrap();
+    });
+    // Of the last pace there may be one more; a busy machine shows fewer.
+    assert!((3..=8).contains(&at.len()), "{at:?}");
+    let soonest = at[..at.len() - 1].windows(2).map(|two| two[1] - two[0]).min().unwrap();
+    // They leave a tenth of a second apart, and may be under way for longer and shorter.
+    assert!(soonest > PACE / 2, "{at:?}");
+}
+
+#[test]
 fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
     let preview = preview();
     let (port, token) = place(&preview);
-    let frame = |generation| {
-        let pixels = Pixels::new(glam::UVec2::ONE, &[1.0; 3], &[], vec![]);
-        let window = luxel_core::film::Rect::new(glam::UVec2::ZERO, glam::UVec2::ONE);
-        let film = luxel_core::film::Film::new(glam::UVec2::ONE, window);
-        let settings = stage::Film::default();
-        let seen = luxel_core::render::Reached { step: 1, samples: 1, left: 0, is_whole: true };
-        Frame {
-            generation,
-            pixels,
-            ..Frame::of_exact(&Exact::of_film(&film, 1), &settings, (seen, 1))
-        }
-    };
     preview.screen().status("busy");
-    preview.screen().show(&frame(1));
+    preview.screen().show(&frame(1, UVec2::ONE));
     let mut page = socket(port, &token);
     let (kind, title) = message(&mut page);
     assert!(kind == 1 && title.starts_with(b"{\"title\""));
     assert_eq!(message(&mut page), (1, b"{\"status\":\"busy\"}".to_vec()));
-    let generation = |bytes: &[u8]| {
-        let head = serde_json::Deserializer::from_slice(&bytes[8..]).into_iter().next();
-        let head: serde_json::Value = head.unwrap().unwrap();
-        head["generation"].as_u64().unwrap()
-    };
     let (kind, picture) = message(&mut page);
     assert_eq!((kind, generation(&picture)), (2, 1));
     // While a picture is being drawn words come, and pictures do not.
-    (2..=9).for_each(|i| preview.screen().show(&frame(i)));
+    (2..=9).for_each(|i| preview.screen().show(&frame(i, UVec2::ONE)));
     preview.screen().status("done");
     assert_eq!(message(&mut page), (1, b"{\"status\":\"done\"}".to_vec()));
     tell(&mut page, r#"{"ask":{"pixel":{"at":[0,0],"side":"a"}}}"#);

@@ -1,7 +1,9 @@
 //! The server: one thread, a few connections, small requests.
 
+use std::collections::VecDeque;
 use std::net::TcpListener;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
@@ -15,14 +17,16 @@ use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
-use tokio::sync::{Semaphore, oneshot};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
+use tokio::task::AbortHandle;
 
 use super::assets::assets;
 use super::board::Board;
 use super::guard::Gate;
 use super::session::{self, Command};
 
-/// Connections at a time: a few windows; more wait.
+/// Connections at a time: a few windows. Beyond these who has not shown the token yet makes room, who came
+/// first before others; who has shown it does not, and more wait.
 const CONNECTIONS: usize = 64;
 /// A request's head has to arrive within this time, or the connection is closed.
 const HEAD: Duration = Duration::from_secs(5);
@@ -63,22 +67,42 @@ async fn accept(listener: TcpListener, state: State) {
     let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
     let app = app(state);
     let places = Arc::new(Semaphore::new(CONNECTIONS));
-    while let Ok(place) = places.clone().acquire_owned().await {
+    let mut strangers = VecDeque::<Stranger>::new();
+    loop {
         let Ok((stream, _)) = listener.accept().await else {
             tokio::time::sleep(BREATH).await;
             continue;
         };
-        let app = app.clone();
-        tokio::spawn(async move {
-            serve(stream, app, place).await;
-        });
+        strangers.retain(|one| !one.task.is_finished() && !one.is_known.load(Ordering::Relaxed));
+        if places.available_permits() == 0 {
+            strangers.pop_front().inspect(|first| first.task.abort());
+        }
+        let Ok(place) = places.clone().acquire_owned().await else { return };
+        let visit = Visit { _place: Arc::new(place), is_known: Arc::default() };
+        let (app, is_known) = (app.clone(), visit.is_known.clone());
+        let task = tokio::spawn(serve(stream, app, visit)).abort_handle();
+        strangers.push_back(Stranger { task, is_known });
     }
 }
 
-/// One connection; its place is free again when it ends, as a socket too.
-async fn serve(stream: TcpStream, app: Router, place: tokio::sync::OwnedSemaphorePermit) {
-    let place = Arc::new(place);
-    let app = app.layer(axum::Extension(place));
+/// A connection that may make room for others.
+struct Stranger {
+    task: AbortHandle,
+    is_known: Arc<AtomicBool>,
+}
+
+/// What goes with a connection, as a socket too.
+#[derive(Clone)]
+struct Visit {
+    /// It is free again when the connection ends.
+    _place: Arc<OwnedSemaphorePermit>,
+    /// Whether the token was shown.
+    is_known: Arc<AtomicBool>,
+}
+
+/// One connection.
+async fn serve(stream: TcpStream, app: Router, visit: Visit) {
+    let app = app.layer(axum::Extension(visit));
     let _ = stream.set_nodelay(true);
     // An error here is the other end's: it has gone, or what it says is no HTTP.
     let _ = http1::Builder::new()
@@ -107,7 +131,11 @@ fn app(state: State) -> Router {
 /// Every request passes here, those for nothing that exists too.
 async fn guarded(Shared(state): Shared<State>, request: Request, next: Next) -> Response {
     match state.gate.check(&request) {
-        Ok(host) => with_headers(next.run(request).await, &host),
+        Ok(host) => {
+            let visit = request.extensions().get::<Visit>();
+            visit.inspect(|visit| visit.is_known.store(true, Ordering::Relaxed));
+            with_headers(next.run(request).await, &host)
+        }
         Err(code) => with_headers(code.into_response(), ""),
     }
 }
@@ -136,16 +164,16 @@ fn with_headers(mut response: Response, host: &str) -> Response {
     response
 }
 
-/// The way for pictures. The connection's place is kept for as long as the socket lives.
+/// The way for pictures. The connection keeps its place for as long as the socket lives.
 async fn socket(
     Shared(state): Shared<State>,
-    axum::Extension(place): axum::Extension<Arc<tokio::sync::OwnedSemaphorePermit>>,
+    axum::Extension(visit): axum::Extension<Visit>,
     upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
 ) -> Response {
     let Ok(upgrade) = upgrade else { return StatusCode::BAD_REQUEST.into_response() };
     let upgrade = upgrade.max_message_size(session::ASKED_BYTES);
     upgrade.on_upgrade(move |socket| async move {
         session::run(socket, &state.board, &state.commands).await;
-        drop(place);
+        drop(visit);
     })
 }

@@ -73,8 +73,8 @@ pub(super) const ASKED_BYTES: usize = 4 << 10;
 pub(super) const WAITING_COMMANDS: usize = 64;
 /// At most ten pictures of an edit a second.
 pub(crate) const PACE: Duration = Duration::from_millis(100);
-/// A page that takes nothing for so long is given up.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// A page that takes nothing for so long is given up; tests have less patience.
+const PATIENCE: Duration = Duration::from_millis(if cfg!(test) { 500 } else { 30_000 });
 
 /// Tells the page everything until it goes.
 pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSender<Command>) {

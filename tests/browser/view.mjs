@@ -11,7 +11,7 @@ import { execFileSync } from "node:child_process";
 import { copyFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import {
-  WINDOW, attacked, decoded, folder, isHidden, luxel, mean, open, press, readback, root, run, settled, shots, text, until, view,
+  PHONE, WINDOW, attacked, decoded, folder, isHidden, luxel, mean, open, press, readback, roomy, root, run, settled, shots, text, until, view,
 } from "./common.mjs";
 
 const SIZE = [96, 64];
@@ -45,6 +45,98 @@ const tests = {
     assert.notDeepEqual((await readback(page)).data, linear.data);
     assert.deepEqual(complaints, []);
     await close();
+  },
+
+  async "a PNG of any display is what the page shows"({ browser, folder }) {
+    for (const display of ["linear", "filmic"]) {
+      const scene = join(folder, `${display}.scene`);
+      writeFileSync(scene, LAYERS.replace("film rgb {", `film rgb { display = "${display}",`).replace("reflectance = 0.5", "reflectance = rgb.srgb(0.9, 0.5, 0.2)"));
+      execFileSync(luxel, ["render", scene, "-o", join(folder, display), "--spp", 4, "-q"], { stdio: "inherit" });
+      const own = await view(join(folder, `${display}.exr`));
+      const { page, complaints, close } = await open(browser, own.url);
+      await press(page, "z");
+      assert.equal(await page.evaluate(() => document.getElementById("tone").value), display);
+      const [drawn, png] = [await readback(page), await decoded(page, join(folder, `${display}.png`))];
+      const worst = () => drawn.data.reduce((worst, v, i) => Math.max(worst, Math.abs(v - png[i])), 0);
+      assert.ok(worst() <= 1, `${display}: ${worst()} of 255 apart`);
+      assert.ok(Math.max(...png.filter((_, i) => i % 4 !== 3)) - Math.min(...png) > 40, "there is something to be seen");
+      assert.deepEqual(complaints, []);
+      await close();
+      own.end();
+    }
+  },
+
+  async "false colour is that of the pixel's luminance"({ browser, folder }) {
+    const scene = join(folder, "false.scene");
+    // Half the picture is as bright as white, the other half a sixteenth of that.
+    const lamp = (x, scale) => `light area { shape = shape rectangle { u = (4, 0, 0) m, v = (0, 4, 0) m, transform = move((${x}, 0, 0) m) }, scale = ${scale} }\n`;
+    writeFileSync(scene, LAYERS.replace(/light constant[^]*/, lamp(-2, 1) + lamp(2, 0.0625)));
+    execFileSync(luxel, ["render", scene, "-o", join(folder, "false"), "--spp", 4, "-q"], { stdio: "inherit" });
+    const own = await view(join(folder, "false.exr"));
+    const { page, complaints, close } = await open(browser, own.url);
+    await press(page, "z");
+    await press(page, "2");
+    const pixel = async (x) => {
+      const { data, w, h } = await readback(page);
+      return data.slice(4 * (w * (h >> 1) + x)).slice(0, 3);
+    };
+    // Twelve stops from 8 below white to 4 above it, over ten colours.
+    const stops = "440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b fde725".split(" ").map((hex) => [0, 2, 4].map((i) => parseInt(hex.slice(i, i + 2), 16)));
+    const wanted = (stop) => {
+      const t = ((stop + 8) / 12) * 9, k = Math.min(Math.floor(t), 8);
+      return stops[k].map((v, c) => v + (stops[k + 1][c] - v) * (t - k));
+    };
+    const is = async (x, stop) => {
+      const found = await pixel(x);
+      // Of 256 steps of the scale: 9 / 255 of the way from one colour to the next.
+      wanted(stop).forEach((v, c) => assert.ok(Math.abs(v - found[c]) <= 4, `${found} for ${wanted(stop)}`));
+    };
+    await is(20, 0);
+    await is(76, -4);
+    await press(page, "Shift+ArrowUp");
+    await is(20, 1);
+    await is(76, -3);
+    assert.deepEqual(complaints, []);
+    await close();
+    own.end();
+  },
+
+  async "the keyboard's help opens and closes"({ browser, one }) {
+    const { page, complaints, close } = await open(browser, one.url);
+    const isOpen = () => page.evaluate(() => document.getElementById("help").open);
+    assert.equal(await isOpen(), false);
+    await press(page, "?");
+    assert.equal(await isOpen(), true);
+    // No other key does anything meanwhile.
+    await press(page, "2");
+    assert.equal(await isHidden(page, "legend"), true);
+    await press(page, "Escape");
+    assert.equal(await isOpen(), false);
+    await press(page, "2");
+    assert.equal(await isHidden(page, "legend"), false);
+    await page.locator("#help-on").click();
+    assert.equal(await isOpen(), true);
+    await page.locator("#help button").click();
+    assert.equal(await isOpen(), false);
+    assert.deepEqual(complaints, []);
+    await close();
+  },
+
+  async "layers can be chosen on a phone"({ browser, folder }) {
+    const scene = join(folder, "phone.scene");
+    writeFileSync(scene, LAYERS);
+    execFileSync(luxel, ["render", scene, "-o", join(folder, "phone"), "--spp", 1, "-q"], { stdio: "inherit" });
+    const own = await view(join(folder, "phone.exr"));
+    const { page, complaints, close } = await open(browser, own.url, PHONE);
+    assert.ok(await page.locator("#layer").isVisible());
+    await roomy(page, "with layers");
+    await page.locator("#layer").selectOption("normal");
+    await until("the layer", async () => (await page.evaluate(() => document.getElementById("layer").value)) === "normal");
+    await roomy(page, "with a layer");
+    await page.screenshot({ path: join(shots, "layers-phone.png") });
+    assert.deepEqual(complaints, []);
+    await close();
+    own.end();
   },
 
   async "exposure keys change the picture and 0 takes it back"({ browser, one }) {

@@ -208,3 +208,22 @@ fn once_stable_without_a_picture_on_the_disk_is_no_success() {
     assert_eq!(done.code, 1, "{done:?}");
     assert!(done.err.contains("cannot write"), "{done:?}");
 }
+
+#[test]
+fn a_scene_that_reads_its_own_output_is_refused_until_it_does_not() {
+    let folder = Folder::new("watch-own-output").with("a.scene", SCENE);
+    assert_eq!(folder.luxel(&["render", "a.scene", "-q", "-o", "sky"]).code, 0);
+    let sky = folder.read("sky.exr");
+    let scene =
+        SCENE.replace("light constant { scale = 1 }", "light environment { file = \"sky.exr\" }");
+    let folder = folder.with("b.scene", &scene);
+    let mut watching = folder.start(&["watch", "b.scene", "-o", "sky", "--json"]);
+    std::thread::sleep(std::time::Duration::from_millis(600));
+    assert!(!watching.is_over() && folder.read("sky.exr") == sky, "it is read and not written");
+    folder.write("b.scene", SCENE);
+    until("a picture", || folder.read("sky.exr") != sky);
+    watching.interrupt();
+    let done = watching.end();
+    assert_eq!((done.code, done.err.matches("its own output").count()), (0, 1), "{done:?}");
+    assert_eq!(done.out.lines().count(), 1, "one picture: {done:?}");
+}

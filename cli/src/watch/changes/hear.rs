@@ -154,8 +154,14 @@ impl Ears {
     /// Wakes through `wake`, at most twice until what was heard is taken.
     pub(super) fn new(wake: Sender<Wake>) -> Self {
         let mut ears = Self::deaf();
-        let shared = ears.shared.clone();
-        let watcher = notify::recommended_watcher(move |event| {
+        ears.watcher = notify::recommended_watcher(ears.hearing(wake)).ok();
+        ears
+    }
+
+    /// What is done with an event.
+    pub(super) fn hearing(&self, wake: Sender<Wake>) -> impl Fn(notify::Result<Event>) + use<> {
+        let shared = self.shared.clone();
+        move |event| {
             let mut shared = lock(&shared);
             let waits = shared.woken && !shared.heard.decided;
             // Once, and once more when there is nothing left to wait for.
@@ -163,9 +169,7 @@ impl Ears {
                 shared.woken = true;
                 let _ = wake.send(Wake::Look);
             }
-        });
-        ears.watcher = watcher.ok();
-        ears
+        }
     }
 
     /// Hears nothing.

@@ -75,6 +75,33 @@ fn saves_are_noticed_by_stamps_where_the_system_tells_nothing() {
 }
 
 #[test]
+fn what_the_system_could_not_tell_is_looked_for() {
+    use notify::event::{Event, EventKind, Flag};
+    let lost = || Ok(Event::new(EventKind::Other).set_flag(Flag::Rescan));
+    let failed = || Err(notify::Error::generic("the queue is full"));
+    for what in [lost, failed] {
+        let folder = Folder::new("watch-overflow");
+        folder.write("a.scene", b"one");
+        let mut hearing: Option<Box<dyn Fn(notify::Result<Event>)>> = None;
+        let (mut changes, sender) = Changes::hearing(|wake| {
+            let ears = Ears::deaf();
+            hearing = Some(Box::new(ears.hearing(wake)));
+            ears
+        });
+        let path = folder.path("a.scene");
+        changes.expect(BTreeMap::from([(path.clone(), look(&path))]));
+        // Nothing is compared without a reason.
+        changes.anyway = LONG * 10;
+        assert_eq!(changes.within(Duration::ZERO), Noticed::Nothing);
+        folder.write("a.scene", b"two");
+        assert_eq!(changes.within(CLOSE * 2), Noticed::Nothing);
+        hearing.unwrap()(what());
+        assert_eq!(changes.within(LONG), Noticed::Save);
+        drop(sender);
+    }
+}
+
+#[test]
 fn what_was_saved_between_a_load_and_the_wait_is_noticed() {
     let folder = Folder::new("watch-between");
     folder.write("a.scene", b"one");

@@ -106,11 +106,11 @@ fn tev_is_shown_the_values_of_every_picture() {
 #[test]
 fn a_scene_behind_tev_is_no_address_and_one_that_is_silent_is_told_of_once() {
     let folder = Folder::new("tev-silent").with("a.scene", SCENE);
-    // Whatever listens where tev does is let be.
     let told = |words: &[&str]| folder.luxel(&[&["watch", "--once-stable"], words].concat());
     let done = told(&["--tev", "127.0.0.1:1", "a.scene"]);
     assert_eq!(done.code, 0, "{done:?}");
     assert_eq!(done.err.matches("tev at 127.0.0.1:1 shows no picture").count(), 1, "{done:?}");
-    let done = told(&["--tev", "no.scene"]);
-    assert!(done.code == 1 && done.err.contains("no.scene"), "{done:?}");
+    // Whether a tev listens where it does by itself is not known here.
+    let done = told(&["--tev", "a.scene"]);
+    assert!(done.code == 0 && !done.err.contains("tev at a.scene"), "{done:?}");
 }

@@ -322,7 +322,8 @@ fn an_edit_is_shown_ten_times_a_second_at_most_however_fast_a_page_draws() {
     });
     // Of the last pace there may be one more; a busy machine shows fewer.
     assert!((3..=8).contains(&at.len()), "{at:?}");
-    let soonest = at[..at.len() - 1].windows(2).map(|two| two[1] - two[0]).min().unwrap();
+    let soonest =
+        at[..at.len() - 1].windows(2).map(|two| two[1].saturating_sub(two[0])).min().unwrap();
     // They leave a tenth of a second apart, and may be under way for longer and shorter.
     assert!(soonest > PACE / 2, "{at:?}");
 }

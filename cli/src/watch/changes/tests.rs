@@ -95,7 +95,7 @@ fn what_the_system_could_not_tell_is_looked_for() {
         assert_eq!(changes.within(Duration::ZERO), Noticed::Nothing);
         folder.write("a.scene", b"two");
         assert_eq!(changes.within(CLOSE * 2), Noticed::Nothing);
-        hearing.unwrap()(what());
+        hearing.expect("it was made")(what());
         assert_eq!(changes.within(LONG), Noticed::Save);
         drop(sender);
     }

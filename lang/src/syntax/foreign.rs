@@ -8,6 +8,7 @@ use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category};
 use super::lex::{Token, TokenKind};
+use super::type_names;
 
 /// Numbers that stand side by side in a vector, at most.
 const WIDEST: usize = 4;
@@ -17,6 +18,7 @@ pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
     looping(around)
         .or_else(|| returned(around))
         .or_else(|| steps(around))
+        .or_else(|| typed_before(around))
         .or_else(|| lone_if(around))
         .or_else(|| named_object(around))
         .or_else(|| set(around))
@@ -73,6 +75,19 @@ fn steps(around: &Around<'_>) -> Option<Diagnostic> {
             "it is written `fn f(x: int) = x * 2`; a step before it is a function of its own",
         ),
     )
+}
+
+/// `fn f(int x) = x`
+fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
+    let (name, ty) = (around.current()?, around.before(1)?);
+    let first = around.tokens.iter().find(|t| t.kind != TokenKind::Doc)?;
+    let in_head = first.text == "fn" && around.open.len() == 1 && name.kind == TokenKind::Word;
+    if !in_head || name.first_on_line || !type_names::names().any(|known| known == ty.text) {
+        return None;
+    }
+    let both = around.span(ty).to(around.span(name));
+    let found = told(both, "a type stands behind the name, and `:`");
+    Some(found.fix(both, format!("{}: {}", name.text, ty.text)))
 }
 
 /// The bracket that closes token `open`.
@@ -199,10 +214,19 @@ fn called_parameter(around: &Around<'_>) -> Option<Diagnostic> {
     let open = (0..unit)
         .rev()
         .find(|i| around.word(*i) == "(" && closing(around, *i) == Some(unit - 1))?;
-    let name = open.checked_sub(1).filter(|i| around.is_word(*i) && around.begins(*i))?;
-    let name = &around.tokens[name];
+    let at = open.checked_sub(1).filter(|i| around.is_word(*i))?;
+    let name = &around.tokens[at];
     if around.inner() != Place::Fields || is_category(name.text) {
         return None;
+    }
+    let before = &around.tokens[at.checked_sub(1)?];
+    // `radius = 1 m center (0, 1, 0) m`
+    if !around.begins(at) {
+        let is_value = before.kind == TokenKind::Number || Unit::named(before.text).is_some();
+        let both = Span::new(around.source, before.end(), name.end());
+        let message = format!("a comma is missing before `{}`", name.text);
+        let mend = format!(", {} =", name.text);
+        return is_value.then(|| around.error("E0014", name, message).fix(both, mend));
     }
     let gap = Span::new(around.source, name.end(), name.end());
     let message = format!("`=` is missing between `{}` and its value", name.text);

@@ -53,6 +53,28 @@ fn curvature_is_that_of_closed_forms() {
     near(met(&mirrored, 0.0, 0.0).unwrap(), 0.5 * (3.0 + 3.0 / 4.0));
 }
 
+#[test]
+fn solids_bend_as_the_part_that_is_met() {
+    let near = |found: f64, truth: f64, slack: f64| {
+        assert!((found - truth).abs() <= slack, "{found} {truth}");
+    };
+    let parts = "a = shape sphere { radius = 2 m }, b = shape sphere { center = (9, 0, 0) m, radius = 1 m }";
+    let sharp = stage(&format!("shape union {{ {parts} }}"));
+    near(met(&sharp, 0.3, 1.1).unwrap(), 0.5, 1e-12);
+    // Second differences are exact to a millionth.
+    let blended = stage(&format!("shape union {{ {parts}, smooth = 20 cm }}"));
+    near(met(&blended, 0.3, 1.1).unwrap(), 0.5, 1e-6);
+    // A bowl is hollow, and its brim flat.
+    let bowl = stage(
+        "shape difference {
+          a = shape box { size = (4, 4, 4) m }
+          b = shape sphere { center = (0, 0, 2) m, radius = 1 m }
+        }",
+    );
+    near(met(&bowl, 0.3, 0.2).unwrap(), -1.0, 1e-12);
+    near(met(&bowl, 1.3, 0.2).unwrap(), 0.0, 1e-12);
+}
+
 /// A bumpy sheet of two triangles with normals and coordinates of its own.
 const SHEET: &str = "shape mesh {
     points = #[ -1 -1 0  1 -1 0.2  1 1 0  -1 1 0.1 ] m, indices = #[ 0 1 2  0 2 3 ]

@@ -6,7 +6,7 @@
 //! | T3 a pebble on a planet | `a_pebble_of_a_millimetre_casts_its_shadow_on_a_planet` |
 //! | T4 slivers | `rooms_of_slivers_lose_no_light`, open in single precision beyond its 4e-7 |
 //! | T5 zero-area triangles | `core/src/accel/mesh_tests.rs`, `bad_input` |
-//! | T6 coincident faces | `of_equal_faces_the_first_is_seen`, `core/src/accel/mesh_tests.rs` |
+//! | T6 coincident faces | `faces`, `core/src/accel/mesh_tests.rs` |
 //! | T7 nested dielectrics | `nested` |
 //! | T8 grazing light | `glass_reflects_by_fresnel_down_to_a_ten_thousandth_of_a_degree` |
 //! | T9 nearly smooth | `metal_that_is_hardly_rough_is_a_mirror` |
@@ -27,6 +27,7 @@
 //! | T24 a shutter without duration | `motion::without_an_interval_things_stand_where_they_are_at_that_time` |
 //! | T25 dense fog | `fog_of_a_hundred_free_paths_that_absorbs_nothing_is_unseen` |
 
+mod faces;
 mod nested;
 mod places;
 mod terminator;
@@ -181,35 +182,6 @@ fn rooms_of_slivers_lose_no_light() {
     // An edge and a corner so near that slivers fill the picture.
     for to in ["(1, 0.3, 1) m", "(1, 1, -1) m", "(-0.4, 1, 1) m"] {
         check(&exact(&furnace(&framed_room(), to, "0.0003 deg", 1.0)), 2.0, 1e-5);
-    }
-}
-
-#[test]
-fn of_equal_faces_the_first_is_seen() {
-    let looks = camera("(0.6, 4, 0.8) m", "(0, 0, 0) m", "(0, 0, 1)", "20 deg", 4);
-    let lamp = |shape: &str, colour: &str| {
-        format!(
-            "light area {{ shape = {shape}, spectrum = {colour}, scale = 1, two_sided = true }}\n"
-        )
-    };
-    let [red, green] = ["rgb.linear_srgb(1, 0, 0)", "rgb.linear_srgb(0, 1, 0)"];
-    for shape in [
-        "shape rectangle { u = (3, 0, 0.5) m, v = (-0.5, 0, 3) m }",
-        "shape sphere { radius = 1 m }",
-        "shape torus { radius = 1 m, tube = 50 cm }",
-        &block(["1", "1", "1"], "material diffuse {}"),
-    ] {
-        for moves in
-            ["", "group { transform = [rotate((1, 2, 3), 40 deg), move((0.1, 0.2, 0.3) m)]\n"]
-        {
-            // Others around them, so that rays go through several boxes.
-            let rest = "for i in 0..40 { shape sphere { center = (i - 20, -5, 0) * 30 cm, radius = 10 cm } }\n";
-            let both = format!("{}{}", lamp(shape, red), lamp(shape, green));
-            let end = if moves.is_empty() { "" } else { "}" };
-            let film = picture(&format!("{looks}{PATHS}{rest}{moves}{both}{end}"));
-            let mean = film.mean().0;
-            assert!(mean.x > 0.1 && mean.y <= 0.0, "{shape} {moves}: {mean}");
-        }
     }
 }
 

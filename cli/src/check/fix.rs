@@ -115,19 +115,21 @@ fn is_better(before: &[Fault], after: &[Fault]) -> bool {
     after.is_empty() || after.len() < before.len() || is_further()
 }
 
-/// Whether a mend by itself takes its own mistake away, and what is told for it lies further on: reading
-/// its statement went on.
+/// Whether a mend by itself takes its own mistake away, and what is told for it lies further on, or is no
+/// more than before: of an inner bracket that is right now, what stands around it may be told.
 fn goes_on(own: &Diagnostic, fix: &Fix, before: &[Fault], after: &[Fault]) -> bool {
     let (own, fixed) = (fault(own), fix.span.range());
     let end = fixed.start + fix.replacement.len();
     // Where a place of the new text was in the old one.
-    let old =
-        |place: usize| if place < end { place.min(fixed.start) } else { place - end + fixed.end };
-    let mut new = after.iter().map(|(kind, place)| (kind, old(*place)));
-    new.all(|(kind, place)| {
-        let is_old = before.iter().any(|(of, at)| of == kind && *at == place);
-        place > own.1 || is_old && (kind, place) != (&own.0, own.1)
-    })
+    let old = |place: usize| {
+        if place < end { place.min(fixed.start) } else { place - end + fixed.end }
+    };
+    let mut now = after.iter().map(|(kind, place)| (kind, old(*place)));
+    let is_gone = now.clone().all(|(kind, place)| (kind, place) != (&own.0, own.1));
+    let is_old = |kind: &String, place| before.iter().any(|(of, at)| of == kind && *at == place);
+    is_gone
+        && (after.len() <= before.len()
+            || now.all(|(kind, place)| place > own.1 || is_old(kind, place)))
 }
 
 fn tell(mended: &Mended, sources: &Sources, form: Form) -> Result<(), Failure> {

@@ -14,9 +14,9 @@ use super::{Leaving, Moment, SceneHit, Skin, Stage};
 /// Rays that take turns.
 const TURNS: usize = 8;
 
-/// Bytes of trees from which on rays wait for memory so much that taking turns pays: what a core
-/// keeps beside it. Below, one by one is faster by what it costs to turn.
-const CACHE_BYTES: usize = 1 << 20;
+/// Bytes of trees from which on rays wait for memory so much that taking turns pays. Below, one by one is
+/// faster by what it costs to turn: 1.12 times with 4.6 MB, 0.91 times with 140 MB (docs/performance.md).
+const CACHE_BYTES: usize = 1 << 23;
 
 /// Room for the rays that take turns, made once.
 #[derive(Debug)]

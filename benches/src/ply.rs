@@ -58,10 +58,10 @@ pub(crate) fn measure(
     python: Option<&Path>,
     Amount { side, rounds }: Amount,
 ) -> Result<Vec<Loaded>, String> {
-    let ply = write("waves.ply", &grid(side))?;
+    let ply = write("read.ply", &grid(side))?;
     let empty = write("empty.scene", SCENE.as_bytes())?;
-    let mesh = "shape mesh \"waves\" { file = \"waves.ply\", unit = 1 m }\n";
-    let full = write("waves.scene", format!("{SCENE}{mesh}").as_bytes())?;
+    let mesh = "shape mesh \"waves\" { file = \"read.ply\", unit = 1 m }\n";
+    let full = write("read.scene", format!("{SCENE}{mesh}").as_bytes())?;
     let (mut seconds, mut memory) = (vec![], vec![]);
     for _ in 0..rounds {
         let (with, without) = (luxel.render(&full, 8, 1)?, luxel.render(&empty, 8, 1)?);

@@ -24,12 +24,17 @@ fn stage(body: &str) -> Stage {
     stage_of(Path::new("a.scene"), &files, &[], None).unwrap_or_else(|e| panic!("{body}: {e:?}"))
 }
 
-/// Mean curvature where a ray towards −z meets the first surface.
-fn met(stage: &Stage, x: f64, y: f64) -> Option<f64> {
+/// Where a ray towards −z meets the first surface, and mean curvature there.
+fn met_at(stage: &Stage, x: f64, y: f64) -> Option<(DVec3, f64)> {
     let stage = stage.opening();
     let ray = Ray::new(DVec3::new(x, y, 9.0), -DVec3::Z);
     let hit = stage.intersect(Processor::ANY, &ray, None, &mut 0)?;
-    Some(stage.mean_curvature(&ray, &hit, &stage.surface(&ray, &hit)))
+    let surface = stage.surface(&ray, &hit);
+    Some((surface.p, stage.mean_curvature(&ray, &hit, &surface)))
+}
+
+fn met(stage: &Stage, x: f64, y: f64) -> Option<f64> {
+    met_at(stage, x, y).map(|(_, mean)| mean)
 }
 
 #[test]
@@ -73,6 +78,43 @@ fn solids_bend_as_the_part_that_is_met() {
     );
     near(met(&bowl, 0.3, 0.2).unwrap(), -1.0, 1e-12);
     near(met(&bowl, 1.3, 0.2).unwrap(), 0.0, 1e-12);
+}
+
+#[test]
+fn parts_bend_in_their_own_places_too() {
+    let near = |found: f64, truth: f64| assert!((found - truth).abs() <= 1e-12, "{found} {truth}");
+    // An ellipsoid of half axes 1, 2 and 3 from the end of the longest, in a place of the part and one
+    // of the whole; mirrored, v runs the other way.
+    for scales in ["(1, 2, 3)", "(-1, 2, 3)"] {
+        let egg = stage(&format!(
+            "shape union {{
+              a = shape sphere {{ radius = 1 m, transform = scale({scales}) }}
+              b = shape sphere {{ center = (9, 0, 0) m, radius = 1 m }}
+              transform = move((0.3, 0.2, 0) m)
+            }}"
+        ));
+        near(met(&egg, 0.3, 0.2).unwrap(), 0.5 * (3.0 + 3.0 / 4.0));
+    }
+    // A tetrahedron whose corners' normals are those of the ball about it, of √3 m: by them the normal
+    // at p is that of a ball about the origin, and turns by the part of a step across p over |p|. Its faces
+    // are 1/√3 m from the origin, so that the mean is (1 + 1 / (3·p²)) / 2·|p|. Without them it is flat.
+    let smooth = ", normals = #[ 0.57735 0.57735 0.57735  -0.57735 -0.57735 0.57735  -0.57735 0.57735 -0.57735  0.57735 -0.57735 -0.57735 ]";
+    for (normals, is_smooth) in [(smooth, true), ("", false)] {
+        let ball = stage(&format!(
+            "shape difference {{
+              a = shape mesh {{ points = #[ 1 1 1  -1 -1 1  -1 1 -1  1 -1 -1 ] m, indices = #[ 0 2 1  0 1 3  0 3 2  1 2 3 ]{normals} }}
+              b = shape sphere {{ center = (9, 0, 0) m, radius = 1 m }}
+              transform = rotate((1, 0, 0), 54 deg)
+            }}"
+        ));
+        for (x, y) in [(0.0, 0.0), (0.3, 0.3), (-0.2, 0.1)] {
+            let (p, found) = met_at(&ball, x, y).unwrap();
+            let bent = (1.0 + 1.0 / (3.0 * p.length_squared())) / (2.0 * p.length());
+            // Normals are given to 3e-6.
+            let off = (found - if is_smooth { bent } else { 0.0 }).abs();
+            assert!(off <= 1e-5, "{found} {bent}");
+        }
+    }
 }
 
 /// A bumpy sheet of two triangles with normals and coordinates of its own.

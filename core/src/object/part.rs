@@ -4,7 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use luxel_sdk::kind::{Hit, Kind, Shape, ShapeRef, ShapeSample, Surface, TriangleMesh};
+use luxel_sdk::kind::{
+    Hit, Kind, NormalDerivatives, Shape, ShapeRef, ShapeSample, Surface, TriangleMesh,
+};
 use luxel_sdk::num::{Bounds3, Ray, Transform};
 use luxel_sdk::params::Param;
 
@@ -187,15 +189,16 @@ impl Moved {
         }
     }
 
-    /// A point of the outer frame in the shape's own.
+    /// A point of the outer frame in the shape's own: what `Surface::carried` takes back.
     fn own(&self, s: &Surface) -> Surface {
         let transform = &self.transform;
+        let turn = if transform.swaps_handedness() { -1.0 } else { 1.0 };
         Surface {
             p: transform.inverse_point(s.p),
             ng: transform.inverse_normal(s.ng).normalize(),
             ns: transform.inverse_normal(s.ns).normalize(),
             dp_du: transform.inverse_vector(s.dp_du),
-            dp_dv: transform.inverse_vector(s.dp_dv),
+            dp_dv: transform.inverse_vector(s.dp_dv) * turn,
             ..*s
         }
     }
@@ -212,6 +215,11 @@ impl Shape for Moved {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.shape().surface(&self.transform.inverse_ray(ray), hit).carried(&self.transform)
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        let own = self.own(at);
+        Some(self.shape().normal_derivatives(hit, &own)?.carried(own.ns, &self.transform))
     }
 
     fn area(&self) -> f64 {

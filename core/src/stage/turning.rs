@@ -1,7 +1,7 @@
 //! How surfaces bend.
 
 use glam::{DVec2, DVec3};
-use luxel_sdk::kind::{NormalDerivatives, Surface};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Surface};
 use luxel_sdk::num::Ray;
 
 use super::geometry::{Geometry, Mesh, by_coordinates};
@@ -32,6 +32,22 @@ impl Mesh {
     }
 }
 
+impl Geometry {
+    /// How the shading normal turns at the point `at` that a hit names, in the geometry's frame; `None`
+    /// where the shape does not say.
+    pub fn normal_derivatives(
+        &self,
+        hit: &Hit,
+        at: &Surface,
+        time: f64,
+    ) -> Option<NormalDerivatives> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh.normal_derivatives(hit.face, hit.at, time)),
+            Self::Analytic(shape) => shape.object().fixed().shape().normal_derivatives(hit, at),
+        }
+    }
+}
+
 impl Moment<'_> {
     /// How the shading normal turns at a hit, in the world, along the derivatives of its surface;
     /// `None` where the shape does not say.
@@ -42,12 +58,7 @@ impl Moment<'_> {
         let transform = placement.place.at(self.time, &mut room);
         let local = transform.map_or(*ray, |transform| transform.inverse_ray(ray));
         let at = geometry.surface(&local, &hit.hit, self.film.precision, self.time);
-        let told = match &**geometry {
-            Geometry::Mesh(mesh) => mesh.normal_derivatives(hit.hit.face, hit.hit.at, self.time),
-            Geometry::Analytic(shape) => {
-                shape.object().fixed().shape().normal_derivatives(&hit.hit, &at)?
-            }
-        };
+        let told = geometry.normal_derivatives(&hit.hit, &at, self.time)?;
         Some(transform.map_or(told, |transform| told.carried(at.ns, transform)))
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luxel_sdk::kind::{Hit, Shape, Surface, TriangleMesh};
+use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, Surface, TriangleMesh};
 use luxel_sdk::num::{Bounds3, Ray};
 
 use super::{Approach, Geometry, Mesh, enter};
@@ -56,6 +56,10 @@ impl Shape for MeshPart {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.mesh.surface(ray, hit, Precision::Exact, 0.0)
+    }
+
+    fn normal_derivatives(&self, hit: &Hit, at: &Surface) -> Option<NormalDerivatives> {
+        self.mesh.normal_derivatives(hit, at, 0.0)
     }
 
     fn area(&self) -> f64 {

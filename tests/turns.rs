@@ -66,7 +66,7 @@ impl Work for InTurns<'_> {
     #[inline(always)]
     fn run(self, processor: Processor) {
         let Self(stage, rays, found) = self;
-        let mut rooms = Rooms::default();
+        let mut rooms = Rooms::in_turns();
         found.resize(rays.len(), (None, 0, false));
         let asked = || rays.iter().map(|(ray, from, time)| (ray, *from, *time));
         stage.intersect_all(processor, asked(), &mut rooms, |i, hit, steps| {

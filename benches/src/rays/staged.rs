@@ -100,7 +100,7 @@ impl Work for Trace<'_> {
             Way::InTurns => {
                 let asked = rays.iter().map(|(ray, from)| (ray, leaving(*from), 0.0));
                 let tell = |i: usize, hit, _| hits[i] = hit;
-                stage.intersect_all(processor, asked, &mut Rooms::default(), tell);
+                stage.intersect_all(processor, asked, &mut Rooms::in_turns(), tell);
             }
         }
     }

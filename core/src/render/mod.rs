@@ -28,7 +28,7 @@ use self::goal::Plan;
 use self::passes::{SLOW, Turn, passes, slices};
 use crate::film::{COARSEST, Film, Holds, Rect};
 use crate::registry::dynamic::remote;
-use crate::stage::Stage;
+use crate::stage::{Rooms, Stage};
 
 pub use self::goal::Goal;
 
@@ -254,7 +254,11 @@ pub fn render_on(
     let stop = Stop { control, stage, failures: &failures, first: false, end: None };
     let plan = Plan::new(options.goal, options.samples(stage));
     let seed = options.seed(stage);
-    let turns = options.turns.unwrap_or_else(|| stage.is_for_turns());
+    let rooms = || match options.turns {
+        None => Rooms::of(stage),
+        Some(true) => Rooms::in_turns(),
+        Some(false) => Rooms::one_by_one(),
+    };
     pool.install(|| {
         let integrator = stage.integrator.fixed().integrator();
         if let Some(owner) = owner(stage) {
@@ -265,7 +269,7 @@ pub fn render_on(
         let worker = || {
             let output = integrator.output();
             tile::Worker::new(stage, seed, integrator, FROM_CAMERA, output)
-                .in_turns(turns)
+                .tracing(rooms())
                 .recording(&holds)
         };
         let mut pass = |film: &mut Film, turn: Turn| {

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use luxel_sdk::kind::{
-    Arrival, ArrivalKind, Host, Output, PathsRef, PictureIntegrator, PictureJob, Raster, Wants,
+    Arrival, ArrivalKind, Output, PathsRef, PictureIntegrator, PictureJob, Raster, Wants,
 };
 use luxel_sdk::num::Ray;
 use luxel_sdk::sampling::hash_combine;
@@ -14,11 +14,12 @@ use rayon::prelude::*;
 use super::goal::Plan;
 use super::lattice::Lattice;
 use super::light::{Bundle, Splat};
-use super::tile::{StageHost, Worker};
+use super::tile::Worker;
 use super::watched::Watched;
 use super::{FROM_CAMERA, Look, Reached, Stop};
+use crate::accel::{Processor, Work};
 use crate::film::{Film, Rect};
-use crate::stage::{Emitters, First, Moment, Skin, Stage};
+use crate::stage::{Asked, Emitters, First, Rooms, Skin, Stage};
 
 /// Light paths that one thread follows at a time.
 const BUNDLE: u32 = 1024;
@@ -142,22 +143,18 @@ impl PictureJob for PictureHost<'_> {
 
     fn trace_n(&self, rays: &[Ray], out: &mut [Arrival]) {
         let stage = self.stage;
-        let pairs = rays.par_chunks(RAYS).zip(out.par_chunks_mut(RAYS));
-        pairs.for_each(|(rays, out)| {
-            for (ray, at) in rays.iter().zip(out) {
-                *at = arrival(stage.opening(), *ray);
-            }
-        });
+        pairs(rays, out).for_each_init(
+            || Rooms::of(stage),
+            |rooms, (rays, out)| Processor::widest().run(Arrive { stage, rooms, rays, out }),
+        );
     }
 
     fn occluded_n(&self, rays: &[Ray], out: &mut [bool]) {
-        let host = StageHost(self.stage);
-        let pairs = rays.par_chunks(RAYS).zip(out.par_chunks_mut(RAYS));
-        pairs.for_each(|(rays, out)| {
-            for (ray, occluded) in rays.iter().zip(out) {
-                *occluded = host.occluded(ray);
-            }
-        });
+        let stage = self.stage;
+        pairs(rays, out).for_each_init(
+            || Rooms::of(stage),
+            |rooms, (rays, out)| Processor::widest().run(Occlude { stage, rooms, rays, out }),
+        );
     }
 
     fn run_camera_paths(&self, paths: PathsRef<'_>) {
@@ -247,18 +244,71 @@ impl PictureJob for PictureHost<'_> {
     }
 }
 
-/// Where a ray arrives, as `Wants::POSITION` says.
-fn arrival(stage: Moment<'_>, ray: Ray) -> Arrival {
-    let mut at = Arrival { t: f64::INFINITY, wo: -ray.d, material: u32::MAX, ..Arrival::default() };
-    if let Some(First { t, hit, surface }) = stage.first(ray, &mut at.steps) {
-        (at.kind, at.t) = (ArrivalKind::Surface, t);
-        (at.p, at.p_err, at.uv) = (surface.p, surface.p_err, surface.uv.as_vec2());
-        (at.ng, at.ns) = (surface.ng, surface.ns);
-        if let Skin::Material(material) = stage.placements[hit.placement as usize].skin {
-            at.material = material;
-        }
+/// Where each of some rays arrives, as `Wants::POSITION` says.
+struct Arrive<'a, 's> {
+    stage: &'s Stage,
+    rooms: &'a mut Rooms,
+    rays: &'a [Ray],
+    out: &'a mut [Arrival],
+}
+
+impl Work for Arrive<'_, '_> {
+    #[inline(always)]
+    fn run(self, processor: Processor) {
+        let Self { stage, rooms, rays, out } = self;
+        let stage = stage.opening();
+        let of = |ray: &Ray, steps| Arrival {
+            t: f64::INFINITY,
+            wo: -ray.d,
+            material: u32::MAX,
+            steps,
+            ..Arrival::default()
+        };
+        stage.intersect_all(processor, asked(&stage, rays), rooms, |i, nearest, steps| {
+            let (ray, out) = (&rays[i], &mut out[i]);
+            *out = of(ray, steps);
+            let Some(nearest) = nearest else { return };
+            let Some(first) = stage.first(processor, ray, nearest, &mut out.steps) else { return };
+            let First { t, hit, surface } = first;
+            (out.kind, out.t) = (ArrivalKind::Surface, t);
+            (out.p, out.p_err, out.uv) = (surface.p, surface.p_err, surface.uv.as_vec2());
+            (out.ng, out.ns) = (surface.ng, surface.ns);
+            if let Skin::Material(material) = stage.placements[hit.placement as usize].skin {
+                out.material = material;
+            }
+        });
     }
-    at
+}
+
+/// Whether something stops each of some rays.
+struct Occlude<'a, 's> {
+    stage: &'s Stage,
+    rooms: &'a mut Rooms,
+    rays: &'a [Ray],
+    out: &'a mut [bool],
+}
+
+impl Work for Occlude<'_, '_> {
+    #[inline(always)]
+    fn run(self, processor: Processor) {
+        let Self { stage, rooms, rays, out } = self;
+        stage.occluded_all(processor, asked(stage, rays), rooms, |i, is_hit| out[i] = is_hit);
+    }
+}
+
+/// Rays from anywhere, when the shutter opens.
+fn asked<'a>(stage: &Stage, rays: &'a [Ray]) -> impl Iterator<Item = Asked<'a>> {
+    let time = stage.film.time;
+    rays.iter().map(move |ray| (ray, None, time))
+}
+
+/// What one thread takes at a time: rays, and as many places for what is found of them.
+fn pairs<'a, T: Send>(
+    rays: &'a [Ray],
+    out: &'a mut [T],
+) -> impl IndexedParallelIterator<Item = (&'a [Ray], &'a mut [T])> {
+    let n = rays.len().min(out.len());
+    rays[..n].par_chunks(RAYS).zip(out[..n].par_chunks_mut(RAYS))
 }
 
 #[cfg(test)]

@@ -50,8 +50,7 @@ pub(super) struct Worker<'s> {
     shadowed: Vec<bool>,
     /// Whether rays meet more on their way than surfaces that end them: media, open or nested ones.
     goes_through: bool,
-    /// Whether rays take turns, and room for those that do.
-    in_turns: bool,
+    /// How the rays of a round are traced.
     rooms: Rooms,
     arrived: Vec<u32>,
     pub(super) results: Vec<DVec3>,
@@ -95,8 +94,7 @@ impl<'s> Worker<'s> {
             hits: vec![],
             shadowed: vec![],
             goes_through: stage.features.media() || stage.features.is_open(),
-            in_turns: stage.is_for_turns(),
-            rooms: Rooms::default(),
+            rooms: Rooms::of(stage),
             arrived: vec![],
             results: vec![],
             chosen: vec![],
@@ -108,9 +106,9 @@ impl<'s> Worker<'s> {
         }
     }
 
-    /// The same, whose rays take turns or do not.
-    pub(super) fn in_turns(self, in_turns: bool) -> Self {
-        Self { in_turns, ..self }
+    /// The same, which traces rays as is wanted.
+    pub(super) fn tracing(self, rooms: Rooms) -> Self {
+        Self { rooms, ..self }
     }
 
     /// The same, which records layers too.
@@ -269,13 +267,9 @@ impl<'s> Worker<'s> {
         let rays = rays.map(|(ray, (from, time))| (ray, from, time));
         if THROUGH && self.stage.features.nested() {
             // What stops a ray depends on what it is in: `shadow::passes` sees.
-        } else if self.in_turns {
+        } else {
             let tell = |i: usize, is_hit| shadowed[i] = is_hit;
             self.stage.occluded_all(processor, rays, &mut self.rooms, tell);
-        } else {
-            for ((ray, from, time), shadowed) in rays.zip(shadowed) {
-                *shadowed = self.stage.at(time).occluded(processor, ray, from);
-            }
         }
         for (request, shadowed) in self.now.shadows.iter().zip(&self.shadowed) {
             if *shadowed {
@@ -339,17 +333,9 @@ impl<'s> Worker<'s> {
         let of = |lane: u32| (paths[lane as usize].leaving(), paths[lane as usize].time);
         let rays = self.now.rays.iter().map(|onward| (&onward.ray, of(onward.lane)));
         let rays = rays.map(|(ray, (from, time))| (ray, from, time));
-        if self.in_turns {
-            hits.resize(self.now.rays.len(), (None, 0));
-            let tell = |i: usize, hit, steps| hits[i] = (hit, steps);
-            self.stage.intersect_all(processor, rays, &mut self.rooms, tell);
-            return;
-        }
-        for (ray, from, time) in rays {
-            let mut steps = 0;
-            let hit = self.stage.at(time).intersect(processor, ray, from, &mut steps);
-            hits.push((hit, steps));
-        }
+        hits.resize(self.now.rays.len(), (None, 0));
+        let tell = |i: usize, hit, steps| hits[i] = (hit, steps);
+        self.stage.intersect_all(processor, rays, &mut self.rooms, tell);
     }
 
     /// Shades every path of this round where `trace` found that it ends.

@@ -19,20 +19,26 @@ pub struct First {
 }
 
 impl Moment<'_> {
-    /// The first surface that stops a ray: those that rays pass are passed. Counts nodes and
-    /// primitives in `steps`.
-    pub fn first(self, ray: Ray, steps: &mut u32) -> Option<First> {
-        let (mut leg, mut flown, mut from) = (ray, 0.0, None);
+    /// The first surface that stops a ray, from `hit` on, the nearest of all: those that rays pass are
+    /// passed. Counts nodes and primitives in `steps`.
+    #[inline(always)]
+    pub fn first(
+        self,
+        processor: Processor,
+        ray: &Ray,
+        mut hit: SceneHit,
+        steps: &mut u32,
+    ) -> Option<First> {
+        let (mut leg, mut flown) = (*ray, 0.0);
         loop {
-            let hit = self.intersect(Processor::ANY, &leg, from, steps)?;
             let surface = self.surface(&leg, &hit);
             if self.placements[hit.placement as usize].skin != Skin::Open {
                 return Some(First { t: flown + hit.hit.t, hit, surface });
             }
-            from = Some(Leaving::from(&hit));
             let o = offset_origin(surface.p, surface.p_err, surface.ng, leg.d);
             flown += (o - leg.o).dot(leg.d);
             leg = Ray { o, t_max: ray.t_max - flown, ..leg };
+            hit = self.intersect(processor, &leg, Some(Leaving::from(&hit)), steps)?;
         }
     }
 }
@@ -43,7 +49,8 @@ impl Stage {
     pub fn probe(&self, pixel: UVec2) -> Option<(First, &Placement)> {
         let moment = self.opening();
         let seen = moment.camera_ray(pixel.as_dvec2() + 0.5, [0.5; 2])?;
-        let first = moment.first(seen.ray, &mut 0)?;
+        let nearest = moment.intersect(Processor::ANY, &seen.ray, None, &mut 0)?;
+        let first = moment.first(Processor::ANY, &seen.ray, nearest, &mut 0)?;
         Some((first, &self.placements[first.hit.placement as usize]))
     }
 }

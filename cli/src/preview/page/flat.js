@@ -23,6 +23,7 @@ export function flat(canvas) {
 
   return {
     forget() { drawn = { key: "" }; },
+    finished(then) { then(); },
     draw(state, { x, y, zoom }, ratio) {
       const { a, other, view, tone, ev } = state;
       const key = [view, tone, ev, other?.name, state.compare].join();

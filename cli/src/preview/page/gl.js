@@ -1,7 +1,7 @@
 // Drawing with WebGL 2: one triangle, textures of halves as they came.
 
 import { ERROR, LUMINANCE, MAPS, ROWS, SHARE, SIGMAS, STEPS } from "./maps.js";
-import { FRAGMENT, VERTEX } from "./shader.js";
+import { fragment, VERTEX } from "./shader.js";
 
 const VIEWS = ["colour", "luminance", "error", "difference"];
 const TONES = ["srgb", "linear", "filmic"];
@@ -11,20 +11,34 @@ export function withGl(canvas) {
   if (!gl) return null;
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => location.reload());
-  const program = gl.createProgram();
-  for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  gl.useProgram(program);
   gl.bindVertexArray(gl.createVertexArray());
-  const places = {};
-  const at = (name) => (places[name] ??= gl.getUniformLocation(program, name));
-  ["rgbA", "seA", "rgbB", "seB", "maps"].forEach((name, i) => gl.uniform1i(at(name), i));
+
+  // Programs by what they draw. `use` tells where a uniform of one is.
+  const programs = new Map();
+  function made(what) {
+    const program = gl.createProgram(), places = {};
+    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, fragment(what)]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+      gl.attachShader(program, shader);
+    }
+    gl.linkProgram(program);
+    gl.useProgram(program);
+    const at = (name) => (places[name] ??= gl.getUniformLocation(program, name));
+    ["rgbA", "seA", "rgbB", "seB", "maps"].forEach((name, i) => gl.uniform1i(at(name), i));
+    return { program, at };
+  }
+  function use(what) {
+    const key = Object.values(what).join();
+    if (!programs.has(key)) programs.set(key, made(what));
+    const { program, at } = programs.get(key);
+    gl.useProgram(program);
+    return at;
+  }
+  // What most pictures and their coarse passes are drawn by is not waited for.
+  for (const shrunk of [true, false]) use({ view: 0, tone: 0, sides: 0, shrunk });
 
   function texture(filter) {
     const made = gl.createTexture();
@@ -64,8 +78,24 @@ export function withGl(canvas) {
         held.delete(picture);
       }
     },
+    // Drawing goes on after it was asked for: `then` is called when it is done, so that pictures do not
+    // queue up before an edit's first.
+    finished(then) {
+      const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      gl.flush();
+      const look = () => {
+        const over = gl.isContextLost() || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED;
+        if (!over) return setTimeout(look, 2);
+        gl.deleteSync(fence);
+        then();
+      };
+      setTimeout(look);
+    },
     draw(state, { x, y, zoom }, ratio) {
       const { a, other } = state;
+      const sides = other ? (state.flipped ? 2 : 1) : 0;
+      const shrunk = [a, other].some((each) => each && zoom * ratio * each.step < 1);
+      const at = use({ view: VIEWS.indexOf(state.view), tone: TONES.indexOf(state.tone), sides, shrunk });
       const textures = [...planes(a), ...(other ? planes(other) : [nothing, nothing]), maps];
       textures.forEach((each, i) => {
         gl.activeTexture(gl.TEXTURE0 + i);
@@ -81,9 +111,6 @@ export function withGl(canvas) {
       gl.uniform1f(at("zoom"), zoom * ratio);
       gl.uniform1f(at("wipe"), state.wipe * canvas.width);
       gl.uniform1f(at("height"), canvas.height);
-      gl.uniform1i(at("view"), VIEWS.indexOf(state.view));
-      gl.uniform1i(at("tone"), TONES.indexOf(state.tone));
-      gl.uniform1i(at("sides"), other ? (state.flipped ? 2 : 1) : 0);
       gl.uniform4f(at("surround"), 0.06, 0.06, 0.06, 0.12);
       gl.uniform4f(at("scales"), ...LUMINANCE, ...ERROR);
       gl.uniform2f(at("spread"), SIGMAS, SHARE);

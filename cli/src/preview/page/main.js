@@ -45,7 +45,8 @@ function redraw() {
   requestAnimationFrame(() => {
     due = false;
     paint();
-    afterDrawing.splice(0).forEach((done) => done());
+    const waiting = afterDrawing.splice(0);
+    if (waiting.length) painter.finished(() => waiting.forEach((drawn) => drawn()));
   });
 }
 

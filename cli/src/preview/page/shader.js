@@ -3,15 +3,18 @@
 export const VERTEX = `#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4. - 1., 0., 1.); }`;
 
-export const FRAGMENT = `#version 300 es
+// What is drawn is a constant of the program: without a graphics card whatever stands in one is worked
+// out for each point of the screen, wanted or not. `shrunk`: whether some point shows more than a pixel.
+export const fragment = ({ view, tone, sides, shrunk }) => `#version 300 es
 precision highp float;
+const int view = ${view}, tone = ${tone}, sides = ${sides};   // sides: 0 A alone, 1 wipe, 2 B alone
+const bool shrunk = ${shrunk};
 precision highp sampler2D;
 uniform sampler2D rgbA, seA, rgbB, seB, maps;
 uniform vec4 windowA, windowB;   // in pixels of the whole picture
 uniform vec3 unitA, unitB;       // of radiance with exposure; whether there is an error; step of a coarse picture
 uniform vec2 size, corner;       // of the whole picture; of its upper left on the canvas
 uniform float zoom, wipe, height;
-uniform int view, tone, sides;   // sides: 0 A alone, 1 wipe, 2 B alone
 uniform vec4 surround;
 uniform vec4 scales;             // luminance from, to; error from, to
 uniform vec2 spread;             // standard errors, share at the end of the scale
@@ -43,7 +46,7 @@ vec3 map(int row, float t) {
 vec3 look(sampler2D plane, vec4 window, float coarse, vec2 p) {
   vec2 size = vec2(textureSize(plane, 0));
   float step = 1. / zoom;
-  if (step <= coarse) {
+  if (!shrunk || step <= coarse) {
     vec2 q = (p - window.xy) / coarse, f = fract(q);
     float px = zoom * coarse;
     q = floor(q) + clamp(f * px, 0., .5) + clamp((f - 1.) * px + .5, 0., .5);

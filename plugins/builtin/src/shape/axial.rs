@@ -1,5 +1,7 @@
 //! Frames of shapes about an axis: both tangents and the axis, right-handed.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 
 /// A right-handed frame whose last vector is along `axis`, which has a direction.
@@ -24,9 +26,14 @@ pub(super) fn across(z: DVec3) -> DVec3 {
     (DVec3::ONE - z * z).max(DVec3::ZERO).map(f64::sqrt)
 }
 
+/// The angle within half a turn of 0 that points the same way, radians.
+pub(super) fn within_half_a_turn(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
+}
+
 /// `turn` radians in (−π, π] as a texture coordinate in [0, 1].
 pub(super) fn turn_of(angle: f64) -> f64 {
-    let turn = angle / std::f64::consts::TAU;
+    let turn = angle / TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }
 

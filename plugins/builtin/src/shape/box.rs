@@ -8,7 +8,7 @@ use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
-use super::spherical::SphericalRectangle;
+use super::spherical::{NEAR, SphericalRectangle};
 
 /// A closed box along the axes; `transform` turns it.
 ///
@@ -147,10 +147,6 @@ impl Shape for Box {
 fn face_code(face: usize) -> u8 {
     face as u8
 }
-
-/// Area of all that is seen over squared distance from which on solid angles are worth their
-/// arccosines, as of a rectangle.
-const NEAR: f64 = 0.25;
 
 /// Least solid angle, sr, for which a face that is seen is chosen.
 const LEAST: f64 = 1e-5;

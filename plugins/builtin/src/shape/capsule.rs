@@ -9,7 +9,7 @@ use luxel_sdk::kind::{Hit, NormalDerivatives, Shape, ShapeSample, Surface};
 use luxel_sdk::num::{Bounds3, Ray, gamma64, sphere_roots};
 use luxel_sdk::params::Fault;
 
-use super::axial::{frame, length_of, local, place, turn_of};
+use super::axial::{frame, length_of, local, place, turn_of, within_half_a_turn};
 
 /// A solid rod with round ends: everything within `radius` of a line of length `height`.
 ///
@@ -113,7 +113,7 @@ impl Shape for Capsule {
             None => (v * self.length() - self.radius, PI),
         };
         let turn = seen.as_ref().map_or(0.0, |seen| seen.towards) + (u - 0.5) * 2.0 * half;
-        let turn = turn - TAU * (turn / TAU).round();
+        let turn = within_half_a_turn(turn);
         let above = z - self.height;
         let surface = if z < 0.0 {
             self.surface_at(LOW, DVec2::new(turn, (z / self.radius).max(-1.0).asin()))
@@ -216,7 +216,7 @@ impl Capsule {
         let q = local(&self.frame, at.p - self.base);
         let half = self.arc(&seen.viewer, q.z);
         let aside = q.y.atan2(q.x) - seen.towards;
-        if !((aside - TAU * (aside / TAU).round()).abs() <= half && half > 0.0) {
+        if !(within_half_a_turn(aside).abs() <= half && half > 0.0) {
             return 0.0;
         }
         let last = 2 * PIECES;

@@ -9,6 +9,8 @@ use luxel_sdk::num::{Bounds3, Ray, gamma64, sphere_roots};
 use luxel_sdk::params::Fault;
 use luxel_sdk::sampling::disk_concentric;
 
+use super::axial::within_half_a_turn;
+
 /// A round tube, or with `caps` a solid rod.
 ///
 /// Texture coordinates on the side: `u` once around, `v` from the base to the top.
@@ -100,8 +102,10 @@ impl Shape for Cylinder {
         let rest = f64::from(u[0]) * seen.area(self);
         let surface = if rest < side || seen.caps[0] + seen.caps[1] <= 0.0 {
             let turn = seen.towards + (rest / side - 0.5) * 2.0 * seen.half;
-            let turn = turn - TAU * (turn / TAU).round();
-            self.surface_at(SIDE, DVec2::new(turn, f64::from(u[1]) * self.height))
+            self.surface_at(
+                SIDE,
+                DVec2::new(within_half_a_turn(turn), f64::from(u[1]) * self.height),
+            )
         } else {
             let (rest, low) = (rest - side, seen.caps[0]);
             let (face, rest) =
@@ -180,7 +184,7 @@ impl Cylinder {
             seen.caps[usize::from(n.z > 0.0)] > 0.0
         } else {
             let aside = n.y.atan2(n.x) - seen.towards;
-            (aside - TAU * (aside / TAU).round()).abs() <= seen.half
+            within_half_a_turn(aside).abs() <= seen.half
         };
         if is_seen { seen.area(self).recip() } else { 0.0 }
     }

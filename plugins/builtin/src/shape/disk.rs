@@ -10,10 +10,7 @@ use luxel_sdk::params::Fault;
 use luxel_sdk::sampling::disk_concentric;
 
 use super::ellipse::SphericalEllipse;
-
-/// Area over squared distance from which on the solid angle is worth its arctangents, as of a
-/// rectangle.
-const NEAR: f64 = 0.25;
+use super::spherical::NEAR;
 
 /// A flat disk, or with `inner_radius` a ring.
 ///

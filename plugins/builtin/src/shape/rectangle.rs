@@ -6,11 +6,7 @@ use luxel_sdk::kind::{Hit, NormalDerivatives, Parallelogram, Shape, ShapeSample,
 use luxel_sdk::num::{Bounds3, Ray, gamma64};
 use luxel_sdk::params::Fault;
 
-use super::spherical::SphericalRectangle;
-
-/// Area over squared distance from which on the solid angle is worth its arccosines: below, all
-/// points of a rectangle that is faced look alike to within (1 + `NEAR` / 2)².
-const NEAR: f64 = 0.25;
+use super::spherical::{NEAR, SphericalRectangle};
 
 /// What a viewer sees of a rectangle, and where its centre is from the viewer's foot.
 struct Seen {

@@ -11,6 +11,10 @@ use glam::{DVec2, DVec3};
 /// all but touches it, and its angles say little about the place.
 const RANGE: std::ops::RangeInclusive<f64> = 1e-4..=6.22;
 
+/// Area over squared distance from which on solid angles are worth their arccosines: below, all points
+/// of a rectangle that is faced look alike to within (1 + `NEAR` / 2)².
+pub(super) const NEAR: f64 = 0.25;
+
 /// What a viewer sees of a rectangle.
 pub(super) struct SphericalRectangle {
     /// Corners about the viewer's foot in the plane.

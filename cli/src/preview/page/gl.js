@@ -15,7 +15,7 @@ export function withGl(canvas) {
 
   // Programs by what they draw. `use` tells where a uniform of one is.
   const programs = new Map();
-  function made(what) {
+  function linked(what) {
     const program = gl.createProgram(), places = {};
     for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, fragment(what)]]) {
       const shader = gl.createShader(kind);
@@ -32,7 +32,7 @@ export function withGl(canvas) {
   }
   function use(what) {
     const key = Object.values(what).join();
-    if (!programs.has(key)) programs.set(key, made(what));
+    if (!programs.has(key)) programs.set(key, linked(what));
     const { program, at } = programs.get(key);
     gl.useProgram(program);
     return at;
@@ -60,14 +60,17 @@ export function withGl(canvas) {
   const nothing = plane(1, 1, new Uint16Array(3));
   const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
 
+  // Of each picture its radiance, and its error once that is looked at.
   const held = new Map();
-  function planes(picture) {
+  function planes(picture, withError) {
+    const { width, height, rgb, se, hasError } = picture;
     if (!held.has(picture)) {
-      const { width, height, rgb, se } = picture;
       if (width > most || height > most) throw new Error(`a side of more than ${most} pixels is too long for this browser`);
-      held.set(picture, [plane(width, height, rgb), picture.hasError ? plane(width, height, se) : nothing]);
+      held.set(picture, [plane(width, height, rgb), nothing]);
     }
-    return held.get(picture);
+    const textures = held.get(picture);
+    if (withError && hasError && textures[1] === nothing) textures[1] = plane(width, height, se);
+    return textures;
   }
 
   return {
@@ -96,8 +99,9 @@ export function withGl(canvas) {
       const sides = other ? (state.flipped ? 2 : 1) : 0;
       const shrunk = [a, other].some((each) => each && zoom * ratio * each.step < 1);
       const at = use({ view: VIEWS.indexOf(state.view), tone: TONES.indexOf(state.tone), sides, shrunk });
-      const textures = [...planes(a), ...(other ? planes(other) : [nothing, nothing]), maps];
-      textures.forEach((each, i) => {
+      const withError = ["error", "difference"].includes(state.view);
+      const textures = [a, other].flatMap((each) => (each ? planes(each, withError) : [nothing, nothing]));
+      [...textures, maps].forEach((each, i) => {
         gl.activeTexture(gl.TEXTURE0 + i);
         gl.bindTexture(gl.TEXTURE_2D, each);
       });

@@ -1,7 +1,7 @@
 //! Speed and memory of Luxel, and the comparison with Mitsuba where it is installed.
 //!
 //! `cargo run --release -p luxel-bench -- [WHAT] [--luxel PATH] [--python PATH] [--embree LIBRARY]
-//! [--lean DIRECTORY] [--write DOCUMENT] [--only beside]`; a word that it does not know makes it tell what it measures. The
+//! [--lean DIRECTORY] [--write DOCUMENT] [--only beside|studies]`; a word that it does not know makes it tell what it measures. The
 //! program under test is `target/release/luxel` beside this one unless given.
 //! Every figure is a median with its spread, (largest − smallest) / median.
 #![deny(unsafe_code)]
@@ -116,7 +116,7 @@ fn usage() -> String {
     let names = names.join("|");
     format!(
         "usage: luxel-bench [all|{names}] [--luxel PATH] [--python PATH] [--embree LIBRARY] \
-         [--lean DIRECTORY] [--write DOCUMENT] [--only beside]"
+         [--lean DIRECTORY] [--write DOCUMENT] [--only beside|studies]"
     )
 }
 
@@ -136,6 +136,7 @@ fn plan(mut words: impl Iterator<Item = String>) -> Result<(&'static [Bench], Pl
             "--write" => document = Some(words.next().ok_or_else(usage)?.into()),
             "--only" => match words.next().as_deref() {
                 Some("beside") => part = Part::Beside,
+                Some("studies") => part = Part::Studies,
                 other => return Err(format!("--only {}? {}", other.unwrap_or_default(), usage())),
             },
             "--python" => python = words.next().map(PathBuf::from),
@@ -151,6 +152,9 @@ fn plan(mut words: impl Iterator<Item = String>) -> Result<(&'static [Bench], Pl
     }
     if document.is_some() && !benches.iter().any(|bench| bench.name == "errors") {
         return Err("--write: only `errors` writes into a document".to_owned());
+    }
+    if part == Part::Studies && benches.iter().any(|bench| bench.name == "tables-short") {
+        return Err("--only studies: `tables-short` makes them with all others".to_owned());
     }
     if part != Part::All && !benches.iter().all(|bench| bench.name.starts_with("tables")) {
         return Err("--only: of `tables` and `tables-short` alone there are parts".to_owned());
@@ -190,6 +194,8 @@ mod tests {
         assert_eq!(part("tables"), Ok((1, "tables", Part::All)));
         assert_eq!(part("tables --only beside"), Ok((1, "tables", Part::Beside)));
         assert_eq!(part("--only beside tables-short"), Ok((1, "tables-short", Part::Beside)));
+        assert_eq!(part("tables --only studies"), Ok((1, "tables", Part::Studies)));
+        assert!(part("tables-short --only studies").unwrap_err().starts_with("--only studies: "));
         assert!(part("tables --only besides").unwrap_err().starts_with("--only besides? usage: "));
         assert!(part("ply --only beside").unwrap_err().starts_with("--only: of `tables`"));
         assert!(part("--only beside").unwrap_err().starts_with("--only: of `tables`"));

@@ -66,6 +66,8 @@ pub(crate) enum Part {
     All,
     /// Those that another renderer is needed for.
     Beside,
+    /// Those of studies.
+    Studies,
 }
 
 /// Where tables are written.
@@ -82,15 +84,19 @@ struct Documents {
 /// What a command or the disk says.
 pub(crate) fn run(plan: &Plan) -> Result<(), String> {
     let root = root()?;
-    if plan.part == Part::All {
-        alone(plan, root)?;
+    match plan.part {
+        Part::All => alone(plan, root)?,
+        Part::Beside => {}
+        Part::Studies => {
+            return studies(&plan.luxel, &root.join(ACCURACY), Path::new(IMAGES), Form::Whole);
+        }
     }
     let [accuracy, performance, readme] = [ACCURACY, PERFORMANCE, README].map(|it| root.join(it));
     let to = Documents { accuracy, performance, readme };
     match (mitsuba(plan), plan.part) {
         (Some(python), _) => beside(&plan.luxel, python, &to, Form::Whole),
         (None, Part::Beside) => Err(MISSING.to_owned()),
-        (None, Part::All) => {
+        (None, _) => {
             println!("{MISSING}: what is measured beside it stays as it is");
             Ok(())
         }
@@ -166,6 +172,12 @@ fn renders(luxel: &Luxel, place: &Path, images: &Path, form: Form) -> Result<(),
     write(place, SAID, &said::table(root, form)?)?;
     write(place, ASKED, &asked::table(root, form)?)?;
     write(place, DENOISED, &denoised::table(luxel, root, form)?)?;
+    studies(luxel, place, images, form)
+}
+
+/// Studies of scenes of the project; their plots as above.
+fn studies(luxel: &Luxel, place: &Path, images: &Path, form: Form) -> Result<(), String> {
+    let root = root()?;
     write(place, CALIBRATION, &studied::calibration(luxel, root)?)?;
     STUDIES
         .iter()

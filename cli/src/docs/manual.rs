@@ -7,13 +7,13 @@ use luxel_sdk::params::Param;
 
 use super::markdown::{self, Part, escaped};
 use super::page::{GUIDE, Page};
-use super::thumb::Shown;
+use super::thumb::{SNIPPET, Shown};
 use crate::describe::COMMON;
 use crate::list::summary;
 use crate::words::{self, Word};
 
-/// The manual of a class, with its parameters and the picture of what it shows, if there is one.
-pub(super) fn class(entry: &Entry, drawn: Option<&Shown<'_>>) -> Page {
+/// The manual of a class, with its parameters and the pictures of what it shows, as far as there are any.
+pub(super) fn class(entry: &Entry, drawn: &[Shown<'_>]) -> Page {
     let class = &entry.class;
     let (kind, name) = (class.kind.word(), class.name);
     let title = title_of(entry);
@@ -21,10 +21,9 @@ pub(super) fn class(entry: &Entry, drawn: Option<&Shown<'_>>) -> Page {
         [rows(class.params), rows(common_params(class.kind)), fields(words::fields_of(class.kind))];
     let file = format!("{kind}-{name}");
     let body = format!(
-        "<h1>{title}</h1>\n<p class=\"origin\">{}</p>\n{}{}{}{}{}",
+        "<h1>{title}</h1>\n<p class=\"origin\">{}</p>\n{}{}{}{}",
         escaped(&entry.origin),
-        drawn.map_or(String::new(), figure),
-        markdown::html(class.doc.trim()),
+        illustrated(class.doc.trim(), drawn),
         table("Parameters", &own),
         table(COMMON, &common),
         table("Read by the language", &read),
@@ -38,9 +37,22 @@ pub(super) fn class(entry: &Entry, drawn: Option<&Shown<'_>>) -> Page {
         name: file,
         title,
         body,
-        picture: drawn.map(Shown::file),
+        picture: drawn.first().map(Shown::file),
         parts: all.into_iter().map(|row| part(&title_of(entry), row)).collect(),
     }
+}
+
+/// A manual with its pictures: the first stands above it, each other one above what it is of.
+fn illustrated(doc: &str, drawn: &[Shown<'_>]) -> String {
+    let of = |number| drawn.iter().find(|shown| shown.number == number).map(figure);
+    let mut parts = doc.split(SNIPPET);
+    let mut page = of(0).unwrap_or_default();
+    page += &markdown::html(parts.next().unwrap_or_default());
+    for (number, part) in parts.enumerate() {
+        page.extend(of(number).filter(|_| number > 0));
+        page += &markdown::html(&format!("{SNIPPET}{part}"));
+    }
+    page
 }
 
 /// What a class is called.

@@ -74,8 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut pages: Vec<Page> = DOCUMENTS.map(|(name, text)| page::document(name, text)).into();
     pages.extend([functions::page(), manual::messages()]);
     pages.extend(run.plugins.registry.all().map(|entry| {
-        let drawn = Shown::of_class(entry).filter(is_drawn);
-        manual::class(entry, drawn.as_ref())
+        manual::class(entry, &Shown::of_class(entry).filter(is_drawn).collect::<Vec<_>>())
     }));
     pages.extend(WORDS.iter().map(|word| {
         let drawn = Some(Shown::of_word(word)).filter(is_drawn);
@@ -92,9 +91,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if broken.is_empty() { Exit::Fine } else { Exit::Input })
 }
 
-/// A picture of what each manual shows, where it can be drawn.
+/// Pictures of all that manuals show, where they can be drawn.
 fn pictures(run: &Run) -> Result<Vec<File>, Failure> {
-    let of_classes = run.plugins.registry.all().filter_map(Shown::of_class);
+    let of_classes = run.plugins.registry.all().flat_map(Shown::of_class);
     let all: Vec<_> = of_classes.chain(WORDS.iter().map(Shown::of_word)).collect();
     let steps = Steps::new();
     let mut drawn = vec![];

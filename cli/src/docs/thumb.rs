@@ -18,6 +18,9 @@ use crate::exit::{Exit, Failure, blaming};
 use crate::picture::{show, write_signal};
 use crate::verify::Run;
 
+/// What a scene in a manual begins with.
+pub(super) const SNIPPET: &str = "```scene";
+
 const SIZE: UVec2 = UVec2::new(240, 160);
 const SPP: u32 = 32;
 /// Field of view of the camera that sees all of a snippet's shapes, degrees.
@@ -27,30 +30,40 @@ const FROM: DVec3 = DVec3::new(0.45, 0.35, 0.82);
 /// Share of the pixels that may be brighter than white, where the light is the manual's own.
 const BRIGHTEST: f64 = 0.03;
 
-/// What a manual shows first.
+/// What a manual shows.
 pub(super) struct Shown<'m> {
     /// Whose manual it is of: `shape sphere`.
     pub(super) of: String,
+    /// Its place among what that shows, from 0.
+    pub(super) number: usize,
     kind: Kind,
     snippet: &'m str,
 }
 
 impl<'m> Shown<'m> {
-    /// `None` where the manual shows nothing.
-    pub(super) fn of_class(entry: &'m Entry) -> Option<Self> {
-        let snippet = entry.class.doc.split("```scene").nth(1)?.split("```").next()?.trim();
-        let of = format!("{} {}", entry.class.kind, entry.class.name);
-        Some(Self { of, kind: entry.class.kind, snippet })
+    /// All that the manual of a class shows.
+    pub(super) fn of_class(entry: &'m Entry) -> impl Iterator<Item = Self> {
+        let kind = entry.class.kind;
+        let of = format!("{kind} {}", entry.class.name);
+        let snippets = entry.class.doc.split(SNIPPET).skip(1);
+        let snippets = snippets.filter_map(|from| Some(from.split("```").next()?.trim()));
+        snippets.enumerate().map(move |(number, snippet)| Self {
+            of: of.clone(),
+            number,
+            kind,
+            snippet,
+        })
     }
 
     /// What the language's own words show are shapes in their places.
     pub(super) fn of_word(word: &'m Word) -> Self {
-        Self { of: word.name.to_owned(), kind: Kind::Shape, snippet: word.parts().1 }
+        Self { of: word.name.to_owned(), number: 0, kind: Kind::Shape, snippet: word.parts().1 }
     }
 
     /// The picture's place in the folder.
     pub(super) fn file(&self) -> String {
-        format!("{}.png", self.of.replace(' ', "-"))
+        let of = self.of.replace(' ', "-");
+        if self.number == 0 { format!("{of}.png") } else { format!("{of}-{}.png", self.number + 1) }
     }
 
     /// The files that it names and that another stands for in the picture.
@@ -59,7 +72,7 @@ impl<'m> Shown<'m> {
     }
 }
 
-/// A PNG of what a manual shows first; `None` where it needs files that nothing stands for, or shows
+/// A PNG of what a manual shows; `None` where it needs files that nothing stands for, or shows
 /// nothing.
 ///
 /// # Errors
@@ -76,7 +89,7 @@ pub(super) fn png(shown: &Shown<'_>, run: &Run) -> Result<Option<Vec<u8>>, Failu
     }
 }
 
-/// The stage of what a manual shows first.
+/// The stage of what a manual shows.
 fn of_manual(shown: &Shown<'_>, registry: &Registry) -> Option<Stage> {
     let staged = |camera: &str| stage_of(&around(shown.kind, shown.snippet, camera), registry);
     // Once to see where its shapes are, and once more to look at them.
@@ -142,6 +155,7 @@ fn drawn(film: &Film, kind: Kind) -> Option<Vec<u8>> {
 mod tests {
     use luxel_lang::manual::WORDS;
 
+    use super::super::manual;
     use super::*;
 
     fn registry() -> Registry {
@@ -156,8 +170,11 @@ mod tests {
     fn what_every_built_in_and_every_word_shows_can_be_drawn() {
         let registry = registry();
         for entry in registry.all() {
-            let shown = Shown::of_class(entry).unwrap();
-            assert!(of_manual(&shown, &registry).is_some(), "{}", shown.of);
+            let all: Vec<_> = Shown::of_class(entry).collect();
+            assert!(!all.is_empty(), "{} {} shows nothing", entry.class.kind, entry.class.name);
+            for shown in all {
+                assert!(of_manual(&shown, &registry).is_some(), "{}", shown.file());
+            }
         }
         for word in &WORDS {
             assert!(of_manual(&Shown::of_word(word), &registry).is_some(), "{}", word.name);
@@ -165,9 +182,23 @@ mod tests {
     }
 
     #[test]
+    fn each_picture_stands_above_what_it_is_of() {
+        let registry = registry();
+        let entry = registry.all().find(|entry| entry.class.name == "mesh").unwrap();
+        let all: Vec<_> = Shown::of_class(entry).collect();
+        let page = manual::class(entry, &all).body;
+        let places = ["shape-mesh.png", "cow", "shape-mesh-2.png", "pebble"];
+        let places = places.map(|word| page.find(word).unwrap_or_else(|| panic!("no {word}")));
+        assert!(places.is_sorted(), "{places:?}");
+        // Without the second picture all is there but that.
+        let fewer = manual::class(entry, &all[..1]).body;
+        assert!(fewer.contains("pebble") && !fewer.contains("shape-mesh-2.png"));
+    }
+
+    #[test]
     fn what_needs_another_file_is_not_drawn() {
         let snippet = "shape mesh { file = \"assets/other.obj\", unit = 1 m }";
-        let shown = Shown { of: "shape mesh".to_owned(), kind: Kind::Shape, snippet };
+        let shown = Shown { of: "shape mesh".to_owned(), number: 0, kind: Kind::Shape, snippet };
         assert!(shown.stand_ins().is_empty());
         assert!(of_manual(&shown, &registry()).is_none());
         let snippet = "shape mesh { file = \"assets/spot.obj\", unit = 1 m }";

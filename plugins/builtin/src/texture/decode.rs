@@ -12,7 +12,7 @@ use luxel_sdk::params::BuildContext;
 
 use super::jpeg;
 use crate::sniff;
-use crate::stop::{Stoppable, go_on};
+use crate::stop::{STRIDE, Stoppable, go_on};
 
 /// The largest side that is read, pixels.
 const MAX_SIDE: u32 = 1 << 16;
@@ -176,8 +176,10 @@ fn is_cut(bytes: &[u8], error: &ImageError) -> bool {
 
 /// Whether a JPEG's last scan has an end: decoders fill up with grey what is missing.
 fn has_end(bytes: &[u8]) -> bool {
-    let last = |marker: u8| bytes.windows(2).rposition(|pair| pair == [0xff, marker]);
-    last(0xd9) > last(0xda)
+    let mut pairs = bytes.windows(2).rev();
+    // The last of either: in a picture that is whole it is among the last bytes.
+    let last = pairs.find(|pair| *pair == [0xff, 0xd9] || *pair == [0xff, 0xda]);
+    last == Some(&[0xff, 0xd9])
 }
 
 impl Pixels {
@@ -199,7 +201,7 @@ impl Pixels {
         };
         let weights = RgbSpace::LinearSrgb.luminance_weights().as_vec3();
         let mut pixels = Self { width, height, channels, data, values: vec![], weights };
-        pixels.decode_srgb(false);
+        pixels.values = pixels.table(false);
         (width > 0 && height > 0).then_some(pixels)
     }
 
@@ -218,36 +220,59 @@ impl Pixels {
         !matches!(self.data, Data::F32(_))
     }
 
+    /// What whole numbers stand for, as sRGB signals or linear; nothing for floats.
+    fn table(&self, srgb: bool) -> Vec<f32> {
+        let n = match &self.data {
+            Data::U8(_) => 1 << 8,
+            Data::U16(_) => 1 << 16,
+            Data::F32(_) => return vec![],
+        };
+        (0..n).map(|i| decoded(f64::from(i) / f64::from(n - 1), srgb)).collect()
+    }
+
     /// States whether colours are sRGB signals or linear; floats are decoded once and for all.
-    #[expect(clippy::cast_possible_truncation, reason = "rounds; a table of f32")]
-    pub(crate) fn decode_srgb(&mut self, srgb: bool) {
-        let value = |x: f64| if srgb { srgb_decode(x) as f32 } else { x as f32 };
-        let table = |n: u32| (0..n).map(|i| value(f64::from(i) / f64::from(n - 1))).collect();
-        match &mut self.data {
-            Data::U8(_) => self.values = table(1 << 8),
-            Data::U16(_) => self.values = table(1 << 16),
-            Data::F32(values) if srgb => {
-                let n_colours = if self.channels == 4 { 3 } else { self.channels };
-                for pixel in values.chunks_exact_mut(self.channels) {
-                    for v in &mut pixel[..n_colours] {
-                        *v = value(f64::from(*v));
-                    }
+    ///
+    /// # Errors
+    /// That the picture is not wanted any more.
+    pub(crate) fn decode_srgb(
+        &mut self,
+        srgb: bool,
+        context: &dyn BuildContext,
+    ) -> Result<(), String> {
+        self.values = self.table(srgb);
+        let (Data::F32(values), true) = (&mut self.data, srgb) else { return Ok(()) };
+        let n_colours = if self.channels == 4 { 3 } else { self.channels };
+        for piece in values.chunks_mut(STRIDE * self.channels) {
+            go_on(context)?;
+            for pixel in piece.chunks_exact_mut(self.channels) {
+                for v in &mut pixel[..n_colours] {
+                    *v = decoded(f64::from(*v), true);
                 }
             }
-            Data::F32(_) => {}
         }
+        Ok(())
     }
 
     /// Replaces floats that are not finite, or that fail `legal`, by 0 or the largest half float;
     /// says how many.
-    pub(crate) fn replace(&mut self, legal: impl Fn(f32) -> bool) -> usize {
-        let Data::F32(values) = &mut self.data else { return 0 };
+    ///
+    /// # Errors
+    /// That the picture is not wanted any more.
+    pub(crate) fn replace(
+        &mut self,
+        legal: impl Fn(f32) -> bool,
+        context: &dyn BuildContext,
+    ) -> Result<usize, String> {
+        let Data::F32(values) = &mut self.data else { return Ok(0) };
         let mut n = 0;
-        for v in values.iter_mut().filter(|v| !(v.is_finite() && legal(**v))) {
-            *v = if *v > 0.0 { LARGEST } else { 0.0 };
-            n += 1;
+        for piece in values.chunks_mut(STRIDE) {
+            go_on(context)?;
+            for v in piece.iter_mut().filter(|v| !(v.is_finite() && legal(**v))) {
+                *v = if *v > 0.0 { LARGEST } else { 0.0 };
+                n += 1;
+            }
         }
-        n
+        Ok(n)
     }
 
     fn colour(&self, i: usize) -> f32 {
@@ -313,12 +338,18 @@ impl Pixels {
     }
 }
 
+/// A number of a picture as light, which it is already or, as an sRGB signal, stands for.
+#[expect(clippy::cast_possible_truncation, reason = "rounds; pictures are of f32")]
+fn decoded(x: f64, srgb: bool) -> f32 {
+    if srgb { srgb_decode(x) as f32 } else { x as f32 }
+}
+
 #[cfg(test)]
 mod tests {
     use std::io::Cursor;
 
     use super::*;
-    use crate::stop::testing::Patience;
+    use crate::stop::testing::{Patience, ends_wherever};
 
     fn encoded(format: ImageFormat) -> Vec<u8> {
         let picture = ::image::Rgb32FImage::from_fn(17, 5, |x, y| {
@@ -429,5 +460,20 @@ mod tests {
             assert!(decode(&png, &patience).is_err());
             assert!(patience.looks.get() <= most + 2, "went on after {most} looks");
         }
+    }
+
+    #[test]
+    fn what_is_made_of_floats_ends_soon_after_it_is_not_wanted_any_more() {
+        let side = 160;
+        let picture = DynamicImage::ImageRgb32F(::image::Rgb32FImage::new(side, side));
+        let n_floats = 3 * (side * side) as usize;
+        let made = |patience: &Patience, work: fn(&mut Pixels, &Patience) -> Result<(), String>| {
+            work(&mut Pixels::new(picture.clone()).unwrap(), patience)
+        };
+        let looks = ends_wherever(|it| made(it, |pixels, it| pixels.decode_srgb(true, it)));
+        assert!(looks >= n_floats / (3 * STRIDE), "{looks} looks");
+        let legal = |pixels: &mut Pixels, it: &Patience| pixels.replace(|_| true, it).map(drop);
+        let looks = ends_wherever(|it| made(it, legal));
+        assert!(looks >= n_floats / STRIDE, "{looks} looks");
     }
 }

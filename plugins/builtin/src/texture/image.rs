@@ -92,12 +92,13 @@ impl Build<Pixels> for Image<'_> {
         let bytes = context.read(path).map_err(fault)?;
         let mut pixels =
             decode(&bytes, context).map_err(|message| fault(format!("{path}: {message}")))?;
-        pixels.decode_srgb(match self.space {
+        let srgb = match self.space {
             Space::Auto => pixels.is_integer(),
             Space::Srgb => true,
             Space::LinearSrgb | Space::Raw => false,
-        });
-        let odd = pixels.replace(|_| true);
+        };
+        pixels.decode_srgb(srgb, context).map_err(fault)?;
+        let odd = pixels.replace(|_| true, context).map_err(fault)?;
         if odd > 0 {
             context.warn(&format!("{odd} values of the picture are not finite"));
         }

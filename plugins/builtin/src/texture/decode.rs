@@ -10,7 +10,7 @@ use luxel_sdk::Choice;
 use luxel_sdk::color::{RgbSpace, srgb_decode};
 use luxel_sdk::params::BuildContext;
 
-use super::jpeg;
+use super::{exr, jpeg};
 use crate::sniff;
 use crate::stop::{STRIDE, Stoppable, go_on};
 
@@ -117,15 +117,15 @@ pub(crate) fn decode(bytes: &[u8], context: &dyn BuildContext) -> Result<Pixels,
     let room = (bytes.len() as u64).saturating_mul(MAX_BYTES.1).saturating_add(MAX_BYTES.0);
     limits.max_alloc = Some(room.min(MAX_ALLOC));
     reader.limits(limits);
-    let sound = || jpeg::sound(bytes, (MAX_SIDE, room.min(MAX_ALLOC)), context);
-    if name == "JPEG"
-        && let Some(picture) = sound()
-    {
-        return Pixels::new(picture).ok_or_else(|| "a JPEG picture without pixels".to_owned());
-    }
+    let most = (MAX_SIDE, room.min(MAX_ALLOC));
+    let sound = match format {
+        Some(ImageFormat::Jpeg) => jpeg::sound(bytes, most, context),
+        Some(ImageFormat::OpenExr) => exr::sound(bytes, most, context),
+        _ => None,
+    };
     go_on(context)?;
-    let picture = reader
-        .decode()
+    let picture = sound.map_or_else(|| reader.decode(), Ok);
+    let picture = picture
         .map_err(|error| format!("{} {name} picture {}", article(name), wrong(bytes, &error)))?;
     Pixels::new(picture).ok_or_else(|| format!("{} {name} picture without pixels", article(name)))
 }

@@ -118,6 +118,8 @@ pub(crate) mod testing {
         pub(crate) bytes: Arc<[u8]>,
         pub(crate) looks: Cell<usize>,
         pub(crate) most: usize,
+        /// Bytes that what was built said it holds.
+        pub(crate) held: Cell<usize>,
     }
 
     impl Patience {
@@ -126,7 +128,8 @@ pub(crate) mod testing {
         }
 
         pub(crate) fn of(most: usize) -> Self {
-            Self { bytes: Arc::default(), looks: Cell::new(0), most }
+            let (bytes, looks, held) = Default::default();
+            Self { bytes, looks, most, held }
         }
     }
 
@@ -144,6 +147,10 @@ pub(crate) mod testing {
         fn cancelled(&self) -> bool {
             self.looks.set(self.looks.get() + 1);
             self.looks.get() > self.most
+        }
+
+        fn holds(&self, bytes: usize) {
+            self.held.set(self.held.get() + bytes);
         }
     }
 

@@ -55,7 +55,9 @@ impl Build<Sky> for Environment<'_> {
         if odd > 0 {
             context.warn(&format!("{odd} values of the picture are negative or not finite"));
         }
-        Sky::new(pixels, context).map_err(fault)
+        let sky = Sky::new(pixels, context).map_err(fault)?;
+        context.holds(sky.pixels.bytes() + sky.bright.bytes());
+        Ok(sky)
     }
 }
 

@@ -215,6 +215,17 @@ impl Pixels {
         self.height
     }
 
+    /// Bytes of memory that it takes.
+    pub(crate) fn bytes(&self) -> usize {
+        let values = size_of_val(&*self.values);
+        values
+            + match &self.data {
+                Data::U8(numbers) => size_of_val(&**numbers),
+                Data::U16(numbers) => size_of_val(&**numbers),
+                Data::F32(numbers) => size_of_val(&**numbers),
+            }
+    }
+
     /// Whether the file holds whole numbers, which are sRGB by custom.
     pub(crate) fn is_integer(&self) -> bool {
         !matches!(self.data, Data::F32(_))

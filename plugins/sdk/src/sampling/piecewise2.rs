@@ -80,6 +80,11 @@ impl Piecewise2 {
         [self.rows[0].n_steps(), self.rows.len()]
     }
 
+    /// Bytes of memory that it takes.
+    pub fn bytes(&self) -> usize {
+        self.rows.iter().chain([&self.marginal]).map(Piecewise1::bytes).sum()
+    }
+
     /// The integral of the weights as a function over [0, 1)²: their mean.
     pub fn integral(&self) -> f64 {
         self.mean
@@ -117,6 +122,10 @@ mod tests {
     fn samples_follow_the_image() {
         let d = Piecewise2::new(&WEIGHTS, 4).unwrap();
         assert_eq!(d.size(), [4, 3]);
+        // Five bounds and five places in each row, four of both beside them.
+        let (f64s, u32s) = (3 * 5 + 4, 3 * 5 + 5);
+        let rows = 4 * size_of::<Piecewise1>();
+        assert_eq!(d.bytes(), 8 * f64s + 4 * u32s + rows);
         assert!((d.integral() - 8.0 / 12.0).abs() <= 4.0 * f64::EPSILON);
         let mut counts = Counts::new(12);
         let mut rng = Rng::new(24);

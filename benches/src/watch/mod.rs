@@ -1,5 +1,6 @@
 //! `luxel watch --preview`: from a save to what is seen of it, and what stays of many.
 
+mod browser;
 mod cancel;
 mod client;
 mod crowd;
@@ -55,6 +56,7 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
             "luxel render, {size}, 1 spp, whole process: median {median:.0} ms, least {min:.0}"
         );
     }
+    browser::run(luxel)?;
     let Some(python) = python.filter(|python| has_mitsuba(python)) else {
         println!("Mitsuba is not to be had (--python PATH of one that imports it)");
         return Ok(());

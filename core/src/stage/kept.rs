@@ -111,8 +111,6 @@ impl Kept for Shaped {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use luxel_sdk::kind::Kind;
 
     use super::*;
@@ -127,8 +125,8 @@ mod tests {
         };
         let asset = |value| Imported { nodes: vec![node(value)], placed: vec![], warnings: vec![] };
         let plain = held(&asset(ImportValue::Bool(true)));
-        let table = held(&asset(ImportValue::Table(Arc::from([1.0; 3000]))));
-        let bytes = held(&asset(ImportValue::Bytes("a.png".to_owned(), Arc::from([0; 777]))));
+        let table = held(&asset(ImportValue::Table(vec![1.0; 3000].into())));
+        let bytes = held(&asset(ImportValue::Bytes("a.png".to_owned(), vec![0; 777].into())));
         assert!(plain < 500 && table == plain + 24_000 && bytes == plain + 777);
     }
 }

@@ -67,8 +67,8 @@ const fn of_crates(name: &'static str, run: fn(&Plan) -> Result<(), String>) -> 
     Bench { name, runs_program: false, run }
 }
 
-/// The last five are not among `all`: they take long, or another program, or measure nothing new.
-const BENCHES: [Bench; 25] = [
+/// The last six are not among `all`: they take long, or another program, or measure nothing new.
+const BENCHES: [Bench; 26] = [
     of_crates("parse", |_| parse::run().and_then(|()| evaluate::run())),
     of_crates("evaluate", |_| evaluate::run()),
     of_crates("editor", |_| {
@@ -103,6 +103,7 @@ const BENCHES: [Bench; 25] = [
     of_program("lean", |plan| lean::run(plan.lean.as_deref())),
     of_program("tables", tables::run),
     of_program("soak", |plan| watch::soak(&plan.luxel)),
+    of_program("stages", |plan| watch::stages(&plan.luxel)),
     of_program("crowd", |plan| watch::crowd(&plan.luxel)),
     of_program("tables-short", tables::short),
     of_crates("leaks-long", |plan| {
@@ -122,7 +123,7 @@ fn usage() -> String {
 
 /// What is to be measured, and with which programs, as these words say.
 fn plan(mut words: impl Iterator<Item = String>) -> Result<(&'static [Bench], Plan), String> {
-    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 5).0;
+    const ALL: &[Bench] = BENCHES.split_at(BENCHES.len() - 6).0;
     let mut benches = ALL;
     let mut luxel = std::env::current_exe().ok().and_then(|me| Some(me.parent()?.join("luxel")));
     let (mut python, mut embree, mut lean, mut document) = (None, None, None, None);

@@ -98,7 +98,7 @@ impl Told<'_> {
             page.push_str("  none of the features below\n");
         }
         for feature in needed {
-            let cost = self.cost(feature, "the time without it");
+            let cost = self.cost(feature, without(feature));
             let cost = cost.map(|cost| format!(": {cost}"));
             page.extend(["  ", feature.name(), &cost.unwrap_or_default(), "\n"]);
             self.reasons(feature, &mut page);
@@ -153,11 +153,7 @@ impl Told<'_> {
             return feature.unrequirable().map(|_| "it cannot be required".to_owned());
         }
         let why = feature.dropped().err()?;
-        let nearest = match feature {
-            Feature::OpenSurfaces => OPEN_SURFACES,
-            _ => ALIKE,
-        };
-        Some(format!("it cannot be dropped ({why}); {nearest}"))
+        Some(format!("it cannot be dropped ({why}); {ALIKE}"))
     }
 
     fn object(&self) -> Value {
@@ -197,8 +193,14 @@ impl Told<'_> {
     }
 }
 
-/// What is said of surfaces that only bound a medium: without media none of them is left.
-const OPEN_SURFACES: &str = "what `media` costs includes it";
+/// What a cost is over. What cannot be dropped stands where it is, and its code alone is left out.
+fn without(feature: Feature) -> &'static str {
+    match feature {
+        Feature::OpenSurfaces => "the time if shadow rays did not look for them",
+        Feature::LightChoice => "the time if one light alone were looked for",
+        _ => "the time without it",
+    }
+}
 
 /// What is said where nothing of the scene itself can be measured.
 const ALIKE: &str =

@@ -1,10 +1,12 @@
 //! `luxel watch --preview`: from a save to what is seen of it, and what stays of many.
 
+mod browser;
 mod cancel;
 mod client;
 mod crowd;
 mod latency;
 mod soak;
+mod stages;
 mod subject;
 
 use std::path::Path;
@@ -18,6 +20,7 @@ use crowd::Crowd;
 use subject::{Kind, Subject, Way};
 
 pub(crate) use soak::run as soak;
+pub(crate) use stages::run as stages;
 
 const SIZE: [u32; 2] = [960, 540];
 /// Far more than are reached: every edit ends a render.
@@ -25,8 +28,8 @@ const SAMPLES: u32 = 4096;
 /// Whole processes of each kind.
 const RUNS: usize = 7;
 
-/// Prints latencies of every kind of edit, of the end of a render, and of beginning anew, here and
-/// with Mitsuba, where this Python has it.
+/// Prints latencies of every kind of edit, of the end of a render and of loads, and of beginning anew,
+/// here and with Mitsuba, where this Python has it.
 ///
 /// # Errors
 /// A program's words.
@@ -45,6 +48,7 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
     let ends = cancel::run(&subject)?;
     let [p50, p95, p99] = [50, 95, 99].map(|percent| ends.percentile(percent));
     println!("end of a render after it is asked (goal p99 10): {p50:.1} / {p95:.1} / {p99:.1} ms");
+    stages::run(luxel)?;
     for size in ["120x68", "960x540"] {
         let ms = cold(luxel, &subject.scene(), size)?;
         let (min, median) = (ms.min(), ms.median());
@@ -52,6 +56,7 @@ pub(crate) fn run(luxel: &Luxel, python: Option<&Path>) -> Result<(), String> {
             "luxel render, {size}, 1 spp, whole process: median {median:.0} ms, least {min:.0}"
         );
     }
+    browser::run(luxel)?;
     let Some(python) = python.filter(|python| has_mitsuba(python)) else {
         println!("Mitsuba is not to be had (--python PATH of one that imports it)");
         return Ok(());

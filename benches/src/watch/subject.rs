@@ -9,7 +9,7 @@ use crate::ply::grid;
 use crate::process::scratch;
 
 /// Vertices along each side of the large mesh: 2 · 708² = 1,002,528 triangles.
-const LARGE: u32 = 709;
+pub(super) const LARGE: u32 = 709;
 const SMALL: u32 = 33;
 /// Instead of the large one: 2 · 64² = 8,192 triangles, whose tree takes several threads.
 const MIDDLE: u32 = 65;

@@ -28,8 +28,8 @@ pub(crate) struct Price {
     pub(crate) ratio: [f64; 3],
 }
 
-/// The price of every feature that the scene requires and could do without, and of every other whose code
-/// could run for nothing.
+/// The price of every feature that the scene requires and could do without, or whose code could be left out,
+/// and of every other whose code could run for nothing.
 ///
 /// # Errors
 /// Ctrl-C; what building and rendering say.
@@ -47,7 +47,13 @@ pub(crate) fn prices(
     };
     let others: Vec<(Feature, Scene)> =
         Feature::ALL.into_iter().filter_map(|feature| changed(&base, stage, feature)).collect();
-    let built = others.iter().map(|(_, scene)| build(scene)).collect::<Result<Vec<Stage>, _>>()?;
+    let other = |(feature, scene): &(Feature, Scene)| {
+        let mut other = build(scene)?;
+        // Still modelled, as it cannot be dropped.
+        other.run_without(*feature);
+        Ok(other)
+    };
+    let built = others.iter().map(other).collect::<Result<Vec<Stage>, Failure>>()?;
     let all: Vec<Stage> = std::iter::once(build(&base)?).chain(built).collect();
     let times = timed(&mut Lab::new(run, file, 0), &all)?;
     let price = |(i, (feature, _)): (usize, &(Feature, Scene))| {
@@ -64,7 +70,7 @@ pub(crate) fn prices(
 fn changed(base: &Scene, stage: &Stage, feature: Feature) -> Option<(Feature, Scene)> {
     let mut scene = base.clone();
     let is_changed = if stage.needs(feature) {
-        scene.leave_out(feature).is_ok()
+        scene.leave_out(feature).is_ok() || stage.may_run_without(feature)
     } else {
         !stage.has(feature) && scene.require(feature).is_ok()
     };

@@ -44,7 +44,7 @@ impl Kept for Arc<Object> {
     }
 
     fn bytes(&self) -> usize {
-        self.bytes_read()
+        self.reads.bytes()
     }
 }
 

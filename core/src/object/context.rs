@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use luxel_sdk::params::BuildContext;
 
@@ -28,7 +28,7 @@ pub struct Reader<'a> {
     embedded: &'a Embedded,
     /// Tells when the work is not wanted any more.
     watch: Option<&'a Watch>,
-    reads: Mutex<Vec<Read>>,
+    reads: Mutex<Reads>,
     warnings: Mutex<Vec<String>>,
 }
 
@@ -48,7 +48,11 @@ impl<'a> Reader<'a> {
     /// What was read and warned of.
     pub fn finish(self) -> (Reads, Vec<String>) {
         let reads = self.reads.into_inner().unwrap_or_else(PoisonError::into_inner);
-        (Reads(reads), self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
+        (reads, self.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn reads(&self) -> MutexGuard<'_, Reads> {
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn read_path(&self, path: &Path) -> Result<Arc<[u8]>, String> {
@@ -57,24 +61,28 @@ impl<'a> Reader<'a> {
         let hash = result.as_ref().ok().and_then(|_| hash(path, self.files, self.embedded));
         let bytes = result.as_ref().map_or(0, |bytes| bytes.len());
         let read = Read { path: path.to_path_buf(), hash, bytes };
-        self.reads.lock().unwrap_or_else(PoisonError::into_inner).push(read);
+        self.reads().files.push(read);
         result.map_err(|error| format!("`{}`: {error}", path.display()))
     }
 }
 
-/// Files that were read, as they were then.
+/// Files that were read, as they were then, and what was made of them.
 #[derive(Debug, Default)]
-pub struct Reads(Vec<Read>);
+pub struct Reads {
+    files: Vec<Read>,
+    /// Bytes of memory that what was made of them keeps, if that was told.
+    held: Option<usize>,
+}
 
 impl Reads {
     /// Whether every file is still what it was.
     pub fn are_unchanged(&self, files: &dyn Files, embedded: &Embedded) -> bool {
-        self.0.iter().all(|read| hash(&read.path, files, embedded) == read.hash)
+        self.files.iter().all(|read| hash(&read.path, files, embedded) == read.hash)
     }
 
-    /// How many bytes that were.
+    /// How many bytes of memory are kept of it: as was told, or else as many as were read.
     pub fn bytes(&self) -> usize {
-        self.0.iter().map(|read| read.bytes).sum()
+        self.held.unwrap_or_else(|| self.files.iter().map(|read| read.bytes).sum())
     }
 }
 
@@ -99,5 +107,10 @@ impl BuildContext for Reader<'_> {
 
     fn cancelled(&self) -> bool {
         self.watch.is_some_and(Watch::is_cancelled)
+    }
+
+    fn holds(&self, bytes: usize) {
+        let held = &mut self.reads().held;
+        *held = Some(held.unwrap_or(0).saturating_add(bytes));
     }
 }

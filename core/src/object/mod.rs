@@ -117,11 +117,6 @@ impl Object {
         self.watch.as_ref()?.told()
     }
 
-    /// Bytes of what was read to build it: what was made of them, only its plugin knows.
-    fn bytes_read(&self) -> usize {
-        self.reads.bytes()
-    }
-
     /// Whether it may be used again: its class and those of its parts are still the registry's own,
     /// and none of them has failed.
     pub(crate) fn is_current(&self, registry: &Registry) -> bool {

@@ -113,7 +113,11 @@ struct Tabled<'a> {
 }
 
 impl Build<[f32; 512]> for Tabled<'_> {
-    fn build(&self, _context: &dyn BuildContext) -> Result<[f32; 512], Vec<Fault>> {
+    fn build(&self, context: &dyn BuildContext) -> Result<[f32; 512], Vec<Fault>> {
+        // In two parts, which add up.
+        for bytes in [1500, 548] {
+            context.holds(bytes);
+        }
         Ok([self.value; 512])
     }
 }
@@ -421,4 +425,27 @@ fn a_texture_is_asked_while_an_object_is_built() {
 
 fn number(x: f64) -> Value {
     Value::Number(x, Dimension::NONE)
+}
+
+#[test]
+fn what_an_object_holds_counts_against_what_is_kept() {
+    let mut world = World::new();
+    let [one, other] = [1.0, 2.0].map(|x| {
+        let value = Value::Number(x, Dimension::NONE);
+        world.node(Kind::Texture, "tabled", &[("value", value)])
+    });
+    let files = MemoryFiles::default();
+    let built = |id, before: &Objects| {
+        let World { registry, scene } = &world;
+        let mut builder = Builder::new(registry, scene, &files, ColorMode::Rgb, before);
+        builder.build(id).unwrap();
+        builder.objects
+    };
+    let first = built(one, &Objects::default());
+    // No file was read: its table has 512 numbers of 4 bytes.
+    let left = |most| {
+        let mut second = built(other, &first);
+        (second.inherit(&first, most), built(one, &second).made)
+    };
+    assert_eq!([2047, 2048, 9999].map(left), [(0, 1), (2048, 0), (2048, 0)]);
 }

@@ -80,6 +80,32 @@ impl Stage {
         self.of(self.features, feature)
     }
 
+    /// Whether the code of a feature that is modelled and cannot be dropped may be left out all the same,
+    /// to measure what that code takes: there is a wrong picture without it, but one that takes as long
+    /// in everything else.
+    pub fn may_run_without(&self, feature: Feature) -> bool {
+        match feature {
+            Feature::OpenSurfaces => self.needed.open_surfaces,
+            // In media it is not compiled apart, and of a lamp of triangles nothing would be looked for.
+            Feature::LightChoice => {
+                let Features { media, open_surfaces, nested, light_choice, .. } = self.needed;
+                light_choice && !(media || open_surfaces || nested) && self.lights.is_first_whole()
+            }
+            _ => false,
+        }
+    }
+
+    /// Leaves the code of such a feature out: shadow rays do not look for surfaces that only bound a
+    /// medium, or one light alone is looked for.
+    pub fn run_without(&mut self, feature: Feature) {
+        match feature {
+            _ if !self.may_run_without(feature) => {}
+            Feature::OpenSurfaces => self.features.open_surfaces = false,
+            Feature::LightChoice => self.features.light_choice = false,
+            _ => {}
+        }
+    }
+
     fn of(&self, features: Features, feature: Feature) -> bool {
         match feature {
             Feature::Spectral => self.mode == ColorMode::Spectral,

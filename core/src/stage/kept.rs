@@ -3,14 +3,14 @@
 use std::ops::Add;
 use std::sync::Arc;
 
-use luxel_sdk::kind::Imported;
+use luxel_sdk::kind::{ImportNode, ImportValue, Imported};
 
 use super::Geometry;
 use crate::object::{Kept, Object, Objects, Reads, Shelf};
 use crate::scene::Hash;
 
 /// Most bytes of what the last build has not used and that is kept all the same: trees and triangles,
-/// and of assets and other objects what was read for them.
+/// and what assets and other objects say that they hold, or what was read for them.
 const MOST: usize = 1 << 30;
 
 /// A shape's object, and what was made of it.
@@ -35,8 +35,22 @@ impl Kept for Arc<Brought> {
     }
 
     fn bytes(&self) -> usize {
-        self.reads.bytes()
+        held(&self.imported)
     }
+}
+
+/// Bytes of memory that an asset's nodes take, as far as they can be many: those of its file are gone.
+fn held(imported: &Imported) -> usize {
+    let many = |value: &ImportValue| match value {
+        ImportValue::Table(numbers) => size_of_val(&**numbers),
+        ImportValue::Bytes(_, bytes) => bytes.len(),
+        _ => 0,
+    };
+    let node = |node: &ImportNode| {
+        let values = node.params.iter().map(|(_, value)| many(value)).sum::<usize>();
+        size_of::<ImportNode>() + size_of_val(&*node.params) + values
+    };
+    imported.nodes.iter().map(node).sum::<usize>() + size_of_val(&*imported.placed)
 }
 
 /// Assets by the hash of the node that asks for them.
@@ -92,5 +106,27 @@ impl Kept for Shaped {
             Geometry::Analytic(_) => 0,
             Geometry::Mesh(mesh) => mesh.whole_bytes(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luxel_sdk::kind::Kind;
+
+    use super::*;
+
+    #[test]
+    fn an_asset_takes_what_its_tables_and_files_take() {
+        let node = |value| ImportNode {
+            kind: Kind::Shape,
+            class: "mesh".to_owned(),
+            label: String::new(),
+            params: vec![("points".into(), value)],
+        };
+        let asset = |value| Imported { nodes: vec![node(value)], placed: vec![], warnings: vec![] };
+        let plain = held(&asset(ImportValue::Bool(true)));
+        let table = held(&asset(ImportValue::Table(vec![1.0; 3000].into())));
+        let bytes = held(&asset(ImportValue::Bytes("a.png".to_owned(), vec![0; 777].into())));
+        assert!(plain < 500 && table == plain + 24_000 && bytes == plain + 777);
     }
 }

@@ -117,14 +117,15 @@ impl Lights {
 
     /// Whether there are several to choose from: sources, or triangles of a source.
     pub fn is_choice(&self) -> bool {
-        let single = |source: &LightSource| match source {
-            LightSource::Surface { triangles, .. } => triangles.is_none(),
-            LightSource::Free { .. } => true,
-        };
-        match self.sources.as_slice() {
-            [] => false,
-            [source] => !single(source),
-            _ => true,
+        self.sources.len() > 1 || !self.sources.is_empty() && !self.is_first_whole()
+    }
+
+    /// Whether there is a first one, in one piece.
+    pub(super) fn is_first_whole(&self) -> bool {
+        match self.sources.first() {
+            Some(LightSource::Surface { triangles, .. }) => triangles.is_none(),
+            Some(LightSource::Free { .. }) => true,
+            None => false,
         }
     }
 

@@ -8,8 +8,9 @@ use luxel_sdk::params::BuildContext;
 /// at most.
 pub(crate) const STRIDE: usize = 1 << 12;
 
-/// Bytes that are handed on between two looks.
-const PIECE: usize = 1 << 16;
+/// Bytes that are handed on between two looks: deflate packs at most 4 MB into them, a few milliseconds'
+/// work.
+const PIECE: usize = 1 << 12;
 
 const STOPPED: &str = "it is not wanted any more";
 
@@ -118,6 +119,8 @@ pub(crate) mod testing {
         pub(crate) bytes: Arc<[u8]>,
         pub(crate) looks: Cell<usize>,
         pub(crate) most: usize,
+        /// Bytes that what was built said it holds.
+        pub(crate) held: Cell<usize>,
     }
 
     impl Patience {
@@ -126,7 +129,8 @@ pub(crate) mod testing {
         }
 
         pub(crate) fn of(most: usize) -> Self {
-            Self { bytes: Arc::default(), looks: Cell::new(0), most }
+            let (bytes, looks, held) = Default::default();
+            Self { bytes, looks, most, held }
         }
     }
 
@@ -144,6 +148,10 @@ pub(crate) mod testing {
         fn cancelled(&self) -> bool {
             self.looks.set(self.looks.get() + 1);
             self.looks.get() > self.most
+        }
+
+        fn holds(&self, bytes: usize) {
+            self.held.set(self.held.get() + bytes);
         }
     }
 

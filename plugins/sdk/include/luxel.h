@@ -49,7 +49,7 @@ typedef struct { bool given; double value; } luxel_maybe_double;
 #define LUXEL_MAGIC 0x001a0d4c4558554cull
 #define LUXEL_ABI_MAJOR 1
 #define LUXEL_ABI_MINOR 0
-#define LUXEL_LAYOUT_HASH 0x32c405fd72001375ull
+#define LUXEL_LAYOUT_HASH 0xc7b095d31bf1f2fbull
 
 /* Kinds of plugin. */
 #define LUXEL_SHAPE 0
@@ -543,6 +543,8 @@ typedef struct {
     luxel_status (*read)(const void *at, luxel_text base, luxel_text path, luxel_byte_sink *sink);
     luxel_status (*warn)(const void *at, luxel_text message);
     luxel_status (*cancelled)(const void *at);
+    /* What is built keeps so many bytes more: of who never tells, the bytes that were read count. */
+    luxel_status (*holds)(const void *at, size_t bytes);
 } luxel_context_table;
 
 /* Paths that a picture is made of: what happens when one begins and when it arrives. */
@@ -1111,12 +1113,13 @@ LUXEL_CHECK(offsetof(luxel_import_sink, node) == 8, "luxel_import_sink.node");
 LUXEL_CHECK(offsetof(luxel_import_sink, value) == 16, "luxel_import_sink.value");
 LUXEL_CHECK(offsetof(luxel_import_sink, place) == 24, "luxel_import_sink.place");
 LUXEL_CHECK(offsetof(luxel_import_sink, warn) == 32, "luxel_import_sink.warn");
-LUXEL_CHECK(sizeof(luxel_context_table) == 32, "size of luxel_context_table");
+LUXEL_CHECK(sizeof(luxel_context_table) == 40, "size of luxel_context_table");
 LUXEL_CHECK(_Alignof(luxel_context_table) == 8, "alignment of luxel_context_table");
 LUXEL_CHECK(offsetof(luxel_context_table, size) == 0, "luxel_context_table.size");
 LUXEL_CHECK(offsetof(luxel_context_table, read) == 8, "luxel_context_table.read");
 LUXEL_CHECK(offsetof(luxel_context_table, warn) == 16, "luxel_context_table.warn");
 LUXEL_CHECK(offsetof(luxel_context_table, cancelled) == 24, "luxel_context_table.cancelled");
+LUXEL_CHECK(offsetof(luxel_context_table, holds) == 32, "luxel_context_table.holds");
 LUXEL_CHECK(sizeof(luxel_class) == 104, "size of luxel_class");
 LUXEL_CHECK(_Alignof(luxel_class) == 8, "alignment of luxel_class");
 LUXEL_CHECK(offsetof(luxel_class, kind) == 0, "luxel_class.kind");

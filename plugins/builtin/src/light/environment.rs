@@ -10,6 +10,7 @@ use luxel_sdk::params::{Build, BuildContext, Fault, File, Shared};
 use luxel_sdk::sampling::Piecewise2;
 
 use super::distant::{direction, equirectangular};
+use crate::stop::go_on;
 use crate::texture::{Pixels, Wrap, decode};
 
 /// A panorama around the scene, equirectangular, +Y up: the middle of the picture lies along −Z,
@@ -49,28 +50,32 @@ impl Build<Sky> for Environment<'_> {
         let fault = |message: String| vec![Fault::file("file", message)];
         let bytes = context.read(self.file.path.get()).map_err(fault)?;
         let mut pixels = decode(&bytes, context).map_err(fault)?;
-        pixels.decode_srgb(pixels.is_integer());
-        let odd = pixels.replace(|v| v >= 0.0);
+        pixels.decode_srgb(pixels.is_integer(), context).map_err(fault)?;
+        let odd = pixels.replace(|v| v >= 0.0, context).map_err(fault)?;
         if odd > 0 {
             context.warn(&format!("{odd} values of the picture are negative or not finite"));
         }
-        Sky::new(pixels).map_err(fault)
+        let sky = Sky::new(pixels, context).map_err(fault)?;
+        context.holds(sky.pixels.bytes() + sky.bright.bytes());
+        Ok(sky)
     }
 }
 
 impl Sky {
-    fn new(pixels: Pixels) -> Result<Self, String> {
+    fn new(pixels: Pixels, context: &dyn BuildContext) -> Result<Self, String> {
         let (width, height) = (pixels.width(), pixels.height());
         let mut weights = Vec::with_capacity(width * height);
         let mut solid = 0.0;
         for row in 0..height {
+            go_on(context)?;
             let sin = (PI * (row as f64 + 0.5) / height as f64).sin();
             solid += sin * width as f64;
             // Bilinear lookup reaches half a pixel beyond each: where its neighbours shine, a
             // black pixel may too, and needs a chance.
             weights.extend((0..width).map(|column| f64::from(reach(&pixels, column, row)) * sin));
         }
-        let bright = Piecewise2::new(&weights, width).map_err(|error| error.to_string())?;
+        let bright = Piecewise2::new_while(&weights, width, || !context.cancelled())
+            .map_err(|error| error.to_string())?;
         let total = bright.integral() * (width * height) as f64 / solid * 4.0 * PI;
         Ok(Self { pixels, bright, total })
     }
@@ -150,7 +155,7 @@ mod tests {
     use luxel_sdk::sampling::Rng;
 
     use super::*;
-    use crate::stop::testing::Patience;
+    use crate::stop::testing::{Patience, ends_wherever};
 
     /// A dim sky with one bright pixel at the left edge.
     fn sky() -> Sky {
@@ -160,12 +165,24 @@ mod tests {
         let mut out = std::io::Cursor::new(vec![]);
         let picture = image::DynamicImage::ImageRgb32F(picture);
         picture.write_to(&mut out, image::ImageFormat::OpenExr).unwrap();
-        Sky::new(decode(&out.into_inner(), &Patience::endless()).unwrap()).unwrap()
+        let endless = Patience::endless();
+        Sky::new(decode(&out.into_inner(), &endless).unwrap(), &endless).unwrap()
     }
 
     fn light(sky: &Sky, rotation: f64) -> Environment<'_> {
         let file = File { path: Text::new("sky.exr") };
         Environment { file, scale: 2.0, rotation, sky: Shared::new(sky) }
+    }
+
+    #[test]
+    fn a_sky_ends_soon_after_it_is_not_wanted_any_more() {
+        let picture = image::DynamicImage::ImageRgb8(image::RgbImage::new(96, 48));
+        let mut png = std::io::Cursor::new(vec![]);
+        picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
+        let png = png.into_inner();
+        let looks = ends_wherever(|it| Sky::new(decode(&png, &Patience::endless()).unwrap(), it));
+        // Each row is weighed, and measured, normed and kept.
+        assert!(looks >= 3 * 48, "{looks} looks");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Landscapes: a grid of heights, from a table or a picture.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
@@ -65,8 +66,8 @@ const MOST: usize = 1 << 24;
 const FARTHEST: f64 = 1e37;
 
 /// Heights in metres, row by row, and the length of a row; at least two each way.
-struct Grid {
-    heights: Vec<f64>,
+struct Grid<'a> {
+    heights: Cow<'a, [f64]>,
     columns: usize,
 }
 
@@ -87,8 +88,8 @@ impl Build<Arc<TriangleMesh>> for Heightfield<'_> {
     }
 }
 
-impl Heightfield<'_> {
-    fn of_table(&self) -> Result<Grid, Fault> {
+impl<'a> Heightfield<'a> {
+    fn of_table(&self) -> Result<Grid<'a>, Fault> {
         let heights = self.heights.get();
         let n = heights.len();
         let columns = if self.columns == 0 { n.isqrt() } else { self.columns as usize };
@@ -102,10 +103,14 @@ impl Heightfield<'_> {
                 format!("{n} heights in rows of {columns}: two full rows of two are least");
             return Err(Fault::mesh("heights", message));
         }
-        Ok(Grid { heights: heights.to_vec(), columns })
+        Ok(Grid { heights: heights.into(), columns })
     }
 
-    fn of_picture(&self, bytes: &[u8], context: &dyn BuildContext) -> Result<Grid, String> {
+    fn of_picture(
+        &self,
+        bytes: &[u8],
+        context: &dyn BuildContext,
+    ) -> Result<Grid<'static>, String> {
         let picture = decode(bytes, context)?;
         let (columns, rows) = (picture.width(), picture.height());
         if columns < 2 || rows < 2 {
@@ -115,12 +120,13 @@ impl Heightfield<'_> {
             return Err(format!("{columns} × {rows} pixels: a landscape takes at most {MOST}"));
         }
         let at = |i: usize| f64::from(picture.luminance(i % columns, i / columns)) * self.height;
-        Ok(Grid { heights: gather((0..columns * rows).map(at), context)?, columns })
+        let heights = gather((0..columns * rows).map(at), context)?;
+        Ok(Grid { heights: heights.into(), columns })
     }
 
     fn triangles(
         &self,
-        grid: &Grid,
+        grid: &Grid<'_>,
         field: &'static str,
         context: &dyn BuildContext,
     ) -> Result<TriangleMesh, Fault> {
@@ -131,7 +137,8 @@ impl Heightfield<'_> {
             let message = format!("{} heights: a landscape takes at most {MOST}", heights.len());
             return Err(Fault::mesh(field, message));
         }
-        if let Some(i) = heights.iter().position(|height| !(height.abs() <= FARTHEST)) {
+        let is_far = |height: &f64| !(height.abs() <= FARTHEST);
+        if let Some(i) = wanted(heights.iter(), context).position(is_far) {
             let (row, column) = (i / columns, i % columns);
             let message = format!("{:e} m in row {row}, column {column}: out of reach", heights[i]);
             return Err(Fault::mesh(field, message));
@@ -144,9 +151,8 @@ impl Heightfield<'_> {
             self.center + DVec3::new((x - 0.5) * self.width, *height, (z - 0.5) * self.depth)
         };
         let points = heights.iter().enumerate().map(point);
-        let points = gather(points, context).map_err(stopped)?;
-        let cells = grid.cells(rows, context).map_err(stopped)?;
-        let mut mesh = TriangleMesh::rebased(&points, cells);
+        let mut mesh = mesh::rebased(points, context).map_err(stopped)?;
+        mesh.indices = grid.cells(rows, context).map_err(stopped)?;
         // The middles of pixels, so that the same picture as a texture shows its own heights.
         let middle = |i: usize| Vec2::new((i % columns) as f32, (i / columns) as f32) + 0.5;
         let uv = |at: Vec2| at / Vec2::new(*columns as f32, rows as f32);
@@ -162,7 +168,7 @@ impl Heightfield<'_> {
     }
 }
 
-impl Grid {
+impl Grid<'_> {
     /// Two triangles for each cell, upwards, split along the flatter of its diagonals.
     ///
     /// # Errors
@@ -330,8 +336,8 @@ mod tests {
     fn a_landscape_ends_soon_after_it_is_not_wanted_any_more() {
         let heights: Vec<f64> = (0..40_000).map(f64::from).collect();
         let looks = ends_wherever(|patience| field(&heights, "").build(patience));
-        // Points, cells, coordinates and normals.
-        assert!(looks >= 4 * heights.len() / STRIDE, "{looks} looks");
+        // Heights, points twice, cells, coordinates and normals.
+        assert!(looks >= 6 * heights.len() / STRIDE, "{looks} looks");
     }
 
     #[test]

@@ -10,9 +10,9 @@ use luxel_sdk::Choice;
 use luxel_sdk::color::{RgbSpace, srgb_decode};
 use luxel_sdk::params::BuildContext;
 
-use super::jpeg;
+use super::{exr, jpeg};
 use crate::sniff;
-use crate::stop::{Stoppable, go_on};
+use crate::stop::{STRIDE, Stoppable, go_on};
 
 /// The largest side that is read, pixels.
 const MAX_SIDE: u32 = 1 << 16;
@@ -117,15 +117,15 @@ pub(crate) fn decode(bytes: &[u8], context: &dyn BuildContext) -> Result<Pixels,
     let room = (bytes.len() as u64).saturating_mul(MAX_BYTES.1).saturating_add(MAX_BYTES.0);
     limits.max_alloc = Some(room.min(MAX_ALLOC));
     reader.limits(limits);
-    let sound = || jpeg::sound(bytes, (MAX_SIDE, room.min(MAX_ALLOC)), context);
-    if name == "JPEG"
-        && let Some(picture) = sound()
-    {
-        return Pixels::new(picture).ok_or_else(|| "a JPEG picture without pixels".to_owned());
-    }
+    let most = (MAX_SIDE, room.min(MAX_ALLOC));
+    let sound = match format {
+        Some(ImageFormat::Jpeg) => jpeg::sound(bytes, most, context),
+        Some(ImageFormat::OpenExr) => exr::sound(bytes, most, context),
+        _ => None,
+    };
     go_on(context)?;
-    let picture = reader
-        .decode()
+    let picture = sound.map_or_else(|| reader.decode(), Ok);
+    let picture = picture
         .map_err(|error| format!("{} {name} picture {}", article(name), wrong(bytes, &error)))?;
     Pixels::new(picture).ok_or_else(|| format!("{} {name} picture without pixels", article(name)))
 }
@@ -176,8 +176,10 @@ fn is_cut(bytes: &[u8], error: &ImageError) -> bool {
 
 /// Whether a JPEG's last scan has an end: decoders fill up with grey what is missing.
 fn has_end(bytes: &[u8]) -> bool {
-    let last = |marker: u8| bytes.windows(2).rposition(|pair| pair == [0xff, marker]);
-    last(0xd9) > last(0xda)
+    let mut pairs = bytes.windows(2).rev();
+    // The last of either: in a picture that is whole it is among the last bytes.
+    let last = pairs.find(|pair| *pair == [0xff, 0xd9] || *pair == [0xff, 0xda]);
+    last == Some(&[0xff, 0xd9])
 }
 
 impl Pixels {
@@ -199,7 +201,7 @@ impl Pixels {
         };
         let weights = RgbSpace::LinearSrgb.luminance_weights().as_vec3();
         let mut pixels = Self { width, height, channels, data, values: vec![], weights };
-        pixels.decode_srgb(false);
+        pixels.values = pixels.table(false);
         (width > 0 && height > 0).then_some(pixels)
     }
 
@@ -213,41 +215,75 @@ impl Pixels {
         self.height
     }
 
+    /// Bytes of memory that it takes.
+    pub(crate) fn bytes(&self) -> usize {
+        let values = size_of_val(&*self.values);
+        values
+            + match &self.data {
+                Data::U8(numbers) => size_of_val(&**numbers),
+                Data::U16(numbers) => size_of_val(&**numbers),
+                Data::F32(numbers) => size_of_val(&**numbers),
+            }
+    }
+
     /// Whether the file holds whole numbers, which are sRGB by custom.
     pub(crate) fn is_integer(&self) -> bool {
         !matches!(self.data, Data::F32(_))
     }
 
+    /// What whole numbers stand for, as sRGB signals or linear; nothing for floats.
+    fn table(&self, srgb: bool) -> Vec<f32> {
+        let n = match &self.data {
+            Data::U8(_) => 1 << 8,
+            Data::U16(_) => 1 << 16,
+            Data::F32(_) => return vec![],
+        };
+        (0..n).map(|i| decoded(f64::from(i) / f64::from(n - 1), srgb)).collect()
+    }
+
     /// States whether colours are sRGB signals or linear; floats are decoded once and for all.
-    #[expect(clippy::cast_possible_truncation, reason = "rounds; a table of f32")]
-    pub(crate) fn decode_srgb(&mut self, srgb: bool) {
-        let value = |x: f64| if srgb { srgb_decode(x) as f32 } else { x as f32 };
-        let table = |n: u32| (0..n).map(|i| value(f64::from(i) / f64::from(n - 1))).collect();
-        match &mut self.data {
-            Data::U8(_) => self.values = table(1 << 8),
-            Data::U16(_) => self.values = table(1 << 16),
-            Data::F32(values) if srgb => {
-                let n_colours = if self.channels == 4 { 3 } else { self.channels };
-                for pixel in values.chunks_exact_mut(self.channels) {
-                    for v in &mut pixel[..n_colours] {
-                        *v = value(f64::from(*v));
-                    }
+    ///
+    /// # Errors
+    /// That the picture is not wanted any more.
+    pub(crate) fn decode_srgb(
+        &mut self,
+        srgb: bool,
+        context: &dyn BuildContext,
+    ) -> Result<(), String> {
+        self.values = self.table(srgb);
+        let (Data::F32(values), true) = (&mut self.data, srgb) else { return Ok(()) };
+        let n_colours = if self.channels == 4 { 3 } else { self.channels };
+        for piece in values.chunks_mut(STRIDE * self.channels) {
+            go_on(context)?;
+            for pixel in piece.chunks_exact_mut(self.channels) {
+                for v in &mut pixel[..n_colours] {
+                    *v = decoded(f64::from(*v), true);
                 }
             }
-            Data::F32(_) => {}
         }
+        Ok(())
     }
 
     /// Replaces floats that are not finite, or that fail `legal`, by 0 or the largest half float;
     /// says how many.
-    pub(crate) fn replace(&mut self, legal: impl Fn(f32) -> bool) -> usize {
-        let Data::F32(values) = &mut self.data else { return 0 };
+    ///
+    /// # Errors
+    /// That the picture is not wanted any more.
+    pub(crate) fn replace(
+        &mut self,
+        legal: impl Fn(f32) -> bool,
+        context: &dyn BuildContext,
+    ) -> Result<usize, String> {
+        let Data::F32(values) = &mut self.data else { return Ok(0) };
         let mut n = 0;
-        for v in values.iter_mut().filter(|v| !(v.is_finite() && legal(**v))) {
-            *v = if *v > 0.0 { LARGEST } else { 0.0 };
-            n += 1;
+        for piece in values.chunks_mut(STRIDE) {
+            go_on(context)?;
+            for v in piece.iter_mut().filter(|v| !(v.is_finite() && legal(**v))) {
+                *v = if *v > 0.0 { LARGEST } else { 0.0 };
+                n += 1;
+            }
         }
-        n
+        Ok(n)
     }
 
     fn colour(&self, i: usize) -> f32 {
@@ -313,12 +349,18 @@ impl Pixels {
     }
 }
 
+/// A number of a picture as light, which it is already or, as an sRGB signal, stands for.
+#[expect(clippy::cast_possible_truncation, reason = "rounds; pictures are of f32")]
+fn decoded(x: f64, srgb: bool) -> f32 {
+    if srgb { srgb_decode(x) as f32 } else { x as f32 }
+}
+
 #[cfg(test)]
 mod tests {
     use std::io::Cursor;
 
     use super::*;
-    use crate::stop::testing::Patience;
+    use crate::stop::testing::{Patience, ends_wherever};
 
     fn encoded(format: ImageFormat) -> Vec<u8> {
         let picture = ::image::Rgb32FImage::from_fn(17, 5, |x, y| {
@@ -423,11 +465,26 @@ mod tests {
         let whole = Patience::endless();
         decode(&png, &whole).unwrap();
         let looks = whole.looks.get();
-        assert!(looks >= png.len() >> 16, "{looks} looks while {} bytes are read", png.len());
+        assert!(looks >= png.len() >> 12, "{looks} looks while {} bytes are read", png.len());
         for most in [0, 1, looks / 2] {
             let patience = Patience::of(most);
             assert!(decode(&png, &patience).is_err());
             assert!(patience.looks.get() <= most + 2, "went on after {most} looks");
         }
+    }
+
+    #[test]
+    fn what_is_made_of_floats_ends_soon_after_it_is_not_wanted_any_more() {
+        let side = 160;
+        let picture = DynamicImage::ImageRgb32F(::image::Rgb32FImage::new(side, side));
+        let n_floats = 3 * (side * side) as usize;
+        let made = |patience: &Patience, work: fn(&mut Pixels, &Patience) -> Result<(), String>| {
+            work(&mut Pixels::new(picture.clone()).unwrap(), patience)
+        };
+        let looks = ends_wherever(|it| made(it, |pixels, it| pixels.decode_srgb(true, it)));
+        assert!(looks >= n_floats / (3 * STRIDE), "{looks} looks");
+        let legal = |pixels: &mut Pixels, it: &Patience| pixels.replace(|_| true, it).map(drop);
+        let looks = ends_wherever(|it| made(it, legal));
+        assert!(looks >= n_floats / STRIDE, "{looks} looks");
     }
 }

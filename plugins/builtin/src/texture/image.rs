@@ -92,15 +92,17 @@ impl Build<Pixels> for Image<'_> {
         let bytes = context.read(path).map_err(fault)?;
         let mut pixels =
             decode(&bytes, context).map_err(|message| fault(format!("{path}: {message}")))?;
-        pixels.decode_srgb(match self.space {
+        let srgb = match self.space {
             Space::Auto => pixels.is_integer(),
             Space::Srgb => true,
             Space::LinearSrgb | Space::Raw => false,
-        });
-        let odd = pixels.replace(|_| true);
+        };
+        pixels.decode_srgb(srgb, context).map_err(fault)?;
+        let odd = pixels.replace(|_| true, context).map_err(fault)?;
         if odd > 0 {
             context.warn(&format!("{odd} values of the picture are not finite"));
         }
+        context.holds(pixels.bytes());
         Ok(pixels)
     }
 }
@@ -210,6 +212,20 @@ mod tests {
         assert_eq!(alpha.output(), Output::Value);
         let luminance = texture(&pixels, Space::Auto, Channel::Luminance);
         assert!((luminance.eval(&at(0.75, 0.75)).lane(0) - 0.212_639).abs() < 1e-5);
+    }
+
+    #[test]
+    fn what_is_held_is_counted_as_it_is_decoded() {
+        let picture = image::RgbImage::new(300, 200);
+        let mut png = Cursor::new(vec![]);
+        picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
+        let png = png.into_inner();
+        assert!(png.len() < 10_000, "black packs well, but into {}", png.len());
+        let pixels = decode(&png, &Patience::endless()).unwrap();
+        let patience = Patience { bytes: png.into(), ..Patience::endless() };
+        texture(&pixels, Space::Auto, Channel::Rgb).build(&patience).unwrap();
+        // And what each of 256 values stands for.
+        assert_eq!(patience.held.get(), 300 * 200 * 3 + 256 * size_of::<f32>());
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod checker;
 mod decode;
+mod exr;
 mod image;
 mod jpeg;
 mod scale;

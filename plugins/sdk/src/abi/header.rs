@@ -186,7 +186,7 @@ const ALL: &[&[Layout]] =
 layouts! { TABLES {
     MeshSink => "luxel_mesh_sink" { take, owner }
     ImportSink => "luxel_import_sink" { owner, node, value, place, warn }
-    ContextTable => "luxel_context_table" { size, read, warn, cancelled }
+    ContextTable => "luxel_context_table" { size, read, warn, cancelled, holds }
     ClassTable => "luxel_class" {
         kind, size, name, doc, params, prepare, check, build, free, shared_offset, behaviour,
     }

@@ -302,6 +302,10 @@ pub trait BuildContext {
     fn cancelled(&self) -> bool {
         false
     }
+
+    /// Tells that what is built keeps so many bytes of memory, more than what was told before. By this is
+    /// judged what is kept for later; of who tells nothing, the bytes that were read count.
+    fn holds(&self, _bytes: usize) {}
 }
 
 /// How an object makes the table that its copies share: a decoded image, a mesh, a distribution.

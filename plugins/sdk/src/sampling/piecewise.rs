@@ -56,6 +56,11 @@ impl Piecewise1 {
         self.cdf.len() - 1
     }
 
+    /// Bytes of memory that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(&*self.cdf) + size_of_val(&*self.guide)
+    }
+
     /// The integral of the weights as a function over [0, 1): their mean.
     pub fn integral(&self) -> f64 {
         self.mean

@@ -36,28 +36,53 @@ impl Piecewise2 {
     /// If a side is zero, if the number of weights is not a multiple of `width`, or if a weight is
     /// negative, infinite or NaN.
     pub fn new(weights: &[f64], width: usize) -> Result<Self, WeightError> {
-        let largest = largest(weights)?;
-        if width == 0 {
+        Self::new_while(weights, width, || true)
+    }
+
+    /// The same, as long as it is wanted, which is asked before each row.
+    ///
+    /// # Errors
+    /// As `new`; that it is not wanted any more.
+    pub fn new_while(
+        weights: &[f64],
+        width: usize,
+        is_wanted: impl Fn() -> bool,
+    ) -> Result<Self, WeightError> {
+        if width == 0 || weights.is_empty() {
             return Err(WeightError::Empty);
         }
         if !weights.len().is_multiple_of(width) {
             return Err(WeightError::Size);
         }
-        let rows: Vec<_> =
-            weights.chunks_exact(width).map(Piecewise1::new).collect::<Result<_, _>>()?;
+        let rows = || {
+            weights.chunks_exact(width).enumerate().map(|(i, row)| {
+                if is_wanted() { Ok((i * width, row)) } else { Err(WeightError::Unwanted) }
+            })
+        };
+        let mut most: f64 = 0.0;
+        for row in rows() {
+            let (first, row) = row?;
+            most = most.max(largest(row).map_err(|error| error.after(first))?);
+        }
+        let along: Vec<_> =
+            rows().map(|row| Piecewise1::new(row?.1)).collect::<Result<_, WeightError>>()?;
         // In units of the largest weight, so that no row overflows.
-        let sums: Vec<_> = weights
-            .chunks_exact(width)
-            .map(|row| row.iter().map(|&w| relative(w, largest)).sum())
-            .collect();
+        let sum = |row: &[f64]| row.iter().map(|&w| relative(w, most)).sum();
+        let sums: Vec<f64> =
+            rows().map(|row| Ok(sum(row?.1))).collect::<Result<_, WeightError>>()?;
         let marginal = Piecewise1::new(&sums)?;
-        let mean = if largest > 0.0 { largest * (marginal.integral() / width as f64) } else { 0.0 };
-        Ok(Self { rows, marginal, mean })
+        let mean = if most > 0.0 { most * (marginal.integral() / width as f64) } else { 0.0 };
+        Ok(Self { rows: along, marginal, mean })
     }
 
     /// Columns and rows.
     pub fn size(&self) -> [usize; 2] {
         [self.rows[0].n_steps(), self.rows.len()]
+    }
+
+    /// Bytes of memory that it takes.
+    pub fn bytes(&self) -> usize {
+        self.rows.iter().chain([&self.marginal]).map(Piecewise1::bytes).sum()
     }
 
     /// The integral of the weights as a function over [0, 1)²: their mean.
@@ -97,6 +122,10 @@ mod tests {
     fn samples_follow_the_image() {
         let d = Piecewise2::new(&WEIGHTS, 4).unwrap();
         assert_eq!(d.size(), [4, 3]);
+        // Five bounds and five places in each row, four of both beside them.
+        let (f64s, u32s) = (3 * 5 + 4, 3 * 5 + 5);
+        let rows = 4 * size_of::<Piecewise1>();
+        assert_eq!(d.bytes(), 8 * f64s + 4 * u32s + rows);
         assert!((d.integral() - 8.0 / 12.0).abs() <= 4.0 * f64::EPSILON);
         let mut counts = Counts::new(12);
         let mut rng = Rng::new(24);
@@ -131,5 +160,20 @@ mod tests {
         assert_eq!(Piecewise2::new(&[1.0; 6], 0), Err(WeightError::Empty));
         assert_eq!(Piecewise2::new(&[], 1), Err(WeightError::Empty));
         assert_eq!(Piecewise2::new(&[1.0, -1.0], 1), Err(WeightError::Invalid(1)));
+        assert_eq!(Piecewise2::new(&[1.0, 1.0, 1.0, -1.0], 2), Err(WeightError::Invalid(3)));
+    }
+
+    #[test]
+    fn what_is_not_wanted_any_more_is_left_off_at_the_next_row() {
+        let made = |most: usize| {
+            let asked = std::cell::Cell::new(0);
+            let is_wanted = || asked.replace(asked.get() + 1) < most;
+            (Piecewise2::new_while(&WEIGHTS, 4, is_wanted), asked.get())
+        };
+        let (whole, asked) = made(usize::MAX);
+        assert_eq!((whole, asked), (Piecewise2::new(&WEIGHTS, 4), 9));
+        for most in 0..9 {
+            assert_eq!(made(most), (Err(WeightError::Unwanted), most + 1));
+        }
     }
 }

@@ -11,6 +11,8 @@ pub enum WeightError {
     Invalid(usize),
     /// An image's sides do not multiply to its number of weights, or a row has 2³² of them.
     Size,
+    /// It was not wanted any more before it was made.
+    Unwanted,
 }
 
 impl fmt::Display for WeightError {
@@ -19,11 +21,19 @@ impl fmt::Display for WeightError {
             Self::Empty => write!(f, "a distribution needs at least one weight"),
             Self::Invalid(i) => write!(f, "weight {i} is negative, infinite or not a number"),
             Self::Size => write!(f, "the number of weights fits neither its sides nor a row"),
+            Self::Unwanted => write!(f, "it is not wanted any more"),
         }
     }
 }
 
 impl std::error::Error for WeightError {}
+
+impl WeightError {
+    /// The same of weights before which so many stand.
+    pub(super) fn after(self, first: usize) -> Self {
+        if let Self::Invalid(i) = self { Self::Invalid(first + i) } else { self }
+    }
+}
 
 /// The largest weight, after checking all; 0 if all are zero.
 pub(super) fn largest(weights: &[f64]) -> Result<f64, WeightError> {

@@ -23,7 +23,7 @@ use self::assemble::Axes;
 use self::subdivide::Scheme;
 use super::up::Up;
 use crate::sniff;
-use crate::stop::go_on;
+use crate::stop::{go_on, wanted};
 
 /// What is done about shading normals.
 #[derive(Choice, Clone, Copy, Debug, PartialEq, Eq)]
@@ -312,6 +312,19 @@ impl Shape for Mesh<'_> {
     fn mesh(&self) -> Option<Arc<TriangleMesh>> {
         Some(Arc::clone(&self.table))
     }
+}
+
+/// A mesh of these points about the centre of their bounds, without a triangle yet.
+///
+/// # Errors
+/// A point that single precision does not reach. That it is not wanted any more.
+pub(super) fn rebased<I: Iterator<Item = DVec3> + Clone>(
+    points: I,
+    context: &dyn BuildContext,
+) -> Result<TriangleMesh, String> {
+    let mesh = Axes::METRES.rebase(wanted(points, context))?;
+    go_on(context)?;
+    Ok(mesh)
 }
 
 /// The box around all corners.

@@ -6,8 +6,8 @@ use glam::{DVec3, Vec2, Vec3};
 use luxel_sdk::kind::TriangleMesh;
 use luxel_sdk::params::BuildContext;
 
-use super::assemble::Axes;
-use crate::stop::{go_on, wanted};
+use super::rebased;
+use crate::stop::{gather, wanted};
 
 /// Most triangles that subdivision and displacement make: about a gigabyte while they are made.
 pub(super) const MOST_TRIANGLES: u64 = 1 << 23;
@@ -65,17 +65,22 @@ impl Net {
         }
         drop(known);
         let place = |corner: &usize| self.places[self.triangles[corner / 3][corner % 3] as usize];
-        let mesh = Axes::METRES.rebase(wanted(first.iter().map(place), context))?;
-        go_on(context)?;
-        let (uvs, normals) = (all(&first, &self.uvs), all(&first, &self.normals));
-        Ok(TriangleMesh { indices, uvs, normals, colors: all(&first, &self.colors), ..mesh })
+        let mesh = rebased(first.iter().map(place), context)?;
+        let uvs = all(&first, &self.uvs, context)?;
+        let normals = all(&first, &self.normals, context)?;
+        let colors = all(&first, &self.colors, context)?;
+        Ok(TriangleMesh { indices, uvs, normals, colors, ..mesh })
     }
 }
 
 /// The values of these corners, if there are any.
-fn all<T: Copy>(corners: &[usize], values: &[T]) -> Vec<T> {
+fn all<T: Copy>(
+    corners: &[usize],
+    values: &[T],
+    context: &dyn BuildContext,
+) -> Result<Vec<T>, String> {
     if values.is_empty() {
-        return vec![];
+        return Ok(vec![]);
     }
-    corners.iter().map(|i| values[*i]).collect()
+    gather(corners.iter().map(|i| values[*i]), context)
 }

@@ -27,5 +27,7 @@ typedef struct {
     luxel_status (*read)(const void *at, luxel_text base, luxel_text path, luxel_byte_sink *sink);
     luxel_status (*warn)(const void *at, luxel_text message);
     luxel_status (*cancelled)(const void *at);
+    /* What is built keeps so many bytes more: of who never tells, the bytes that were read count. */
+    luxel_status (*holds)(const void *at, size_t bytes);
 } luxel_context_table;
 

@@ -24,6 +24,8 @@ pub struct ContextTable {
     pub warn: unsafe extern "C" fn(at: *const u8, message: Text<'_>) -> Status,
     /// Whether the work is no longer wanted.
     pub cancelled: unsafe extern "C" fn(at: *const u8) -> Status,
+    /// Takes note that what is built keeps so many bytes more.
+    pub holds: unsafe extern "C" fn(at: *const u8, bytes: usize) -> Status,
 }
 
 /// What building may ask of the host, lent for one call.
@@ -35,7 +37,8 @@ pub struct ContextRef<'a> {
     lent: PhantomData<&'a ()>,
 }
 
-const TABLE: ContextTable = ContextTable { size: size_of::<ContextTable>(), read, warn, cancelled };
+const TABLE: ContextTable =
+    ContextTable { size: size_of::<ContextTable>(), read, warn, cancelled, holds };
 
 /// # Safety
 /// `at` is what `ContextRef::new` made.
@@ -99,6 +102,15 @@ unsafe extern "C" fn cancelled(at: *const u8) -> Status {
     guarded(|| if host.cancelled() { Status::OK } else { Status::NOTHING })
 }
 
+unsafe extern "C" fn holds(at: *const u8, bytes: usize) -> Status {
+    // SAFETY: the handle's own address.
+    let host = unsafe { host(at) };
+    guarded(|| {
+        host.holds(bytes);
+        Status::OK
+    })
+}
+
 impl<'a> ContextRef<'a> {
     /// Lends a context to a library.
     pub fn new(context: &'a &'a dyn BuildContext) -> Self {
@@ -141,6 +153,11 @@ impl BuildContext for ContextRef<'_> {
     fn cancelled(&self) -> bool {
         // SAFETY: as above.
         unsafe { (self.table.cancelled)(self.at) == Status::OK }
+    }
+
+    fn holds(&self, bytes: usize) {
+        // SAFETY: as above.
+        unsafe { (self.table.holds)(self.at, bytes) };
     }
 }
 

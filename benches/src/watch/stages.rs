@@ -1,0 +1,189 @@
+//! How long reading, decoding and building go on after they were given up.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use luxel_core::accel::Watch;
+use luxel_core::files::{FileError, Files, MemoryFiles};
+use luxel_core::registry::Registry;
+use luxel_core::scene::{Hash, Scene};
+use luxel_core::stage::build_watched;
+use luxel_sdk::sampling::Rng;
+
+use super::subject::LARGE;
+use crate::ply::grid;
+use crate::process::{Luxel, read, scratch, write};
+use crate::scene::{linked, scene_in};
+use crate::series::Series;
+
+/// Loads of each kind that are given up.
+const TIMES: usize = 60;
+/// Columns and rows of the pictures: as many pixels as 4096 × 2048.
+const SIDE: u32 = 2896;
+
+/// What every scene has.
+const HEAD: &str = "scene 1
+camera perspective { look = look_at(from = (0, 2, 3) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }
+film rgb { resolution = (64, 36) }
+";
+/// What the pictures show: noise, as each pixel has one sample.
+const SEEN: &str = "sampler independent { samples = 1 }
+light area { shape = shape sphere { center = (0, 3, 0) m, radius = 1 m }, radiance = 9 W/m^2/sr }
+light constant { radiance = 0.1 W/m^2/sr }
+shape sphere { center = (0, 0.5, 0) m, radius = 50 cm }
+shape rectangle { u = (9, 0, 0) m, v = (0, 0, -9) m }
+";
+const MESH: &str = "shape mesh { file = \"large.ply\", unit = 1 m }\n";
+const LAND: &str = "shape heightfield { width = 1 m, depth = 1 m, file = \"seen.png\" }\n";
+const PAINTED: &str = "shape rectangle { u = (4, 0, 0) m, v = (0, 0, -4) m, material = material \
+                       diffuse { reflectance = texture image { file = \"FILE\" } } }\n";
+const SKY: &str = "light environment { file = \"seen.exr\" }\n";
+
+/// In which part of a load it is given up.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    /// At any moment.
+    Any,
+    /// Before the tree of a mesh is begun.
+    Before,
+    /// While the tree is built.
+    Tree,
+}
+
+/// Files in memory whose hashes are known: reading and hashing are the disk's and are not measured.
+struct Held {
+    files: MemoryFiles,
+    hashes: BTreeMap<PathBuf, Hash>,
+}
+
+impl Held {
+    fn with(mut self, name: &str, bytes: Vec<u8>) -> Self {
+        self.files = self.files.with(name, bytes);
+        let hash = self.files.hash(Path::new(name)).expect("it has just been put there");
+        self.hashes.insert(name.into(), hash);
+        self
+    }
+}
+
+impl Files for Held {
+    fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
+        self.files.read(path)
+    }
+
+    fn hash(&self, path: &Path) -> Option<Hash> {
+        self.hashes.get(&self.canonical(path)).copied()
+    }
+
+    fn canonical(&self, path: &Path) -> PathBuf {
+        self.files.canonical(path)
+    }
+}
+
+/// Gives up loads of large files at moments drawn at random and prints, of each kind, the milliseconds
+/// from there to the end.
+///
+/// # Errors
+/// The program's words; what is wrong with a scene.
+pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
+    let files = Held { files: MemoryFiles::default(), hashes: BTreeMap::new() };
+    let files = files.with("large.ply", grid(LARGE));
+    let [exr, png] = pictures(luxel)?;
+    let files = files.with("seen.exr", exr).with("seen.png", png);
+    let painted = |name: &str| PAINTED.replace("FILE", name);
+    let n = 2 * (LARGE - 1) * (LARGE - 1);
+    println!("given up while loading, until it ends, p50 / p95 / p99 ms (goal p99 10)");
+    println!("pictures of {SIDE} x {SIDE} pixels; reading files and hashing them is left out");
+    let cases = [
+        (format!("PLY of {n} triangles, read"), MESH.to_owned(), Part::Before),
+        ("its tree, built".to_owned(), MESH.to_owned(), Part::Tree),
+        ("texture of a PNG, decoded".to_owned(), painted("seen.png"), Part::Any),
+        ("texture of an EXR, decoded".to_owned(), painted("seen.exr"), Part::Any),
+        ("environment of an EXR, decoded and weighed".to_owned(), SKY.to_owned(), Part::Any),
+        ("heightfield of a PNG, decoded and laid out".to_owned(), LAND.to_owned(), Part::Before),
+    ];
+    let registry = linked();
+    for (name, text, part) in cases {
+        let lit = if text == SKY { "" } else { "light constant { radiance = 1 W/m^2/sr }\n" };
+        let texts = MemoryFiles::default().with("a.scene", format!("{HEAD}{lit}{text}").as_bytes());
+        let scene = scene_in(&registry, &texts)?;
+        let load = Load { scene: &scene, registry: &registry, files: &files };
+        let whole = load.whole(part)?;
+        let ms = load.given_up(part, whole);
+        let [p50, p95, p99] = [50, 95, 99].map(|percent| ms.percentile(percent));
+        let times = format!("{p50:.1} / {p95:.1} / {p99:.1}");
+        println!("{name:<46}{TIMES:>4}{times:>24}  of {:.0}", whole.as_secs_f64() * 1e3);
+    }
+    Ok(())
+}
+
+/// A picture of this program's, as EXR and as PNG.
+fn pictures(luxel: &Luxel) -> Result<[Vec<u8>; 2], String> {
+    let scene = write("seen.scene", format!("{HEAD}{SEEN}").as_bytes())?;
+    luxel.render(&scene, SIDE, 1)?;
+    let of = |name: &str| read(&scratch()?.join(name));
+    Ok([of("picture.exr")?, of("picture.png")?])
+}
+
+/// What is loaded, again and again.
+struct Load<'a> {
+    scene: &'a Scene,
+    registry: &'a Registry,
+    files: &'a Held,
+}
+
+impl Load<'_> {
+    /// How long the part takes when nobody gives it up.
+    fn whole(&self, part: Part) -> Result<Duration, String> {
+        let watch = Watch::default();
+        std::thread::scope(|scope| {
+            let (began, load) = (Instant::now(), scope.spawn(|| self.load(&watch)));
+            let tree = if part == Part::Any { began } else { begun(&watch, || load.is_finished()) };
+            let (is_made, end) = load.join().expect("loading does not panic");
+            let took = match part {
+                Part::Any => end - began,
+                Part::Before => tree - began,
+                Part::Tree => end - tree,
+            };
+            is_made.then_some(took).ok_or_else(|| "a scene that cannot be built".to_owned())
+        })
+    }
+
+    /// Milliseconds from giving it up, at moments of the part, to its end. A load that was done before
+    /// does not count.
+    fn given_up(&self, part: Part, whole: Duration) -> Series {
+        let (mut rng, mut ms) = (Rng::new(4), vec![]);
+        while ms.len() < TIMES {
+            let watch = Watch::default();
+            let [asked, end] = std::thread::scope(|scope| {
+                let load = scope.spawn(|| self.load(&watch));
+                if part == Part::Tree {
+                    begun(&watch, || load.is_finished());
+                }
+                std::thread::sleep(whole.mul_f64(rng.f64()));
+                let asked = Instant::now();
+                watch.cancel();
+                [asked, load.join().expect("loading does not panic").1]
+            });
+            if end > asked {
+                ms.push((end - asked).as_secs_f64() * 1e3);
+            }
+        }
+        Series::from(ms)
+    }
+
+    /// Whether it is whole, and when it came to its end.
+    fn load(&self, watch: &Watch) -> (bool, Instant) {
+        let is_made = build_watched(self.scene, self.registry, self.files, None, watch).is_ok();
+        (is_made, Instant::now())
+    }
+}
+
+/// Waits until a tree is begun, or everything is over.
+fn begun(watch: &Watch, is_over: impl Fn() -> bool) -> Instant {
+    while watch.standing().total == 0 && !is_over() {
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    Instant::now()
+}

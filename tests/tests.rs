@@ -13,6 +13,9 @@ mod bad_input;
 #[cfg(test)]
 mod builder;
 #[cfg(test)]
+#[path = "../lang/tests/language/case.rs"]
+mod case;
+#[cfg(test)]
 mod cli;
 #[cfg(test)]
 mod coverage;
@@ -69,6 +72,8 @@ mod scenes;
 mod seeded;
 #[cfg(test)]
 mod solids;
+#[cfg(test)]
+mod stage_cases;
 #[cfg(test)]
 mod truths;
 #[cfg(test)]

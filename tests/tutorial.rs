@@ -12,7 +12,7 @@ use crate::disk::{root, text};
 use crate::load::registry;
 
 /// Each text of the tutorial with what stands behind `scene` at its head.
-fn texts(page: &str) -> Vec<(&str, &str)> {
+pub(crate) fn texts(page: &str) -> Vec<(&str, &str)> {
     let blocks = page.split("\n```scene ").skip(1);
     let blocks = blocks.map(|block| block.split_once("\n```").expect("a text ends").0);
     blocks.map(|block| block.split_once('\n').expect("a head has a line")).collect()

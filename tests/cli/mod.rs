@@ -30,6 +30,8 @@ pub(crate) mod program;
 mod resume;
 mod study;
 mod tev;
+#[cfg(test)]
+mod tutorial;
 mod verify;
 mod watch;
 

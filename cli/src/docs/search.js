@@ -5,13 +5,15 @@ const found = document.getElementById("found");
 const split = (text) => text.toLowerCase().split(/[^\p{L}\p{N}]+/u).filter(Boolean);
 
 // Whole words of a title count most, then parts of it, then whole words of the text by how much of it they
-// are, then parts of it. What stands under a heading comes before the page that holds it.
+// are, then parts of it. Of titles with the words the one with fewest others is first, so that a name leads to what
+// is called so; then what stands under a heading comes before the page that holds it.
 function rank(page, words) {
   const title = page.title.toLowerCase();
   const titled = split(page.title);
   const rest = (page.summary + " " + page.words).toLowerCase();
   const told = split(rest);
-  let sum = page.page.includes("#") ? 0.1 : 0;
+  const named = titled.filter((one) => words.includes(one)).length;
+  let sum = (page.page.includes("#") ? 0.1 : 0) + (named > 0 ? named / titled.length : 0);
   for (const word of words) {
     const often = told.filter((one) => one === word).length;
     if (titled.includes(word)) sum += 4;

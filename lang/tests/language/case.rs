@@ -1,34 +1,19 @@
-//! A case: a snippet with files beside it, how it is loaded, and what must be told of it.
+//! A case: a snippet with files beside it, and what must be told of it. Shared with the tests of what the
+//! stage tells, as a file that they take in.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 use std::path::Path;
 
 use luxel_core::diag::{Diagnostic, Severity, Sources};
 use luxel_core::files::MemoryFiles;
+use luxel_core::registry::Registry;
 use luxel_lang::{Loaded, Settings, load};
 
 use crate::fenced::{Fenced, SMALL};
-use crate::registry::registry;
 
 /// What `CAMERA` in a case stands for.
 const CAMERA: &str =
     "camera perspective { look = look_at(from = (0, 0, 5) m, to = (0, 0, 0) m, up = (0, 1, 0)) }";
-
-/// Every case: its name and its text.
-pub(crate) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
-    const CASES: [&str; 8] = [
-        include_str!("../cases/catalogue.txt"),
-        include_str!("../cases/syntax.txt"),
-        include_str!("../cases/names.txt"),
-        include_str!("../cases/habits.txt"),
-        include_str!("../cases/units.txt"),
-        include_str!("../cases/schema.txt"),
-        include_str!("../cases/plugins.txt"),
-        include_str!("../cases/expect.txt"),
-    ];
-    let parts = CASES.into_iter().flat_map(|file| file.split("\n--- ").skip(1));
-    parts.map(|part| part.split_once(" ---\n").expect("a case has a name"))
-}
 
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
@@ -69,13 +54,43 @@ impl Case {
         });
         Self { name, files: files.collect(), settings, expected }
     }
-
-    pub(crate) fn load(&self) -> Loaded {
-        let files = self.files.iter().fold(MemoryFiles::default(), |files, (path, bytes)| {
+    /// The snippet and what lies beside it.
+    pub(crate) fn fenced(&self) -> Fenced {
+        Fenced(self.files.iter().fold(MemoryFiles::default(), |files, (path, bytes)| {
             files.with(path, bytes.as_slice())
-        });
-        load(Path::new("case.scene"), &Fenced(files), &registry(), &self.settings)
+        }))
     }
+
+    /// The snippet, read with these classes.
+    pub(crate) fn load_with(&self, registry: &Registry) -> Loaded {
+        load(Path::new("case.scene"), &self.fenced(), registry, &self.settings)
+    }
+}
+
+/// Each case of a file: its name and its text.
+pub(crate) fn cases_of(file: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let parts = file.split("\n--- ").skip(1);
+    parts.map(|part| part.split_once(" ---\n").expect("a case has a name"))
+}
+
+/// What is wrong with what was told of a case; empty when it is as the case says.
+pub(crate) fn differences(case: &Case, mut told: Vec<(String, String)>) -> String {
+    let mut expected = case.expected.clone();
+    told.sort();
+    expected.sort();
+    let says = |told: &str, parts: &str| parts.split(" & ").all(|part| told.contains(part));
+    let alike = told.len() == expected.len()
+        && told.iter().zip(&expected).all(|(t, e)| t.0 == e.0 && says(&t.1, e.1));
+    if alike {
+        return String::new();
+    }
+    let (told, expected) = (show(&told), show(&expected));
+    format!("--- {} ---\n told:\n{told}\n expected:\n{expected}\n", case.name)
+}
+
+fn show<T: Display>(list: &[(String, T)]) -> String {
+    let lines: Vec<_> = list.iter().map(|(head, words)| format!("  // {head} {words}")).collect();
+    lines.join("\n")
 }
 
 /// The bytes of a text in which `\xFF` is the byte 255.

@@ -8,6 +8,13 @@ const given = process.argv.slice(2);
 const output = given[given.indexOf("-o") + 1];
 writeFileSync(`${output}.started`, JSON.stringify({ given, cwd: process.cwd() }));
 
+// Before anything is told: who is told may end it at once.
+process.on("SIGINT", () => {
+  if (mood === "stubborn") return;
+  console.error("watching has ended");
+  process.exit(0);
+});
+
 if (mood === "refuses") {
   console.error("error: no such scene");
   process.exit(1);
@@ -19,9 +26,4 @@ console.error(JSON.stringify({ severity: "error", message: "no camera", file: nu
 console.error(JSON.stringify({ severity: "warning", message: "not told" }));
 if (mood !== "slow") console.log(JSON.stringify({ png: `${output}.png`, complete: true }));
 console.log("no summary");
-process.on("SIGINT", () => {
-  if (mood === "stubborn") return;
-  console.error("watching has ended");
-  process.exit(0);
-});
 setInterval(() => {}, 1000);

@@ -142,19 +142,11 @@ impl PictureJob for PictureHost<'_> {
     }
 
     fn trace_n(&self, rays: &[Ray], out: &mut [Arrival]) {
-        let stage = self.stage;
-        pairs(rays, out).for_each_init(
-            || Rooms::of(stage),
-            |rooms, (rays, out)| Processor::widest().run(Arrive { stage, rooms, rays, out }),
-        );
+        trace_all(self.stage, rays, out);
     }
 
     fn occluded_n(&self, rays: &[Ray], out: &mut [bool]) {
-        let stage = self.stage;
-        pairs(rays, out).for_each_init(
-            || Rooms::of(stage),
-            |rooms, (rays, out)| Processor::widest().run(Occlude { stage, rooms, rays, out }),
-        );
+        trace_all(self.stage, rays, out);
     }
 
     fn run_camera_paths(&self, paths: PathsRef<'_>) {
@@ -244,71 +236,62 @@ impl PictureJob for PictureHost<'_> {
     }
 }
 
-/// Where each of some rays arrives, as `Wants::POSITION` says.
-struct Arrive<'a, 's> {
+/// Rays from anywhere when the shutter opens, which one thread traces, and what is found of each.
+struct Batch<'a, 's, T> {
     stage: &'s Stage,
     rooms: &'a mut Rooms,
     rays: &'a [Ray],
-    out: &'a mut [Arrival],
+    found: &'a mut [T],
 }
 
-impl Work for Arrive<'_, '_> {
+/// Traces rays on all threads, as many as there are places for what is found.
+fn trace_all<'s, T: Send>(stage: &'s Stage, rays: &[Ray], found: &mut [T])
+where
+    for<'a> Batch<'a, 's, T>: Work,
+{
+    let n = rays.len().min(found.len());
+    let pieces = rays[..n].par_chunks(RAYS).zip(found[..n].par_chunks_mut(RAYS));
+    pieces.for_each_init(
+        || Rooms::of(stage),
+        |rooms, (rays, found)| Processor::widest().run(Batch { stage, rooms, rays, found }),
+    );
+}
+
+/// Where each arrives, as `Wants::POSITION` says.
+impl Work for Batch<'_, '_, Arrival> {
     #[inline(always)]
     fn run(self, processor: Processor) {
-        let Self { stage, rooms, rays, out } = self;
+        let Self { stage, rooms, rays, found } = self;
         let stage = stage.opening();
-        let of = |ray: &Ray, steps| Arrival {
-            t: f64::INFINITY,
-            wo: -ray.d,
-            material: u32::MAX,
-            steps,
-            ..Arrival::default()
-        };
         stage.intersect_all(processor, asked(&stage, rays), rooms, |i, nearest, steps| {
-            let (ray, out) = (&rays[i], &mut out[i]);
-            *out = of(ray, steps);
+            let (ray, at) = (&rays[i], &mut found[i]);
+            let (t, wo, material) = (f64::INFINITY, -ray.d, u32::MAX);
+            *at = Arrival { t, wo, material, steps, ..Arrival::default() };
             let Some(nearest) = nearest else { return };
-            let Some(first) = stage.first(processor, ray, nearest, &mut out.steps) else { return };
+            let Some(first) = stage.first(processor, ray, nearest, &mut at.steps) else { return };
             let First { t, hit, surface } = first;
-            (out.kind, out.t) = (ArrivalKind::Surface, t);
-            (out.p, out.p_err, out.uv) = (surface.p, surface.p_err, surface.uv.as_vec2());
-            (out.ng, out.ns) = (surface.ng, surface.ns);
+            (at.kind, at.t) = (ArrivalKind::Surface, t);
+            (at.p, at.p_err, at.uv) = (surface.p, surface.p_err, surface.uv.as_vec2());
+            (at.ng, at.ns) = (surface.ng, surface.ns);
             if let Skin::Material(material) = stage.placements[hit.placement as usize].skin {
-                out.material = material;
+                at.material = material;
             }
         });
     }
 }
 
-/// Whether something stops each of some rays.
-struct Occlude<'a, 's> {
-    stage: &'s Stage,
-    rooms: &'a mut Rooms,
-    rays: &'a [Ray],
-    out: &'a mut [bool],
-}
-
-impl Work for Occlude<'_, '_> {
+/// Whether something stops each.
+impl Work for Batch<'_, '_, bool> {
     #[inline(always)]
     fn run(self, processor: Processor) {
-        let Self { stage, rooms, rays, out } = self;
-        stage.occluded_all(processor, asked(stage, rays), rooms, |i, is_hit| out[i] = is_hit);
+        let Self { stage, rooms, rays, found } = self;
+        stage.occluded_all(processor, asked(stage, rays), rooms, |i, is_hit| found[i] = is_hit);
     }
 }
 
-/// Rays from anywhere, when the shutter opens.
 fn asked<'a>(stage: &Stage, rays: &'a [Ray]) -> impl Iterator<Item = Asked<'a>> {
     let time = stage.film.time;
     rays.iter().map(move |ray| (ray, None, time))
-}
-
-/// What one thread takes at a time: rays, and as many places for what is found of them.
-fn pairs<'a, T: Send>(
-    rays: &'a [Ray],
-    out: &'a mut [T],
-) -> impl IndexedParallelIterator<Item = (&'a [Ray], &'a mut [T])> {
-    let n = rays.len().min(out.len());
-    rays[..n].par_chunks(RAYS).zip(out[..n].par_chunks_mut(RAYS))
 }
 
 #[cfg(test)]

@@ -156,17 +156,16 @@ mod tests {
 
     use super::*;
     use crate::stop::testing::{Patience, ends_wherever};
+    use crate::texture::testing::encoded;
 
     /// A dim sky with one bright pixel at the left edge.
     fn sky() -> Sky {
         let picture = image::Rgb32FImage::from_fn(16, 8, |x, y| {
             image::Rgb(if (x, y) == (0, 2) { [200.0; 3] } else { [1.0, 0.5, 0.0] })
         });
-        let mut out = std::io::Cursor::new(vec![]);
-        let picture = image::DynamicImage::ImageRgb32F(picture);
-        picture.write_to(&mut out, image::ImageFormat::OpenExr).unwrap();
+        let exr = encoded(picture, image::ImageFormat::OpenExr);
         let endless = Patience::endless();
-        Sky::new(decode(&out.into_inner(), &endless).unwrap(), &endless).unwrap()
+        Sky::new(decode(&exr, &endless).unwrap(), &endless).unwrap()
     }
 
     fn light(sky: &Sky, rotation: f64) -> Environment<'_> {
@@ -176,10 +175,7 @@ mod tests {
 
     #[test]
     fn a_sky_ends_soon_after_it_is_not_wanted_any_more() {
-        let picture = image::DynamicImage::ImageRgb8(image::RgbImage::new(96, 48));
-        let mut png = std::io::Cursor::new(vec![]);
-        picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
-        let png = png.into_inner();
+        let png = encoded(image::RgbImage::new(96, 48), image::ImageFormat::Png);
         let looks = ends_wherever(|it| Sky::new(decode(&png, &Patience::endless()).unwrap(), it));
         // Each row is weighed, and measured, normed and kept.
         assert!(looks >= 3 * 48, "{looks} looks");

@@ -246,7 +246,6 @@ impl Shape for Heightfield<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
     use std::sync::LazyLock;
 
     use luxel_sdk::params::Text;
@@ -254,6 +253,7 @@ mod tests {
     use super::*;
     use crate::stop::STRIDE;
     use crate::stop::testing::ends_wherever;
+    use crate::texture::testing::encoded;
 
     /// A file system with one file in it.
     struct One(Vec<u8>);
@@ -286,9 +286,8 @@ mod tests {
     fn build(field: &Heightfield<'_>) -> Result<Arc<TriangleMesh>, (&'static str, String)> {
         let raw = vec![0u16, 65535, 13107, 26214, 39321, 52428];
         let picture = ::image::ImageBuffer::<::image::Luma<u16>, _>::from_raw(3, 2, raw).unwrap();
-        let mut png = Cursor::new(vec![]);
-        ::image::DynamicImage::from(picture).write_to(&mut png, ::image::ImageFormat::Png).unwrap();
-        field.build(&One(png.into_inner())).map_err(|faults| {
+        let png = encoded(picture, ::image::ImageFormat::Png);
+        field.build(&One(png)).map_err(|faults| {
             assert_eq!(faults.len(), 1, "{faults:?}");
             (faults[0].field, faults[0].message.clone())
         })

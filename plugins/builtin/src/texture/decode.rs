@@ -357,10 +357,10 @@ fn decoded(x: f64, srgb: bool) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
 
     use super::*;
     use crate::stop::testing::{Patience, ends_wherever};
+    use crate::texture::testing;
 
     fn encoded(format: ImageFormat) -> Vec<u8> {
         let picture = ::image::Rgb32FImage::from_fn(17, 5, |x, y| {
@@ -373,9 +373,7 @@ mod tests {
             ImageFormat::Jpeg => DynamicImage::ImageRgb8(picture.to_rgb8()),
             _ => picture,
         };
-        let mut out = Cursor::new(vec![]);
-        picture.write_to(&mut out, format).unwrap();
-        out.into_inner()
+        testing::encoded(picture, format)
     }
 
     const FORMATS: [ImageFormat; 4] =
@@ -459,9 +457,7 @@ mod tests {
             noise.to_be_bytes()[0]
         };
         let picture = ::image::RgbImage::from_fn(512, 512, |_, _| [byte(), byte(), byte()].into());
-        let mut out = Cursor::new(vec![]);
-        picture.write_to(&mut out, ImageFormat::Png).unwrap();
-        let png = out.into_inner();
+        let png = testing::encoded(picture, ImageFormat::Png);
         let whole = Patience::endless();
         decode(&png, &whole).unwrap();
         let looks = whole.looks.get();

@@ -57,20 +57,17 @@ pub(super) fn sound(
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
-
     use ::image::ImageFormat;
     use luxel_sdk::sampling::Rng;
 
     use super::*;
     use crate::stop::testing::{Patience, ends_wherever};
+    use crate::texture::testing;
 
     const LARGE: (u32, u64) = (1 << 16, 1 << 30);
 
     fn encoded(picture: &DynamicImage) -> Vec<u8> {
-        let mut out = Cursor::new(vec![]);
-        picture.write_to(&mut out, ImageFormat::OpenExr).unwrap();
-        out.into_inner()
+        testing::encoded(picture.clone(), ImageFormat::OpenExr)
     }
 
     fn noise(width: u32, height: u32) -> Rgba32FImage {

@@ -148,7 +148,6 @@ impl Texture for Image<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
     use std::sync::Arc;
 
     use glam::DVec3;
@@ -157,6 +156,7 @@ mod tests {
 
     use super::*;
     use crate::stop::testing::Patience;
+    use crate::texture::testing::encoded;
 
     /// A file system with one file in it.
     struct One(Vec<u8>);
@@ -175,9 +175,7 @@ mod tests {
     fn files() -> One {
         let raw = vec![0, 0, 0, 255, 255, 0, 0, 255, 128, 128, 128, 128, 128, 128, 128, 128];
         let picture = image::RgbaImage::from_raw(2, 2, raw).unwrap();
-        let mut out = Cursor::new(vec![]);
-        picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
-        One(out.into_inner())
+        One(encoded(picture, image::ImageFormat::Png))
     }
 
     fn texture(pixels: &Pixels, space: Space, channel: Channel) -> Image<'_> {
@@ -217,9 +215,7 @@ mod tests {
     #[test]
     fn what_is_held_is_counted_as_it_is_decoded() {
         let picture = image::RgbImage::new(300, 200);
-        let mut png = Cursor::new(vec![]);
-        picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
-        let png = png.into_inner();
+        let png = encoded(picture, image::ImageFormat::Png);
         assert!(png.len() < 10_000, "black packs well, but into {}", png.len());
         let pixels = decode(&png, &Patience::endless()).unwrap();
         let patience = Patience { bytes: png.into(), ..Patience::endless() };

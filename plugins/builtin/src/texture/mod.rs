@@ -6,6 +6,8 @@ mod exr;
 mod image;
 mod jpeg;
 mod scale;
+#[cfg(test)]
+pub(crate) mod testing;
 mod vertex_color;
 
 pub(crate) use decode::{Pixels, Wrap, decode};

@@ -103,6 +103,11 @@ impl Sink {
         }
     }
 
+    /// Whether an error is kept whose code begins so.
+    pub(crate) fn tells(&self, code: &str) -> bool {
+        self.list.iter().any(|found| found.is_error() && found.code.starts_with(code))
+    }
+
     /// Whether nothing was told.
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty() && self.dropped == [0; 2]

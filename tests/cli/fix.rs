@@ -176,5 +176,5 @@ fn a_code_is_explained_with_an_example_and_its_mend() {
     let told: serde_json::Value = serde_json::from_str(&done.out).unwrap();
     assert_eq!(told["example"], "scene 1\nshape sphere { radus = 5 cm }\n");
     let done = folder.luxel(&["check", "a.scene"]);
-    assert!(done.err.ends_with("1 error; more: luxel explain E0401\n"), "{done:?}");
+    assert!(done.err.ends_with("2 errors; more: luxel explain E0401\n"), "{done:?}");
 }

@@ -209,7 +209,10 @@ impl Evaluator<'_> {
     ) {
         let value = self.eval(over, env);
         self.note(item, &value);
-        let Some(elements) = self.elements(value, over.span) else { return };
+        let Some(elements) = self.elements(value, over.span) else {
+            self.unseen.n_blocks += 1;
+            return;
+        };
         self.note_index(index, &elements);
         self.loops.push(item.span);
         let repeats = self.repeats;
@@ -244,6 +247,7 @@ impl Evaluator<'_> {
                 None => {
                     // Which arm would count is unknown: what is missing later may stand in one.
                     self.damaged = true;
+                    self.unseen.n_blocks += 1;
                     body.broken = true;
                     return;
                 }
@@ -289,14 +293,20 @@ impl Evaluator<'_> {
             && let crate::syntax::FnBody::Template(block) = &function.def.body
         {
             self.emits(call.span, body, &function.def.name.text);
-            let Some(inner) = self.bind(function, args, call.span, env) else { return };
+            let Some(inner) = self.bind(function, args, call.span, env) else {
+                self.unseen.n_blocks += 1;
+                return;
+            };
             self.block(block, &inner, &mut Body::new(Place::File));
             return;
         }
         let value = self.apply(&function, args, call.span, env);
         match value {
             Value::Object(_) if body.place != Place::Object => self.emit(&value, call.span),
-            Value::Poison => (self.damaged, body.broken) = (true, true),
+            Value::Poison => {
+                (self.damaged, body.broken) = (true, true);
+                self.unseen.n_blocks += 1;
+            }
             _ => {
                 let message = "this call gives a value that nothing uses";
                 self.tell(

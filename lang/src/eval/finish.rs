@@ -37,8 +37,9 @@ impl Evaluator<'_> {
 
     /// Tells what the scene lacks as a whole.
     pub(super) fn lacks(&mut self) {
-        let incomplete = self.damaged || self.stopped || self.sink.errors() > 0;
-        if !self.has_asset && self.scene.camera.is_none() && !incomplete {
+        let is_whole = !self.damaged && !self.stopped && self.sink.errors() == 0;
+        let is_missing = !self.has_asset && self.scene.camera.is_none();
+        if is_missing && (is_whole || !self.may_have_camera()) {
             let known: Vec<_> = self.registry.of_kind(Kind::Camera).map(|e| e.class.name).collect();
             self.tell(
                 Diagnostic::unplaced("E0409", "the scene has no camera")

@@ -41,6 +41,7 @@ impl Evaluator<'_> {
         };
         let Some((text, source)) = text else {
             self.damaged = true;
+            self.unseen.n_things += 1;
             return;
         };
         self.chain.push((canonical, None));
@@ -254,6 +255,7 @@ impl Evaluator<'_> {
     pub(super) fn include(&mut self, name: &Name, with: Vec<FieldValue>, env: &Env) {
         let Some((path, canonical, read)) = self.open(name, env) else {
             self.damaged = true;
+            self.unseen.n_things += 1;
             return;
         };
         let params: Vec<&Name> = params(&read.tree).collect();
@@ -287,7 +289,10 @@ impl Evaluator<'_> {
 
     /// `import "f" as n`: the file's names, and nothing that it emits.
     pub(super) fn import(&mut self, name: &Name, env: &Env) -> Value {
-        let Some((path, canonical, read)) = self.open(name, env) else { return Value::Poison };
+        let Some((path, canonical, read)) = self.open(name, env) else {
+            self.unseen.n_things += 1;
+            return Value::Poison;
+        };
         if let Some(module) = self.imported.get(&canonical) {
             return Value::Module(module.clone());
         }

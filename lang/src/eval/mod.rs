@@ -30,6 +30,7 @@ mod require;
 mod resolve;
 mod turns;
 mod unknown;
+mod unseen;
 pub(crate) mod types;
 mod value;
 
@@ -51,6 +52,7 @@ pub(crate) use self::resolve::resolve;
 use self::builtins::SpectrumFile;
 use self::emit::Labels;
 use self::include::ReadFile;
+use self::unseen::Unseen;
 use self::value::{Held, Module, Value};
 use crate::budgets::Budgets;
 use crate::sink::Sink;
@@ -131,6 +133,7 @@ struct Evaluator<'a> {
     has_asset: bool,
     /// Some statement could not be read: what is missing may stand there.
     damaged: bool,
+    unseen: Unseen,
     /// Objects that are right by themselves and stand nowhere: their place or their material is not known.
     orphans: Vec<NodeId>,
     /// Plugins that the scene asks for and that are not there.
@@ -197,6 +200,7 @@ impl<'a> Evaluator<'a> {
             slots: vec![],
             has_asset: false,
             damaged: false,
+            unseen: Unseen::default(),
             orphans: vec![],
             n_unmet: 0,
             params: vec![],

@@ -13,6 +13,7 @@ use luxel_sdk::params::{Param, Type};
 use super::elsewhere::meant;
 use super::env::Env;
 use super::exec::{Body, Place};
+use super::unseen::is_slip;
 use super::value::{FieldValue, Head, ObjectValue, Value, What};
 use super::{Evaluator, OpenGroup};
 use crate::syntax::{Name, Object};
@@ -80,9 +81,12 @@ impl Evaluator<'_> {
         let category = &object.category;
         let Some(kind) = Kind::of_word(&category.text) else {
             let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
+            let meant = near(&category.text, words().chain(["units"]));
+            let is_other = meant.is_some_and(|meant| !is_slip(meant.name));
+            self.unseen.n_things += usize::from(!is_other);
             let message = format!("there is no kind of object `{}`", category.text);
-            let found = Diagnostic::error("E0401", category.span, message)
-                .meant(category.span, near(&category.text, words().chain(["units"])));
+            let found =
+                Diagnostic::error("E0401", category.span, message).meant(category.span, meant);
             let kinds = Kind::ALL.iter().filter(|(kind, _)| {
                 let name = category.text.to_lowercase();
                 self.registry.class(*kind, &name).is_some() && object.kind.is_none()

@@ -68,8 +68,8 @@ fn every_case_tells_exactly_its_mistakes() {
 
 /// What the mends of a case leave wrong; empty when each does what it is for.
 ///
-/// A mend takes its mistake away and brings none but that a scene without any mistake is asked for
-/// its camera.
+/// A mend takes its mistake away and brings none but that a scene of which all was read is asked
+/// for its camera.
 fn check_mends(case: &Case) -> String {
     let before = load(case);
     let told = |found: &[Diagnostic]| -> Vec<(&'static str, String)> {

@@ -50,7 +50,7 @@ fn brackets_nest_up_to_the_limit_and_no_further() {
     let worst = nested("(1 == 1..2 + 3 * -2 ^ -", ")", 128);
     assert!(!codes(&worst).is_empty());
     let objects = nested("material coated { base = ", " }", 128);
-    assert_eq!(codes(&objects), ["E0214"]);
+    assert_eq!(codes(&objects), ["E0214", "E0409"]);
     let groups = format!("{} {}", "group { ".repeat(128), "}".repeat(128));
     assert_eq!(codes(&groups), ["E0409"]);
     let ifs = nested("if true { ", " } else { 2 }", 128);
@@ -240,7 +240,7 @@ fn bytes_that_are_no_text_are_told_of() {
     let marked = b"\xEF\xBB\xBFscene 1\nlet abc = def".to_vec();
     let found: Vec<_> =
         load_bytes(marked, Budgets::default()).diagnostics.iter().map(|d| d.code).collect();
-    assert_eq!(found, ["E0004", "E0101"]);
+    assert_eq!(found, ["E0004", "E0101", "E0409"]);
 }
 
 #[test]

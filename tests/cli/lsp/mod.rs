@@ -87,7 +87,7 @@ fn a_file_that_no_other_reads_any_more_is_a_scene_of_its_own() {
     client.open(&lib, "scene 1\nshape sphere { radius = 5 }\n");
     client.until(&lib, &["E0201"]);
     client.edit(&main, 2, json!({ "start": at(9, 0), "end": at(10, 0) }), "");
-    assert_eq!(codes(&client.told(&lib)), ["E0201"]);
+    assert_eq!(codes(&client.told(&lib)), ["E0201", "E0409"]);
 }
 
 #[test]

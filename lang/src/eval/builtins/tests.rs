@@ -17,7 +17,7 @@ fn evaluated(expression: &str) -> (Option<String>, Vec<Diagnostic>) {
         .with("leaf.csv", "nm, lower, upper\n400, 0.05, 0.04\n700, 0.4, 0.5\n".as_bytes());
     let settings = Settings { noting: true, ..Settings::default() };
     let mut loaded = crate::load(Path::new("example.scene"), &files, &Registry::new(), &settings);
-    // A scene without a camera is told so, when nothing else is wrong with it.
+    // A scene without a camera is told so.
     loaded.diagnostics.retain(|found| found.code != "E0409");
     (loaded.values.all().into_values().next().map(str::to_owned), loaded.diagnostics)
 }

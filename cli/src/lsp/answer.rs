@@ -33,7 +33,6 @@ pub(super) fn answer(
         "textDocument/references" => Ok(server.references(&server.at(params)?, params)),
         "textDocument/prepareRename" => server.prepare_rename(&server.at(params)?),
         "textDocument/rename" => server.rename(&server.at(params)?, params),
-        "textDocument/documentSymbol" => server.symbols(params, stop),
         "textDocument/foldingRange" => server.folding(params, stop),
         "textDocument/semanticTokens/full" | "textDocument/semanticTokens/range" => {
             server.tokens(params, stop)

@@ -2,6 +2,7 @@
 //! standard input and output.
 //!
 //! Three threads: one reads messages and cancels requests that wait, one answers, one evaluates.
+//! Outlines, which may be long, are put into words in threads of their own.
 
 mod actions;
 mod answer;
@@ -11,6 +12,7 @@ mod format;
 mod judge;
 mod lists;
 mod names;
+mod outline;
 mod publish;
 mod queue;
 mod server;

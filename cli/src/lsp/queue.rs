@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use serde_json::Value;
 
 use super::judge::Verdict;
-use super::wire::{Code, Refusal, respond};
+use super::wire::{Code, Refusal, refuse};
 
 /// Something that happened.
 pub(super) enum Event {
@@ -31,8 +31,8 @@ pub(super) struct Queue {
 #[derive(Default)]
 struct State {
     events: VecDeque<Event>,
-    /// The request that is being answered, and whether it was cancelled.
-    current: Option<(Value, Arc<AtomicBool>)>,
+    /// Requests that are being answered, and whether they were cancelled.
+    current: Vec<(Value, Arc<AtomicBool>)>,
 }
 
 impl Queue {
@@ -54,7 +54,7 @@ impl Queue {
 
     fn cancel(&self, id: &Value) {
         let mut state = self.lock();
-        if let Some((_, cancelled)) = state.current.as_ref().filter(|(current, _)| current == id) {
+        for (_, cancelled) in state.current.iter().filter(|(current, _)| current == id) {
             cancelled.store(true, Ordering::Relaxed);
         }
         let is_it = |event: &Event| match event {
@@ -68,7 +68,7 @@ impl Queue {
         drop(state);
         let refusal = Refusal::new(Code::Cancelled, "the request was cancelled");
         // A client that cannot be told has gone, which the next event says.
-        let _ = respond(id, Err(refusal));
+        let _ = refuse(id, refusal);
     }
 
     /// Waits for the next event.
@@ -82,15 +82,18 @@ impl Queue {
         }
     }
 
-    /// Says which request is being answered; gives what tells that it was cancelled.
+    /// Says that a request is being answered; gives what tells that it was cancelled.
     pub(super) fn begin(&self, id: &Value) -> Arc<AtomicBool> {
         let cancelled = Arc::new(AtomicBool::new(false));
-        self.lock().current = Some((id.clone(), cancelled.clone()));
+        self.lock().current.push((id.clone(), cancelled.clone()));
         cancelled
     }
 
     /// Says that it is answered.
-    pub(super) fn end(&self) {
-        self.lock().current = None;
+    pub(super) fn end(&self, id: &Value) {
+        let mut state = self.lock();
+        if let Some(at) = state.current.iter().position(|(current, _)| current == id) {
+            state.current.remove(at);
+        }
     }
 }

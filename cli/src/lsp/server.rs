@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use luxel_lang::editor::{Document, Project, reached};
 use serde_json::{Value, json};
@@ -11,8 +12,10 @@ use super::Limits;
 use super::convert::{Encoding, path_of};
 use super::files::{Open, Opened};
 use super::judge::{Job, Judge, Judged, Verdict};
+use super::outline::{Asked, Outlines};
 use super::queue::Queue;
 use super::shape::LEGEND;
+use super::wire::Refusal;
 use crate::exit::{Failure, blaming};
 use crate::libraries::Plugins;
 
@@ -25,6 +28,7 @@ pub(super) struct Server {
     pub(super) plugins: Arc<Plugins>,
     pub(super) encoding: Encoding,
     pub(super) client: Client,
+    pub(super) outlines: Outlines,
     judge: Judge,
     /// Counts the edits.
     serial: u64,
@@ -53,6 +57,7 @@ impl Server {
             plugins,
             encoding: Encoding::Utf16,
             client: Client::default(),
+            outlines: Outlines::default(),
             serial: 0,
             pending: BTreeMap::new(),
             judged: BTreeMap::new(),
@@ -159,6 +164,7 @@ impl Server {
 
     fn change(&mut self, path: &Path, params: &Value) -> Result<(), Failure> {
         let (encoding, budgets) = (self.encoding, *self.files.budgets());
+        self.outlines.give_up(path);
         let Some(open) = self.files.open.get_mut(path) else { return Ok(()) };
         let document = Arc::make_mut(&mut open.document);
         let mut broken = Ok(());
@@ -183,6 +189,23 @@ impl Server {
         }
         self.changed(path, false)?;
         broken
+    }
+
+    /// Begins to answer with the outline of a file.
+    ///
+    /// # Errors
+    /// If the file is not open, or there is no thread for it.
+    pub(super) fn outline(
+        &mut self,
+        id: &Value,
+        params: &Value,
+        cancelled: Arc<AtomicBool>,
+        queue: &Arc<Queue>,
+    ) -> Result<(), Refusal> {
+        let (path, document) = self.asked(params)?;
+        let (uri, id, queue) = (self.uri(&path), id.clone(), queue.clone());
+        let (encoding, is_tree) = (self.encoding, self.client.trees);
+        self.outlines.begin(Asked { id, path, uri, document, encoding, is_tree, cancelled, queue })
     }
 
     /// Tells what is wrong with a file at once, and has the scenes that read it evaluated.

@@ -9,7 +9,7 @@ use super::Limits;
 use super::answer;
 use super::queue::{Event, Queue};
 use super::server::Server;
-use super::wire::{Code, Refusal, respond};
+use super::wire::{Code, Refusal, refuse, respond};
 use crate::exit::{Exit, Failure, blaming};
 use crate::libraries::Plugins;
 
@@ -43,7 +43,7 @@ impl Session {
                         return Ok(exit);
                     }
                 }
-                Event::Malformed(refusal) => respond(&Value::Null, Err(refusal))?,
+                Event::Malformed(refusal) => refuse(&Value::Null, refusal)?,
                 Event::Judged(verdict) => {
                     let told = blaming("", || self.server.judged(verdict));
                     told.and_then(|told| told).or_else(only_broken)?;
@@ -58,7 +58,7 @@ impl Session {
     fn message(&mut self, message: &Value) -> Result<Option<Exit>, Failure> {
         let id = message.get("id").filter(|id| id.is_string() || id.is_i64() || id.is_u64());
         let shown = id.cloned().unwrap_or(Value::Null);
-        let invalid = |why: &str| respond(&shown, Err(Refusal::new(Code::InvalidRequest, why)));
+        let invalid = |why: &str| refuse(&shown, Refusal::new(Code::InvalidRequest, why));
         if !message.is_object() {
             invalid("a message is an object; there are no batches")?;
             return Ok(None);
@@ -91,6 +91,13 @@ impl Session {
 
     fn request(&mut self, id: &Value, method: &str, params: &Value) -> Result<(), Failure> {
         let cancelled = self.queue.begin(id);
+        if (self.stage, method) == (Stage::Running, "textDocument/documentSymbol") {
+            self.server.begin();
+            return self.server.outline(id, params, cancelled, &self.queue).or_else(|refusal| {
+                self.queue.end(id);
+                refuse(id, refusal)
+            });
+        }
         let stop = || cancelled.load(Ordering::Relaxed);
         let answer = match (self.stage, method) {
             (Stage::New, "initialize") => {
@@ -105,6 +112,7 @@ impl Session {
             }
             (Stage::Running, "shutdown") => {
                 self.stage = Stage::ShutDown;
+                self.server.outlines.end();
                 Ok(Value::Null)
             }
             (Stage::ShutDown, _) => {
@@ -117,7 +125,7 @@ impl Session {
                     .unwrap_or_else(|failure| Err(Refusal::new(Code::Internal, failure.message)))
             }
         };
-        self.queue.end();
+        self.queue.end(id);
         let late = stop() && self.stage == Stage::Running;
         let cancelled = || Err(Refusal::new(Code::Cancelled, "the request was cancelled"));
         respond(id, if late { cancelled() } else { answer })

@@ -1,10 +1,8 @@
-//! What a file looks like: its outline, folds, colours of tokens and colours themselves.
+//! What a file looks like: its folds, colours of tokens and colours themselves.
 
 use std::ops::Range;
 
-use luxel_lang::editor::{
-    self, Colour, Coloured, Document, Entry, EntryKind, coloured, folds, outline, swatches,
-};
+use luxel_lang::editor::{self, Colour, Coloured, Document, coloured, folds, swatches};
 use serde_json::{Value, json};
 
 use super::server::Server;
@@ -49,50 +47,6 @@ fn index(colour: Colour) -> usize {
 }
 
 impl Server {
-    pub(super) fn symbols(
-        &self,
-        params: &Value,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<Value, Refusal> {
-        let (path, document) = self.asked(params)?;
-        let entries = outline(&document, stop);
-        // Putting them into words takes longer than finding them; what was made by then is not sent.
-        let wanted = entries.iter().take_while(|_| !stop());
-        if self.client.trees {
-            return Ok(wanted.map(|entry| self.symbol(entry, &document)).collect());
-        }
-        let mut out = vec![];
-        let uri = self.uri(&path);
-        for entry in wanted {
-            self.flat(entry, &document, &uri, &mut out);
-        }
-        Ok(Value::Array(out))
-    }
-
-    fn symbol(&self, entry: &Entry, document: &Document) -> Value {
-        let children = entry.children.iter().map(|child| self.symbol(child, document));
-        json!({
-            "name": entry.name,
-            "detail": entry.detail,
-            "kind": kind(entry.kind),
-            "range": self.encoding.range(document, &entry.range),
-            "selectionRange": self.encoding.range(document, &entry.selection),
-            "children": children.collect::<Vec<_>>(),
-        })
-    }
-
-    fn flat(&self, entry: &Entry, document: &Document, uri: &str, out: &mut Vec<Value>) {
-        let range = self.encoding.range(document, &entry.range);
-        out.push(json!({
-            "name": entry.name,
-            "kind": kind(entry.kind),
-            "location": { "uri": uri, "range": range },
-        }));
-        for child in &entry.children {
-            self.flat(child, document, uri, out);
-        }
-    }
-
     pub(super) fn folding(
         &self,
         params: &Value,
@@ -176,15 +130,4 @@ fn lines(document: &Document, token: &Coloured) -> Vec<Range<usize>> {
         whole.start.max(token.range.start)..whole.end.min(token.range.end)
     };
     (first..=last).map(part).filter(|part| part.start < part.end).collect()
-}
-
-fn kind(kind: EntryKind) -> u8 {
-    match kind {
-        EntryKind::Name => 13,
-        EntryKind::Param => 14,
-        EntryKind::Function => 12,
-        EntryKind::File => 1,
-        EntryKind::Object => 19,
-        EntryKind::Block => 3,
-    }
 }

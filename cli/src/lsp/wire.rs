@@ -2,6 +2,7 @@
 
 use std::io::{self, BufRead, Read};
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::queue::{Event, Queue};
@@ -25,6 +26,7 @@ pub(super) enum Code {
     NotInitialized = -32002,
     RequestFailed = -32803,
     Cancelled = -32800,
+    ContentModified = -32801,
 }
 
 /// Why a request is not answered with a result.
@@ -114,24 +116,40 @@ fn message(input: &mut impl BufRead) -> io::Result<Option<Result<Vec<u8>, String
 ///
 /// # Errors
 /// If standard output cannot be written.
-pub(super) fn send(message: &Value) -> Result<(), Failure> {
-    let text = message.to_string();
+pub(super) fn send(message: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string(message).expect("messages have keys that are text");
     report::out(&format!("Content-Length: {}\r\n\r\n{text}", text.len()))
+}
+
+/// An answer that is no error.
+#[derive(Serialize)]
+struct Answer<'a, T> {
+    jsonrpc: &'static str,
+    id: &'a Value,
+    result: T,
 }
 
 /// Answers a request.
 ///
 /// # Errors
 /// As `send`.
-pub(super) fn respond(id: &Value, answer: Result<Value, Refusal>) -> Result<(), Failure> {
-    send(&match answer {
-        Ok(result) => json!({ "jsonrpc": "2.0", "id": id, "result": result }),
-        Err(Refusal { code, message }) => json!({
-            "jsonrpc": "2.0",
-            "id": id,
-            "error": { "code": code as i32, "message": message },
-        }),
-    })
+pub(super) fn respond<T: Serialize>(id: &Value, answer: Result<T, Refusal>) -> Result<(), Failure> {
+    match answer {
+        Ok(result) => send(&Answer { jsonrpc: "2.0", id, result }),
+        Err(refusal) => refuse(id, refusal),
+    }
+}
+
+/// Answers a request with an error.
+///
+/// # Errors
+/// As `send`.
+pub(super) fn refuse(id: &Value, Refusal { code, message }: Refusal) -> Result<(), Failure> {
+    send(&json!({
+        "jsonrpc": "2.0",
+        "id": id,
+        "error": { "code": code as i32, "message": message },
+    }))
 }
 
 /// Tells something that is not answered.

@@ -211,10 +211,14 @@ impl Scanner<'_> {
             b'\n' => self.newline = true,
             b' ' | b'\t' | b'\r' | 0xEF | 0xBB | 0xBF => {}
             b',' if self.in_for => self.operand = false,
-            b',' | b';' => (self.operand, self.newline) = (true, true),
+            b',' | b';' => (self.operand, self.newline, self.follower) = (true, true, None),
             b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'@' => {
                 while self.bytes.get(self.at).is_some_and(word) {
                     self.at += 1;
+                }
+                if self.is_member(start) {
+                    (self.operand, self.doc) = (true, None);
+                    return;
                 }
                 let name = &self.bytes[start..self.at];
                 let follows = self.follower == Some(name) && self.may_follow(name);
@@ -254,6 +258,11 @@ impl Scanner<'_> {
             }
             _ => (self.operand, self.newline) = (false, false),
         }
+    }
+
+    /// Whether a dot alone joins the word to what it is a member of: then it is any name.
+    fn is_member(&self, start: usize) -> bool {
+        matches!(self.bytes[..start], [.., before, b'.'] if before != b'.')
     }
 
     /// `version` may also be a name: only with a text behind it does it follow `use`.

@@ -1,7 +1,7 @@
 //! Statements, each on a line of its own.
 
 use super::layout::Layout;
-use super::piece::Kind;
+use super::piece::{Kind, Piece};
 use super::{STEP, WIDTH};
 
 /// What stands on lines of its own in a block; pieces `from..to`.
@@ -31,16 +31,29 @@ impl Layout<'_> {
         let pad: usize = (entry.from..entry.core.min(entry.from + 16))
             .map(|at| usize::from(self.pieces[at].pad))
             .sum();
-        if self.fits_here(entry.from, entry.core, pad) {
+        let comma = usize::from(self.keeps_comma(entry.core));
+        if self.fits_here(entry.from, entry.core, pad + comma) {
             self.flat(entry.from, entry.core, indent);
         } else {
-            self.divide(entry.from, entry.core, indent + STEP, 0);
+            self.divide(entry.from, entry.core, indent + STEP, comma);
+        }
+        if comma > 0 {
+            self.out.put(",", 1);
         }
         for at in entry.core..entry.to {
             if self.pieces[at].kind != Kind::Separator {
                 self.atom(at, indent, 0);
             }
         }
+    }
+
+    /// Whether the comma at the end of a statement stays: without it `where` would continue an `expect`.
+    fn keeps_comma(&self, core: usize) -> bool {
+        let is_between = |piece: &&Piece<'_>| piece.is_comment() || piece.kind == Kind::Separator;
+        let is_comma = |piece: &Piece<'_>| piece.kind == Kind::Separator && !piece.text.is_empty();
+        let between = self.pieces[core..].iter().take_while(is_between).count();
+        let (between, next) = self.pieces[core..].split_at(between);
+        next.first().is_some_and(|next| next.text == "where") && between.iter().any(is_comma)
     }
 
     fn entries(&self, from: usize, to: usize) -> Vec<Entry> {

@@ -63,7 +63,7 @@ impl Layout<'_> {
                 return self.inline(&items, close, after);
             }
         } else if self.pieces[first].newlines == 0 && first < close {
-            let hang = self.out.column;
+            let hang = self.out.column + usize::from(self.pieces[first].gap);
             if items.iter().all(|item| self.fits(item.from, item.comma, hang, after + 1)) {
                 self.rows(&items, hang, after + 1, false);
                 if self.out.ends {

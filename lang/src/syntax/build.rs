@@ -78,6 +78,12 @@ impl Builder<'_> {
     /// A name that is being defined.
     pub(super) fn definition(&mut self, pair: &Pair<'_, Rule>) -> Name {
         let name = self.name(pair);
+        self.refuse_reserved(&name);
+        name
+    }
+
+    /// Tells that a word of the language is no name.
+    fn refuse_reserved(&mut self, name: &Name) {
         if RESERVED.contains(&&*name.text) {
             let message = format!("`{}` is a word of the language and cannot be a name", name.text);
             self.sink.push(
@@ -85,7 +91,6 @@ impl Builder<'_> {
                     .help(format!("choose another name, as `{}_`", name.text)),
             );
         }
-        name
     }
 
     /// The statements of a file or block.
@@ -205,7 +210,9 @@ impl Builder<'_> {
     fn place<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> StmtNode {
         let path = take(parts);
         let span = self.span(&path);
-        let what = Box::new(Expr { span, node: ExprNode::Path(self.path(path)) });
+        let path = self.path(path);
+        self.refuse_reserved(&path[0]);
+        let what = Box::new(Expr { span, node: ExprNode::Path(path) });
         let (mut label, mut body) = (None, None);
         for part in parts {
             match part.as_rule() {

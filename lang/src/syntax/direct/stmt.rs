@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Reader;
 use super::expr::Place;
 use super::head::is_reserved;
-use crate::syntax::make;
+use crate::syntax::make::{self, RESERVED};
 use crate::syntax::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, ParamDef, Stmt,
     StmtNode, Ty,
@@ -219,7 +219,7 @@ impl Reader<'_> {
     fn place(&mut self) -> Option<StmtNode> {
         self.cursor.skip();
         let start = self.cursor.at;
-        let path = self.path()?;
+        let path = self.path().filter(|path| !RESERVED.contains(&&*path[0].text))?;
         let what = Box::new(Expr { span: self.span(start), node: ExprNode::Path(path) });
         self.cursor.skip();
         let has_label = self.cursor.peek() == Some(b'"');

@@ -1,11 +1,11 @@
 //! How fast scene text is read, evaluation left out, and what its tree holds: by the reader that is in
-//! use, and by pest, which is the grammar of record; and how fast the pass before both finds where
-//! statements begin.
+//! use, and by pest, which is the grammar of record; how fast the pass before both finds where
+//! statements begin; and how fast it is laid out.
 
 use std::path::Path;
 use std::time::Instant;
 
-use luxel_lang::{Budgets, parse_by_pest, parse_only, prescan};
+use luxel_lang::{Budgets, format as lay_out, parse_by_pest, parse_only, prescan};
 
 use crate::process;
 use crate::scene::lines;
@@ -67,13 +67,13 @@ impl Case {
     }
 }
 
-/// A way to read a text.
+/// A way to read a text, or to go on from there.
 struct Reader {
     name: &'static str,
     read: fn(&str),
 }
 
-const READERS: [Reader; 3] = [
+const READERS: [Reader; 4] = [
     Reader {
         name: "ours",
         read: |text| drop(std::hint::black_box(parse_only(text, &Budgets::default()))),
@@ -88,6 +88,10 @@ const READERS: [Reader; 3] = [
             let limit = Budgets::default().brackets;
             drop(std::hint::black_box(prescan::scan(text, 0..text.len(), 0, limit)));
         },
+    },
+    Reader {
+        name: "format",
+        read: |text| drop(std::hint::black_box(lay_out(text, &Budgets::default()))),
     },
 ];
 

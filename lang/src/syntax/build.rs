@@ -78,19 +78,21 @@ impl Builder<'_> {
     /// A name that is being defined.
     pub(super) fn definition(&mut self, pair: &Pair<'_, Rule>) -> Name {
         let name = self.name(pair);
-        self.refuse_reserved(&name);
+        self.is_free(&name);
         name
     }
 
-    /// Tells that a word of the language is no name.
-    fn refuse_reserved(&mut self, name: &Name) {
-        if RESERVED.contains(&&*name.text) {
+    /// Whether a name is no word of the language; tells of one that is.
+    fn is_free(&mut self, name: &Name) -> bool {
+        let is_free = !RESERVED.contains(&&*name.text);
+        if !is_free {
             let message = format!("`{}` is a word of the language and cannot be a name", name.text);
             self.sink.push(
                 Diagnostic::error("E0019", name.span, message)
                     .help(format!("choose another name, as `{}_`", name.text)),
             );
         }
+        is_free
     }
 
     /// The statements of a file or block.
@@ -211,8 +213,9 @@ impl Builder<'_> {
         let path = take(parts);
         let span = self.span(&path);
         let path = self.path(path);
-        self.refuse_reserved(&path[0]);
-        let what = Box::new(Expr { span, node: ExprNode::Path(path) });
+        let is_free = self.is_free(&path[0]);
+        let node = if is_free { ExprNode::Path(path) } else { ExprNode::Broken };
+        let what = Box::new(Expr { span, node });
         let (mut label, mut body) = (None, None);
         for part in parts {
             match part.as_rule() {

@@ -46,6 +46,7 @@ pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| decimal_comma(around))
         .or_else(|| definition(around))
         .or_else(|| object(around))
+        .or_else(|| given(around))
 }
 
 /// Tokens that stand side by side from `first` on, as one place, if their texts are these.
@@ -58,6 +59,15 @@ fn joined(around: &Around<'_>, first: usize, texts: &[&str]) -> Option<Span> {
 
 fn told(span: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::error("E0023", span, message)
+}
+
+/// `expect mean = 1, where { … }`
+fn given(around: &Around<'_>) -> Option<Diagnostic> {
+    around.current().filter(|brace| brace.text == "{")?;
+    let word = around.before(1).filter(|word| word.text == "where")?;
+    let comma = around.text[..word.start].trim_end().strip_suffix([',', ';'])?.len();
+    let comma = Span::new(around.source, comma, comma + 1);
+    Some(told(comma, "`where` follows its `expect` without a comma").fix(comma, ""))
 }
 
 /// A sign of typography, or a blank that is none to the grammar.

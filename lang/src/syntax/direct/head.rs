@@ -109,7 +109,7 @@ impl Reader<'_> {
     /// The head of an object, if one stands here.
     pub(super) fn head(&mut self) -> Option<Head> {
         let start = self.cursor.at;
-        let is_free = self.cursor.word().is_some_and(|word| !is_reserved(word));
+        let is_free = self.cursor.word().is_some_and(|word| word != "where" && !is_reserved(word));
         let category = start..self.cursor.at;
         let head = self.cursor.after_category(category).filter(|_| is_free);
         if head.is_none() {

@@ -6,6 +6,7 @@ mod mend;
 mod near;
 mod sources;
 
+use std::collections::HashSet;
 use std::fmt;
 
 use serde::Serialize;
@@ -93,6 +94,12 @@ impl Fix {
         let Span { start, end, .. } = self.span;
         format!("{}{}{}", &text[..start as usize], self.replacement, &text[end as usize..])
     }
+}
+
+/// Keeps the first of those that say the same of the same place, as each turn of a loop does.
+pub(crate) fn tell_once(diagnostics: &mut Vec<Diagnostic>) {
+    let mut told = HashSet::new();
+    diagnostics.retain(|found| told.insert((found.code, found.span(), found.message.clone())));
 }
 
 /// One mistake (or warning), with its code, places, advice and mends.

@@ -18,7 +18,7 @@ use super::{Film, Geometry, Mesh, Place, Placement, Reasons, Skin, Stage};
 use super::{eye, failures, features, import, shining};
 use crate::accel::{BuildError, Watch};
 use crate::cast::{index, whole};
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Span, tell_once};
 use crate::files::Files;
 use crate::object::{Builder, Object};
 use crate::registry::Registry;
@@ -112,10 +112,11 @@ pub fn build_watched(
     }
     let warnings = maker.builder.diagnostics[..n_of_world].to_vec();
     diagnostics.append(&mut maker.builder.diagnostics);
+    tell_once(&mut diagnostics);
     let (mut made, objects) = (maker.made, maker.builder.objects);
     let trees = made.new_trees + objects.trees_made;
     let anew = Anew { objects: objects.made, shapes: made.new_shapes, trees };
-    match settings {
+    let found = match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
             let world = world.or_else(|| made.world((&scene, &film, mode), &warnings, watch));
             let world = world.ok_or(Unbuilt::Cancelled)?;
@@ -126,14 +127,12 @@ pub fn build_watched(
             if found.is_empty() {
                 return Ok(Built { stage, warnings: diagnostics, anew });
             }
-            diagnostics.extend(found);
-            Err(Unbuilt::Faulty(diagnostics))
+            found
         }
-        _ => {
-            diagnostics.extend(failures(&objects, &scene));
-            Err(Unbuilt::Faulty(diagnostics))
-        }
-    }
+        _ => failures(&objects, &scene),
+    };
+    diagnostics.extend(found);
+    Err(Unbuilt::Faulty(diagnostics))
 }
 
 struct Maker<'a> {

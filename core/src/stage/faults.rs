@@ -10,7 +10,7 @@ use super::kept::Cache;
 use super::settings::Film;
 use crate::accel::Watch;
 use crate::cast::index;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, tell_once};
 use crate::files::Files;
 use crate::object::Builder;
 use crate::registry::Registry;
@@ -43,5 +43,6 @@ pub fn faults(
         builder.build(id);
     }
     diagnostics.append(&mut builder.diagnostics);
+    tell_once(&mut diagnostics);
     diagnostics
 }

@@ -28,14 +28,19 @@ pub fn near<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option
     if found.len() > LONGEST {
         return None;
     }
-    let mut n_known = 0;
+    let (letters, mut n_known) = (found.chars().count(), 0);
     let mut all: Vec<(usize, &str)> = known
         .into_iter()
         .inspect(|_| n_known += 1)
         .take(MOST + 1)
         .filter(|name| name.len() <= LONGEST)
-        .map(|name| (strsim::damerau_levenshtein(found, name), name))
-        .filter(|&(distance, name)| distance <= (found.len().max(name.len()) / 3).max(1))
+        .filter_map(|name| {
+            let most = (found.len().max(name.len()) / 3).max(1);
+            // As many letters as one has more are a distance at least, and soon counted.
+            let is_far = letters.abs_diff(name.chars().count()) > most;
+            let distance = (!is_far).then(|| strsim::damerau_levenshtein(found, name))?;
+            (distance <= most).then_some((distance, name))
+        })
         .collect();
     all.sort_unstable();
     all.dedup();

@@ -210,7 +210,7 @@ impl Evaluator<'_> {
         let value = self.eval(over, env);
         self.note(item, &value);
         let Some(elements) = self.elements(value, over.span) else {
-            self.unseen.n_blocks += 1;
+            self.unseen.block = true;
             return;
         };
         self.note_index(index, &elements);
@@ -247,7 +247,7 @@ impl Evaluator<'_> {
                 None => {
                     // Which arm would count is unknown: what is missing later may stand in one.
                     self.damaged = true;
-                    self.unseen.n_blocks += 1;
+                    self.unseen.block = true;
                     body.broken = true;
                     return;
                 }
@@ -294,7 +294,7 @@ impl Evaluator<'_> {
         {
             self.emits(call.span, body, &function.def.name.text);
             let Some(inner) = self.bind(function, args, call.span, env) else {
-                self.unseen.n_blocks += 1;
+                self.unseen.block = true;
                 return;
             };
             self.block(block, &inner, &mut Body::new(Place::File));
@@ -305,7 +305,7 @@ impl Evaluator<'_> {
             Value::Object(_) if body.place != Place::Object => self.emit(&value, call.span),
             Value::Poison => {
                 (self.damaged, body.broken) = (true, true);
-                self.unseen.n_blocks += 1;
+                self.unseen.block = true;
             }
             _ => {
                 let message = "this call gives a value that nothing uses";

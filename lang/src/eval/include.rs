@@ -41,7 +41,7 @@ impl Evaluator<'_> {
         };
         let Some((text, source)) = text else {
             self.damaged = true;
-            self.unseen.n_things += 1;
+            self.unseen.thing = true;
             return;
         };
         self.chain.push((canonical, None));
@@ -255,7 +255,7 @@ impl Evaluator<'_> {
     pub(super) fn include(&mut self, name: &Name, with: Vec<FieldValue>, env: &Env) {
         let Some((path, canonical, read)) = self.open(name, env) else {
             self.damaged = true;
-            self.unseen.n_things += 1;
+            self.unseen.thing = true;
             return;
         };
         let params: Vec<&Name> = params(&read.tree).collect();
@@ -290,7 +290,7 @@ impl Evaluator<'_> {
     /// `import "f" as n`: the file's names, and nothing that it emits.
     pub(super) fn import(&mut self, name: &Name, env: &Env) -> Value {
         let Some((path, canonical, read)) = self.open(name, env) else {
-            self.unseen.n_things += 1;
+            self.unseen.thing = true;
             return Value::Poison;
         };
         if let Some(module) = self.imported.get(&canonical) {

@@ -83,7 +83,7 @@ impl Evaluator<'_> {
             let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
             let meant = near(&category.text, words().chain(["units"]));
             let is_other = meant.is_some_and(|meant| !is_slip(meant.name));
-            self.unseen.n_things += usize::from(!is_other);
+            self.unseen.thing |= !is_other;
             let message = format!("there is no kind of object `{}`", category.text);
             let found =
                 Diagnostic::error("E0401", category.span, message).meant(category.span, meant);

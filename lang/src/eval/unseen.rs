@@ -20,10 +20,10 @@ const OPEN: [&str; 5] = ["E0001", "E0002", "E0011", "E0021", "E05"];
 /// What was not read or not evaluated, for a mistake.
 #[derive(Debug, Default)]
 pub(super) struct Unseen {
-    /// Files that could not be read, and objects of an unknown kind.
-    pub(super) n_things: usize,
-    /// Loops, choices and calls of which nothing is known.
-    pub(super) n_blocks: usize,
+    /// A file that could not be read, or an object of an unknown kind.
+    pub(super) thing: bool,
+    /// A loop, choice or call of which nothing is known.
+    pub(super) block: bool,
 }
 
 impl Evaluator<'_> {
@@ -32,9 +32,9 @@ impl Evaluator<'_> {
         let says = |word: &str| self.sources.texts().any(|text| has(text, word));
         self.has_asset
             || self.stopped
-            || self.unseen.n_things > 0
+            || self.unseen.thing
             || WORDS.iter().any(|word| says(word))
-            || (self.unseen.n_blocks > 0 && says("include"))
+            || (self.unseen.block && says("include"))
             || self.is_unclear()
     }
 

@@ -61,15 +61,6 @@ fn told(span: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::error("E0023", span, message)
 }
 
-/// `expect mean = 1, where { … }`
-fn given(around: &Around<'_>) -> Option<Diagnostic> {
-    around.current().filter(|brace| brace.text == "{")?;
-    let word = around.before(1).filter(|word| word.text == "where")?;
-    let comma = around.text[..word.start].trim_end().strip_suffix([',', ';'])?.len();
-    let comma = Span::new(around.source, comma, comma + 1);
-    Some(told(comma, "`where` follows its `expect` without a comma").fix(comma, ""))
-}
-
 /// A sign of typography, or a blank that is none to the grammar.
 fn sign(around: &Around<'_>) -> Option<Diagnostic> {
     let mark = around.current()?;
@@ -340,4 +331,15 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
         }
         _ => None,
     }
+}
+
+/// `expect mean = 1, where { … }`, what is expected on one line
+fn given(around: &Around<'_>) -> Option<Diagnostic> {
+    around.current().filter(|brace| brace.text == "{")?;
+    let word = around.before(1).filter(|word| word.text == "where")?;
+    let expected = around.text[..word.start].trim_end().strip_suffix([',', ';'])?;
+    let statement = expected.rsplit(['\n', '{', ';']).next()?;
+    statement.trim_start().strip_prefix("expect")?.strip_prefix([' ', '\t'])?;
+    let comma = Span::new(around.source, expected.len(), expected.len() + 1);
+    Some(told(comma, "`where` follows its `expect` without a comma").fix(comma, ""))
 }

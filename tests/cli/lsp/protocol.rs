@@ -140,7 +140,7 @@ fn a_request_that_waits_is_cancelled_at_once_and_answered_once() {
 }
 
 #[test]
-fn an_outline_is_made_beside_edits_and_answered_once() {
+fn outlines_are_answered_once_whatever_comes_between() {
     let folder = Folder::new("lsp-outline");
     let (mut client, uri) = (Client::new(&folder), uri(&folder, "a.scene"));
     let text = format!("scene 1\n{}", "shape sphere { radius = 1 m }\n".repeat(1_000));

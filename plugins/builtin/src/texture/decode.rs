@@ -357,7 +357,6 @@ fn decoded(x: f64, srgb: bool) -> f32 {
 
 #[cfg(test)]
 mod tests {
-
     use super::*;
     use crate::stop::testing::{Patience, ends_wherever};
     use crate::texture::testing;

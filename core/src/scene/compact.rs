@@ -20,15 +20,30 @@ impl Scene {
         self.hash_more();
     }
 
-    /// Computes the hashes of the nodes that were put among `nodes` since it was last called; each
-    /// refers to nodes before it alone.
+    /// Computes the hashes of the nodes that were put among `nodes` since it was last called.
     pub(super) fn hash_more(&mut self) {
-        for i in self.own.len()..self.nodes.len() {
-            let hash = value::hash_node(&self.nodes[i], |id| self.node(id).hash);
-            self.nodes[i].hash = hash;
+        let first = self.own.len();
+        let mut is_hashed = vec![false; self.nodes.len() - first];
+        for i in first..self.nodes.len() {
+            self.hash_from(i, first, &mut is_hashed);
+        }
+        for i in first..self.nodes.len() {
             let own = self.new_own_hash(&self.nodes[i]);
             self.own.push(own);
         }
+    }
+
+    /// Computes a node's hash after those of what it refers to; those before `first` are there.
+    fn hash_from(&mut self, i: usize, first: usize, is_hashed: &mut [bool]) {
+        if std::mem::replace(&mut is_hashed[i - first], true) {
+            return;
+        }
+        let inner = self.nodes[i].children().map(|id| id.0 as usize);
+        let inner: Vec<_> = inner.filter(|at| *at >= first && !is_hashed[at - first]).collect();
+        for at in inner {
+            self.hash_from(at, first, is_hashed);
+        }
+        self.nodes[i].hash = value::hash_node(&self.nodes[i], |id| self.node(id).hash);
     }
 
     /// Gives what is referred to its new number.

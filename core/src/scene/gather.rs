@@ -46,12 +46,12 @@ impl Scene {
     }
 
     /// Makes a scene as it was evaluated one of which copies are gathered: changes every place in a file,
-    /// and hashes the nodes, each of which refers to nodes before it alone.
+    /// and hashes the nodes.
     pub fn prepare(&mut self, place: &(dyn Fn(Span) -> Span + Sync)) {
         let numbers = |n: usize| (0..).take(n).collect::<Vec<u32>>();
         let (nodes, groups) = (numbers(self.nodes.len()), numbers(self.groups.len()));
         let put = Put { nodes: &nodes, groups: &groups, place };
-        self.nodes = put.nodes(self.nodes.iter());
+        self.nodes = in_parts(&self.nodes, &|part: &[Node]| put.nodes(part.iter()));
         // Next to one another, so that copying finds them soon.
         for label in self.nodes.iter_mut().filter_map(|node| node.label.as_mut()) {
             *label = Arc::from(&**label);

@@ -93,6 +93,15 @@ impl Node {
     pub fn get(&self, name: &str) -> Option<&Argument> {
         self.params.iter().find(|argument| argument.name == name)
     }
+
+    /// The nodes that it refers to.
+    pub fn children(&self) -> impl Iterator<Item = NodeId> + '_ {
+        let params = self.params.iter().filter_map(|argument| match argument.value {
+            Value::Node(id) | Value::Moved(id, _) => Some(id),
+            _ => None,
+        });
+        params.chain(self.overrides.iter().map(|(_, id)| *id))
+    }
 }
 
 /// What stands in a place.

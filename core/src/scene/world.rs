@@ -1,6 +1,6 @@
 //! Whether two scenes have the same world, whatever it is looked at with.
 
-use super::{Group, Node, NodeId, Placed, Scene, Target, Value};
+use super::{Group, Placed, Scene, Target};
 
 impl Scene {
     /// Whether the same stands in the same places of both, to the bit, and all that it is made of has
@@ -25,20 +25,13 @@ impl Scene {
             }
             let Some(there) = other.nodes.get(i) else { return false };
             let here = &self.nodes[i];
-            if here.hash != there.hash || !children(here).eq(children(there)) {
+            if here.hash != there.hash || !here.children().eq(there.children()) {
                 return false;
             }
-            children(here).for_each(|id| used[id.0 as usize] = true);
+            here.children().for_each(|id| used[id.0 as usize] = true);
         }
         true
     }
-}
-
-fn children(node: &Node) -> impl Iterator<Item = NodeId> + '_ {
-    node.params.iter().filter_map(|argument| match argument.value {
-        Value::Node(id) | Value::Moved(id, _) => Some(id),
-        _ => None,
-    })
 }
 
 fn is_same_group(group: &Group, other: &Group, used: &mut [bool]) -> bool {
@@ -55,7 +48,7 @@ mod tests {
     use glam::{DAffine3, DVec3};
 
     use super::super::compact::tests::node;
-    use super::super::{GroupId, Pose};
+    use super::super::{GroupId, NodeId, Pose};
     use super::*;
     use crate::diag::{SourceId, Span};
 

@@ -1,12 +1,13 @@
 //! What statements put into the scene, and the labels that `set` reaches.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Span};
 use luxel_core::scene::{NodeId, Placed, Pose, Target};
 use luxel_sdk::kind::Kind;
+use memchr::memmem;
 
 use super::Evaluator;
 use super::env::Env;
@@ -17,11 +18,14 @@ use crate::syntax::{Block, Expr, Name, Stmt, StmtNode};
 /// Labelled objects, and what `set` will change of them.
 #[derive(Debug, Default)]
 pub(super) struct Labels {
-    /// Objects by label; `None` for one with a mistake, or out of the scene by `@off`.
+    /// Objects by label, of those that may be set; `None` for one with a mistake, or out of the scene by
+    /// `@off`.
     pub(super) objects: BTreeMap<Arc<str>, Vec<Option<Rc<ObjectValue>>>>,
     pub(super) sets: Vec<Set>,
     /// Whether something may be set.
     keeps: bool,
+    /// The labels of which something may be set, where not of all.
+    named: Option<HashSet<Box<str>>>,
 }
 
 /// `set label.field = value`.
@@ -34,8 +38,21 @@ pub(super) struct Set {
 impl Labels {
     /// Those of a file of this text: objects are kept only where some `set` may change them.
     pub(super) fn of(text: &str) -> Self {
-        let has = |word: &str| memchr::memmem::find(text.as_bytes(), word.as_bytes()).is_some();
-        Self { keeps: ["set", "include", "import"].into_iter().any(has), ..Self::default() }
+        let has = |word: &str| memmem::find(text.as_bytes(), word.as_bytes()).is_some();
+        let is_alone = !["include", "import"].into_iter().any(has);
+        let named = is_alone.then(|| set_names(text)).flatten();
+        let keeps = named.as_ref().is_none_or(|named| !named.is_empty());
+        Self { keeps, named, ..Self::default() }
+    }
+
+    /// How many objects bear a label.
+    pub(super) fn n_of(&self, label: &str) -> usize {
+        self.objects.get(label).map_or(0, Vec::len)
+    }
+
+    /// From here on, objects are kept or not.
+    pub(super) fn keep(&mut self, keeps: bool) {
+        self.keeps = keeps;
     }
 
     /// Notes an emitted object.
@@ -45,7 +62,10 @@ impl Labels {
             Value::Object(object) => Some(object.clone()),
             _ => None,
         };
-        self.objects.entry(label.text.clone()).or_default().push(object);
+        let objects = self.objects.entry(label.text.clone()).or_default();
+        if self.named.as_ref().is_none_or(|named| named.contains(&*label.text)) {
+            objects.push(object);
+        }
     }
 
     /// Notes the labels in a statement that is off: `set` may name them.
@@ -63,6 +83,16 @@ impl Labels {
             _ => {}
         }
     }
+}
+
+/// The names that stand behind `set`, wherever these letters are; `None` if something else does.
+fn set_names(text: &str) -> Option<HashSet<Box<str>>> {
+    let name = |at: usize| {
+        let rest = text[at + "set".len()..].trim_start();
+        let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        (!rest.starts_with('/')).then(|| rest[..end].into())
+    };
+    memmem::find_iter(text.as_bytes(), "set").map(name).collect()
 }
 
 impl Evaluator<'_> {
@@ -195,5 +225,28 @@ impl Evaluator<'_> {
                 self.poison("E0408", what.span, message);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_behind_set_are_those_of_which_something_may_be_set() {
+        let named = |text: &str| {
+            let mut all: Vec<_> = set_names(text)?.into_iter().map(String::from).collect();
+            all.sort();
+            Some(all)
+        };
+        assert_eq!(
+            named("set one.radius = 1\nset\t größe_2\n.x = 1"),
+            Some(vec!["größe_2".into(), "one".into()])
+        );
+        // More than there are, but never less.
+        assert_eq!(named("offset ball"), Some(vec!["ball".into()]));
+        assert_eq!(named("set // one\n one.radius = 1"), None);
+        assert_eq!(named("shape sphere \"one\" { }"), Some(vec![]));
+        assert_eq!(named("set"), Some(vec![String::new()]));
     }
 }

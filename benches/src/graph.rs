@@ -46,6 +46,8 @@ pub(crate) fn run() -> Result<(), String> {
     };
     let placement = |i: usize| format!("place ball {{ transform = move(({i}, 0.5, -3.25) m) }}\n");
     let objects = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), object));
+    let told = format!("{objects}set one.radius = 30 cm\nmaterial dielectric {{ }}\n")
+        .replacen("ball 3", "one", 1);
     let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
     let case = |name, text: &str, from, to| Case { name, text: text.to_owned(), from, to };
     let cases = [
@@ -75,6 +77,13 @@ pub(crate) fn run() -> Result<(), String> {
             "ball 50001\" { center = (1.2",
             "ball 50001\" { center = (1.2 s",
         ),
+        case(
+            "objects, a number beside a `set` and a warning",
+            &told,
+            "ball 50001\" { center = (1.2",
+            "ball 50001\" { center = (1.3",
+        ),
+        case("objects, what is `set`", &told, "radius = 30 cm", "radius = 20 cm"),
         case("placements, a number", &placements, "move((50001, 0.5", "move((50001, 0.25"),
     ];
     let registry = linked();

@@ -108,9 +108,19 @@ impl Sink {
         self.list.iter().any(|found| found.is_error() && found.code.starts_with(code))
     }
 
-    /// Whether nothing was told.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.list.is_empty() && self.dropped == [0; 2]
+    /// What is kept of what was told so far.
+    pub(crate) fn kept(&self) -> &[Diagnostic] {
+        &self.list
+    }
+
+    /// The same, taken out: it is not told again.
+    pub(crate) fn take(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.list)
+    }
+
+    /// Whether all that was told is kept.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.dropped == [0; 2]
     }
 
     /// How many errors there were, dropped ones included.

@@ -209,7 +209,7 @@ impl Document {
     fn is_stood_for(&self, old: Range<usize>, new: &[Piece]) -> bool {
         let old = &self.pieces[old];
         let mut pairs = old.iter().zip(new);
-        self.names.is_empty()
+        self.names.kept().is_empty()
             && old.len() == new.len()
             && pairs
                 .all(|(old, new)| old.read.facts == new.read.facts || old.is_alone && new.is_alone)

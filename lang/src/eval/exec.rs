@@ -278,8 +278,7 @@ impl Evaluator<'_> {
             if logical {
                 out.extend(self.values_in(operand, env));
             } else if !matches!(operand.node, ExprNode::Number(..) | ExprNode::Text(_)) {
-                let text = self.sources.text(operand.span.source);
-                let text = text.get(operand.span.range()).unwrap_or("").to_owned();
+                let text = self.written(operand.span).to_owned();
                 out.push((text, self.eval(operand, env)));
             }
         }

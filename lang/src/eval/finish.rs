@@ -1,7 +1,7 @@
 //! The end of a load: what the scene lacks.
 
 use luxel_core::diag::Diagnostic;
-use luxel_core::scene::{Node, NodeId, Placed, Pose, Scene, Target, Value};
+use luxel_core::scene::{NodeId, Placed, Pose, Scene, Target};
 use luxel_sdk::kind::Kind;
 
 use super::Evaluator;
@@ -53,13 +53,4 @@ impl Evaluator<'_> {
 fn placed(scene: &Scene, id: NodeId) -> Placed {
     let (pose, span) = (Pose::IDENTITY, scene.node(id).span);
     Placed { target: Target::Node(id), pose, material: None, span }
-}
-
-/// The nodes that a node refers to.
-pub(super) fn children(node: &Node) -> impl Iterator<Item = NodeId> {
-    let params = node.params.iter().filter_map(|argument| match argument.value {
-        Value::Node(id) | Value::Moved(id, _) => Some(id),
-        _ => None,
-    });
-    params.chain(node.overrides.iter().map(|(_, id)| *id))
 }

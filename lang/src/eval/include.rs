@@ -152,9 +152,8 @@ impl Evaluator<'_> {
     /// A unit for everything, if a statement that cannot be read was meant to say units.
     fn units_meant(&self, stmts: &[Stmt]) -> BTreeMap<Dimension, f64> {
         let is_meant = |stmt: &Stmt| {
-            let text = self.sources.text(stmt.span.source).get(stmt.span.range()).unwrap_or("");
             matches!(stmt.node, StmtNode::Broken { .. } | StmtNode::Object(_))
-                && syntax::says_units(text)
+                && syntax::says_units(self.written(stmt.span))
         };
         if !stmts.iter().any(is_meant) {
             return BTreeMap::new();

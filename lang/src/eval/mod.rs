@@ -40,7 +40,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Sources, Span};
+use luxel_core::diag::{Diagnostic, SourceId, Sources, Span};
 use luxel_core::files::{FileError, Files};
 use luxel_core::registry::Registry;
 use luxel_core::scene::{Color, Group, NodeId, Scene};
@@ -110,6 +110,8 @@ struct Evaluator<'a> {
     bytes_read: usize,
     /// Files included or imported so far.
     includes: usize,
+    /// Where statements of the root file begin whose places count from there.
+    begun: BTreeMap<SourceId, usize>,
     /// How often a file was asked for.
     n_reads: usize,
     /// Texts that stand among `sources` before they are read.
@@ -187,6 +189,7 @@ impl<'a> Evaluator<'a> {
             repeats: 0,
             bytes_read: 0,
             includes: 0,
+            begun: BTreeMap::new(),
             n_reads: 0,
             n_foreseen: 0,
             read: BTreeMap::new(),
@@ -207,6 +210,16 @@ impl<'a> Evaluator<'a> {
             noted: settings.noting.then(note::Noted::default),
             record: None,
         }
+    }
+
+    /// What is written in a place; empty when unknown.
+    fn written(&self, span: Span) -> &str {
+        let (source, start) = match self.begun.get(&span.source) {
+            Some(start) => (SourceId(0), *start),
+            None => (span.source, 0),
+        };
+        let range = span.range();
+        self.sources.text(source).get(start + range.start..start + range.end).unwrap_or("")
     }
 
     /// The bytes of a file.

@@ -30,7 +30,8 @@ pub(crate) struct Numbered {
 }
 
 impl Known {
-    fn number(&mut self, name: &Arc<str>) -> u32 {
+    /// The number of a name.
+    pub(super) fn number(&mut self, name: &Arc<str>) -> u32 {
         if let Some(number) = self.numbers.get(name) {
             return *number;
         }
@@ -38,6 +39,11 @@ impl Known {
         self.names.push(name.clone());
         self.numbers.insert(name.clone(), number);
         number
+    }
+
+    /// The name of a number.
+    pub(super) fn name(&self, number: u32) -> &str {
+        &self.names[number as usize]
     }
 
     /// How many names there are.
@@ -83,7 +89,8 @@ impl Numbered {
         &self.all[self.ends[0] as usize..self.ends[1] as usize]
     }
 
-    fn labels(&self) -> &[u32] {
+    /// The labels that it bears itself.
+    pub(super) fn labels(&self) -> &[u32] {
         &self.all[self.ends[1] as usize..]
     }
 }
@@ -141,8 +148,7 @@ impl<'k> Firsts<'k> {
 
     /// The same for a name by its number.
     pub(super) fn definer_of(&self, name: u32) -> Option<usize> {
-        let place = *self.tables.defines.get(name as usize)?;
-        (place != NONE).then_some(place as usize)
+        place_of(&self.tables.defines, name)
     }
 
     /// The statement that first bears a label.
@@ -150,10 +156,13 @@ impl<'k> Firsts<'k> {
         self.place(&self.tables.labels, label)
     }
 
+    /// The same for a label by its number.
+    pub(super) fn labeller_of(&self, label: u32) -> Option<usize> {
+        place_of(&self.tables.labels, label)
+    }
+
     fn place(&self, places: &[u32], name: &str) -> Option<usize> {
-        // Names that became known later have no place.
-        let place = *places.get(*self.known.numbers.get(name)? as usize)?;
-        (place != NONE).then_some(place as usize)
+        place_of(places, *self.known.numbers.get(name)?)
     }
 
     /// The names that are defined before a statement.
@@ -175,6 +184,12 @@ impl<'k> Firsts<'k> {
         let unknown = numbered.uses().filter(|(name, _)| !is_before(&self.tables.defines, *name));
         simple.then(|| unknown.map(|(_, times)| times as usize).sum())
     }
+}
+
+fn place_of(places: &[u32], name: u32) -> Option<usize> {
+    // Names that became known later have no place.
+    let place = *places.get(name as usize)?;
+    (place != NONE).then_some(place as usize)
 }
 
 /// Puts a statement in as the first; whether it is.

@@ -67,7 +67,7 @@ impl Evaluator<'_> {
     fn look_over(&mut self, head: &Head, class: &Class, body: &Body) {
         let mut meant = self.taken(class, &body.fields).meant;
         for span in &body.unread {
-            let text = self.sources.text(span.source).get(span.range()).unwrap_or("");
+            let text = self.written(*span);
             let word = text.trim_start().split(|c: char| !c.is_alphanumeric() && c != '_').next();
             let known = Registry::params(class).map(|param| param.name);
             // What begins with no parameter may be any, and so may what goes on in other lines.
@@ -444,8 +444,8 @@ impl Evaluator<'_> {
 
     /// Whether two names stand in the same braces, not one of them in a `set` or `with`.
     fn is_beside(&self, one: Span, other: Span) -> bool {
-        let between = one.end.min(other.end) as usize..one.start.max(other.start) as usize;
-        let text = self.sources.text(one.source).get(between).unwrap_or("");
+        let (start, end) = (one.end.min(other.end), one.start.max(other.start));
+        let text = self.written(Span { start, end, ..one });
         let mut depth = 0_usize;
         let stays = |byte: u8| {
             match byte {

@@ -11,7 +11,6 @@ use luxel_sdk::params::{Dimension, Unit};
 use super::Evaluator;
 use super::emit::Set;
 use super::env::{Env, File, Override};
-use super::finish::children;
 use super::include;
 use super::object::merged;
 use super::value::{FieldValue, ObjectValue, Range, Value, What, show_number};
@@ -68,8 +67,7 @@ impl Evaluator<'_> {
         std::mem::swap(&mut self.sink, &mut trial);
         for mut diagnostic in trial.finish() {
             diagnostic.code = code;
-            let text = self.sources.text(def.ty.name.span.source);
-            let ty = text.get(def.ty.name.span.range()).unwrap_or_default();
+            let ty = self.written(def.ty.name.span);
             let help = format!("`{}` is declared as {ty}", def.name.text);
             self.tell(diagnostic.label(def.name.span, "declared here").help(help));
         }
@@ -113,10 +111,7 @@ impl Evaluator<'_> {
 
     /// Tells of a parameter of the root file; where among them it stands.
     fn declare(&mut self, def: &ParamDef, range: Option<&(Value, Span)>, own: &Value) -> usize {
-        let text = |span: Span| {
-            let text = self.sources.text(span.source);
-            text.get(span.range()).unwrap_or_default().to_owned()
-        };
+        let text = |span: Span| self.written(span).to_owned();
         let dimension = match (super::types::dimension(&def.ty.name.text), own) {
             (None, Value::Numbers(numbers)) => numbers.dimension,
             (dimension, _) => dimension.unwrap_or_default(),
@@ -200,14 +195,12 @@ impl Evaluator<'_> {
         if value.is_poison() {
             let shown = text.get(span.range()).unwrap_or_default();
             let message = format!("`{shown}` is not a value for `{}`", def.name.text);
-            let declared = self.sources.text(def.ty.name.span.source);
-            let ty = declared.get(def.ty.name.span.range()).unwrap_or_default();
+            let ty = self.written(def.ty.name.span);
             let mut found = Diagnostic::error("E0112", span, message);
             found = found.label(def.name.span, "declared here");
             found = found.help(format!("`{}` is declared as {ty}", def.name.text));
             if let Some(range) = &def.range {
-                let range = declared.get(range.span.range()).unwrap_or_default();
-                found = found.help(format!("it must be in {range}"));
+                found = found.help(format!("it must be in {}", self.written(range.span)));
             }
             self.tell(found);
         }
@@ -301,7 +294,7 @@ impl Evaluator<'_> {
                 return true;
             }
             if seen.insert(id) {
-                open.extend(children(self.scene.node(id)));
+                open.extend(self.scene.node(id).children());
             }
         }
         false

@@ -102,8 +102,7 @@ impl Evaluator<'_> {
         if self.spent.is_none() {
             names.tell(text, &mut told);
         }
-        self.end_record();
-        self.apply_sets();
+        self.end_record(told.kept().len());
         self.stopped |= told.is_full();
         told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use luxel_core::diag::Diagnostic;
 use luxel_core::scene::{Expectation, NodeId, Pose};
 use luxel_sdk::kind::Kind;
 
@@ -29,12 +30,29 @@ pub(super) struct Rare {
     pub(super) has_asset: bool,
     /// Other files came into it.
     pub(super) has_read: bool,
+    /// How often its evaluation told something in a load of the whole file.
+    pub(super) n_told: usize,
+    pub(super) warnings: Warnings,
+}
+
+/// Warnings of a statement, whose places lie in it and count from its first byte.
+#[derive(Debug, Default)]
+pub(super) struct Warnings {
+    /// Of how it is written.
+    pub(super) read: Vec<Diagnostic>,
+    /// Of what it came to.
+    pub(super) found: Vec<Diagnostic>,
 }
 
 impl Made {
     /// Whether other files came into it.
     pub(super) fn has_read(&self) -> bool {
         self.rare.as_ref().is_some_and(|rare| rare.has_read)
+    }
+
+    /// What is said of it, to be added to.
+    pub(super) fn warnings_mut(&mut self) -> &mut Warnings {
+        &mut self.rare.get_or_insert_default().warnings
     }
 }
 
@@ -83,6 +101,7 @@ pub(super) struct Mark {
     n_expectations: usize,
     had_asset: bool,
     n_reads: usize,
+    n_told: usize,
     cost: Cost,
 }
 
@@ -97,6 +116,7 @@ impl Evaluator<'_> {
             n_expectations: self.scene.expectations.len(),
             had_asset: std::mem::take(&mut self.has_asset),
             n_reads: self.includes + self.n_reads,
+            n_told: self.sink.kept().len(),
             cost: Cost::of(self),
         }
     }
@@ -115,8 +135,11 @@ impl Evaluator<'_> {
         let slots: Vec<Slot> = kinds.into_iter().filter_map(&mut slot).collect();
         let expectations = self.scene.expectations[mark.n_expectations..].to_vec();
         let has_read = self.includes + self.n_reads > mark.n_reads;
-        let is_rare = has_asset || has_read || !slots.is_empty() || !expectations.is_empty();
-        let rare = || Box::new(Rare { slots, expectations, has_asset, has_read });
+        let n_told = self.sink.kept().len() - mark.n_told;
+        let is_rare =
+            has_asset || has_read || n_told > 0 || !slots.is_empty() || !expectations.is_empty();
+        let warnings = Warnings::default();
+        let rare = || Box::new(Rare { slots, expectations, has_asset, has_read, n_told, warnings });
         Made {
             nodes: mark.n_nodes..self.scene.nodes.len(),
             groups: mark.n_groups..self.scene.groups.len(),

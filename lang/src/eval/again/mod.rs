@@ -7,9 +7,9 @@
 //!
 //! With a mistake in what an edit concerns, that is told, and what is kept stays what it was before.
 //!
-//! Whatever this does not know how to go on from is loaded anew, as a whole: other mistakes, warnings, a
-//! `set`, other files that have changed, a changed `units` or `param`, a changed statement that other
-//! files come into. `docs/decisions/0042` says why.
+//! Whatever this does not know how to go on from is loaded anew, as a whole: other mistakes, a `set` of what
+//! stands in a block, other files that have changed, a changed `units` or `param`, a changed statement
+//! that other files come into. `docs/decisions/0042` says why.
 
 mod asked;
 mod edit;
@@ -17,10 +17,13 @@ mod made;
 mod plan;
 mod put;
 mod record;
+mod sets;
 mod slice;
 mod told;
 mod values;
+mod warn;
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,6 +63,8 @@ struct Statement {
     range: Range<usize>,
     names: Numbered,
     made: Made,
+    /// The label of which it sets something, by number.
+    set: Option<u32>,
     /// It is about the whole file: units, a parameter.
     declares: bool,
     /// It defines a name that every scene has.
@@ -81,6 +86,8 @@ pub(crate) struct State {
     /// How many names the file defines, and how many statements define one that every scene has.
     n_names: usize,
     n_shadows: usize,
+    /// Labels of which something is set: each stands for one object, of the statement that bears it itself.
+    set_labels: BTreeSet<u32>,
     stmts: Vec<Statement>,
     n_ids: usize,
     /// All nodes and groups of all statements, those that are gone too; hashed, in no order but that each
@@ -160,8 +167,8 @@ impl State {
             && *noting == before.noting
     }
 
-    /// The scene of all statements, with what was told of it as a whole in `evaluator`. `None` if that is
-    /// something, or a setting is given twice.
+    /// The scene of all statements, with what was told of it as a whole in `evaluator`. `None` if that is a
+    /// mistake, there are too many warnings, or a setting is given twice.
     fn gathered(&mut self, evaluator: &mut Evaluator<'_>, settings: &Settings) -> Option<Loaded> {
         let mut starts = vec![0; self.n_ids];
         let mut rare = vec![];
@@ -192,14 +199,15 @@ impl State {
             evaluator.scene.camera = self.scene.camera;
         }
         evaluator.lacks();
-        if !evaluator.sink.is_empty() {
+        let diagnostics = self.warnings(&starts);
+        if evaluator.sink.errors() > 0 || diagnostics.len() > self.settings.budgets.diagnostics {
             return None;
         }
         let param = |param: &ParamInfo| ParamInfo { span: place(param.span), ..param.clone() };
         Some(Loaded {
             scene: is_wanted.then(|| std::mem::take(&mut evaluator.scene)),
             rest: None,
-            diagnostics: vec![],
+            diagnostics,
             sources: self.sources.clone(),
             params: self.params.iter().map(param).collect(),
             values: self.values(),

@@ -6,6 +6,7 @@ use std::ops::Range;
 use luxel_core::diag::Diagnostic;
 
 use super::edit::{Edit, Recut, recut};
+use super::sets::{Sets, set_label};
 use super::{State, Statement, source_of};
 use crate::eval::builtins;
 use crate::eval::mention::mention_stmts;
@@ -30,8 +31,27 @@ pub(super) struct Plan {
     pub(super) tables: Option<Tables>,
     /// How many names the file defines.
     pub(super) n_names: usize,
-    /// What is wrong with what is written and with names.
-    pub(super) told: Vec<Diagnostic>,
+    /// What is said of how each of the fresh ones is written.
+    pub(super) read: Vec<Vec<Diagnostic>>,
+    /// What is wrong with names.
+    pub(super) names: Vec<Diagnostic>,
+    pub(super) sets: Sets,
+}
+
+impl Plan {
+    /// Whether a statement stands in the place of those that are gone.
+    pub(super) fn is_fresh(&self, i: usize) -> bool {
+        (self.gone.start..self.gone.start + self.fresh.len()).contains(&i)
+    }
+
+    /// Which of the old statements a new one is, unless it is fresh.
+    pub(super) fn old(&self, i: usize) -> Option<usize> {
+        match i {
+            i if self.is_fresh(i) => None,
+            i if i < self.gone.start => Some(i),
+            i => Some(i - self.fresh.len() + self.gone.len()),
+        }
+    }
 }
 
 /// A statement to evaluate.
@@ -60,17 +80,22 @@ impl<'s> After<'s> {
         before.chain(self.fresh).chain(&self.stmts[self.gone.end..])
     }
 
+    /// One of them.
+    pub(super) fn at(&self, i: usize) -> &'s Statement {
+        let fresh = self.gone.start..self.gone.start + self.fresh.len();
+        match i {
+            i if fresh.contains(&i) => &self.fresh[i - fresh.start],
+            i if i < fresh.start => &self.stmts[i],
+            i => &self.stmts[i - fresh.end + self.gone.end],
+        }
+    }
+
     /// One of them, and where in the new text it begins and ends.
     pub(super) fn get(&self, i: usize, edit: &Edit) -> (&'s Statement, Range<usize>) {
-        let fresh = self.gone.start..self.gone.start + self.fresh.len();
-        if fresh.contains(&i) {
-            let stmt = &self.fresh[i - fresh.start];
+        let (stmt, end) = (self.at(i), self.gone.start + self.fresh.len());
+        if i < end {
             return (stmt, stmt.range.clone());
         }
-        if i < fresh.start {
-            return (&self.stmts[i], self.stmts[i].range.clone());
-        }
-        let stmt = &self.stmts[i - fresh.end + self.gone.end];
         (stmt, edit.shifted(stmt.range.start)..edit.shifted(stmt.range.end))
     }
 }
@@ -85,7 +110,7 @@ impl State {
             return None;
         }
         let Recut { gone, pieces } = recut((text, self.from), &edit, &self.stmts, &budgets)?;
-        let (mut fresh, mut trees, mut told) = (vec![], vec![], vec![]);
+        let (mut fresh, mut trees, mut said) = (vec![], vec![], vec![]);
         for (k, range) in pieces.into_iter().enumerate() {
             let id = u32::try_from(self.n_ids + k).ok()?;
             let part = &text[range.clone()];
@@ -94,31 +119,32 @@ impl State {
             if !found.is_empty() && declares(part) {
                 return None;
             }
-            told.extend(found);
+            said.push(found);
             let facts = Facts::of(part, std::slice::from_ref(&stmt));
             let names = self.names.numbered(&facts);
-            fresh.push(Statement::new(id, range, names, &stmt, &facts));
-            trees.push(stmt);
+            let set = set_label(&stmt, &mut self.names);
+            fresh.push(Statement { set, ..Statement::new(id, range, names, &stmt, &facts) });
+            trees.push(Some(stmt));
         }
         let after = After::of(self, &gone, &fresh);
         let n_names = |stmts: &[Statement]| -> usize {
             stmts.iter().map(|stmt| stmt.names.defines().len()).sum()
         };
         let n_names = self.n_names - n_names(&self.stmts[gone.clone()]) + n_names(&fresh);
-        let mut tables = None;
+        let (mut tables, mut names) = (None, vec![]);
         if !self.is_named_alike(&gone, &fresh) {
             let (found, odd) = Tables::of(&self.names, after.iter().map(|stmt| &stmt.names));
             if n_names > budgets.names {
                 return None;
             }
             let firsts = Firsts::new(&self.names, &found);
-            told.extend(self.odd_names((text, &edit), &after, &firsts, &odd)?);
+            names = self.odd_names((text, &edit), &after, &firsts, &odd)?;
             tables = Some(found);
         }
-        let new = self.concerned(&gone, &fresh)?;
         let firsts = Firsts::new(&self.names, tables.as_ref().unwrap_or(&self.tables));
-        let tasks = self.tasks((text, &edit), &after, &firsts, (&new, trees))?;
-        Some(Plan { edit, gone, fresh, tasks, tables, n_names, told })
+        let (new, sets) = self.concerned_with_sets(&gone, &after, &firsts)?;
+        let tasks = self.tasks((text, &edit), &after, &firsts, (&new, &sets), trees)?;
+        Some(Plan { edit, gone, fresh, tasks, tables, n_names, read: said, names, sets })
     }
 
     /// Whether statements have the same to do with names as those that they stand for.
@@ -127,11 +153,34 @@ impl State {
         gone.len() == fresh.len() && pairs.all(|(one, other)| one.names == other.names)
     }
 
-    /// The statements that are new, or use a name that a statement with another value defines.
-    fn concerned(&self, gone: &Range<usize>, fresh: &[Statement]) -> Option<Vec<usize>> {
+    /// The statements that come to something else, with those of which something else is set.
+    fn concerned_with_sets(
+        &self,
+        gone: &Range<usize>,
+        after: &After<'_>,
+        firsts: &Firsts<'_>,
+    ) -> Option<(Vec<usize>, Sets)> {
+        let mut bearers = BTreeSet::new();
+        loop {
+            let new = self.concerned(gone, after, &bearers)?;
+            let sets = self.sets(gone, after, firsts, &new)?;
+            if sets.bearers.iter().all(|i| new.binary_search(i).is_ok()) {
+                return Some((new, sets));
+            }
+            bearers.clone_from(&sets.bearers);
+        }
+    }
+
+    /// The statements that are new, one of `those`, or use a name that a statement with another value defines.
+    fn concerned(
+        &self,
+        gone: &Range<usize>,
+        after: &After<'_>,
+        those: &BTreeSet<usize>,
+    ) -> Option<Vec<usize>> {
         let mut is_changed = vec![false; self.names.len()];
-        let mut changes = false;
-        for stmt in self.stmts[gone.clone()].iter().chain(fresh) {
+        let mut changes = !those.is_empty();
+        for stmt in self.stmts[gone.clone()].iter().chain(after.fresh) {
             if stmt.is_wide {
                 return None;
             }
@@ -139,15 +188,17 @@ impl State {
                 (is_changed[*name as usize], changes) = (true, true);
             }
         }
-        let end = gone.start + fresh.len();
-        let mut new: Vec<usize> = (gone.start..end).collect();
+        let fresh = gone.start..gone.start + after.fresh.len();
         if !changes {
-            return Some(new);
+            return Some(fresh.collect());
         }
+        let mut new = vec![];
         let most = (self.stmts.len() / SHARE).max(1);
-        for (i, stmt) in (end..).zip(&self.stmts[gone.end..]) {
-            if stmt.names.uses().any(|(name, _)| is_changed[name as usize]) {
-                if stmt.is_wide || new.len() >= most {
+        let first = those.first().map_or(fresh.start, |first| fresh.start.min(*first));
+        for (i, stmt) in after.iter().enumerate().skip(first) {
+            let is_new = fresh.contains(&i) || those.contains(&i);
+            if is_new || stmt.names.uses().any(|(name, _)| is_changed[name as usize]) {
+                if stmt.is_wide || new.len() >= most + fresh.len() {
                     return None;
                 }
                 stmt.names.defines().iter().for_each(|name| is_changed[*name as usize] = true);
@@ -157,22 +208,22 @@ impl State {
         Some(new)
     }
 
-    /// The statements that are new, and those that define what they use.
+    /// The statements that are new or set something of them, and those that define what they use.
     fn tasks(
         &self,
         (text, edit): (&str, &Edit),
         after: &After<'_>,
         firsts: &Firsts<'_>,
-        (new, trees): (&[usize], Vec<Stmt>),
+        (new, sets): (&[usize], &Sets),
+        mut trees: Vec<Option<Stmt>>,
     ) -> Option<Vec<Task>> {
-        let mut trees = trees.into_iter();
-        let mut met: BTreeSet<usize> = new.iter().copied().collect();
-        let mut open: VecDeque<usize> = new.iter().copied().collect();
+        let mut met: BTreeSet<usize> = new.iter().chain(&sets.setters).copied().collect();
+        let mut open: VecDeque<usize> = met.iter().copied().collect();
         let mut tasks = vec![];
         while let Some(i) = open.pop_front() {
             let (statement, range) = after.get(i, edit);
-            // The fresh ones come first, and their trees are there.
-            let stmt = match trees.next() {
+            let tree = i.checked_sub(after.gone.start).and_then(|k| trees.get_mut(k)?.take());
+            let stmt = match tree {
                 Some(stmt) => stmt,
                 None => read(&text[range], statement.id, &self.settings.budgets)?.0,
             };

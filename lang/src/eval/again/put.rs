@@ -34,7 +34,7 @@ impl State {
                 slot.id = NodeId(nodes[slot.id.0 as usize]);
             }
         }
-        let Plan { edit, gone, fresh, tasks, tables, n_names, told: _ } = plan;
+        let Plan { edit, gone, fresh, tasks, tables, n_names, .. } = plan;
         self.n_names = n_names;
         if let Some(tables) = tables {
             self.tables = tables;
@@ -60,21 +60,19 @@ impl State {
             start += stmt.made.n_items;
         }
         starts.push(start);
-        let n_fresh = plan.fresh.len();
-        let fresh = plan.gone.start..plan.gone.start + n_fresh;
         let mut changes = vec![(starts[plan.gone.start]..starts[plan.gone.end], vec![])];
         let mut items = items.into_iter();
         for (task, made) in plan.tasks.iter().zip(made) {
             let some = items.by_ref().take(made.n_items);
             if !task.is_new {
                 some.for_each(drop);
-            } else if fresh.contains(&task.i) {
-                changes[0].1.extend(some);
-            } else {
-                let old = task.i - n_fresh + plan.gone.len();
+            } else if let Some(old) = plan.old(task.i) {
                 changes.push((starts[old]..starts[old + 1], some.collect()));
+            } else {
+                changes[0].1.extend(some);
             }
         }
+        changes.sort_by_key(|(range, _)| (range.start, range.end));
         // From the end, so that the places before stay what they are.
         for (range, some) in changes.into_iter().rev() {
             self.scene.root.items.splice(range, some);

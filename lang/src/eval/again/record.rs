@@ -8,6 +8,7 @@ use luxel_core::diag::{SourceId, Span};
 
 use super::asked::Questions;
 use super::made::{Cost, Made};
+use super::sets::set_label;
 use super::values::KeptValues;
 use super::{State, Statement, source_of};
 use crate::eval::Evaluator;
@@ -26,20 +27,24 @@ pub(in crate::eval) struct Record {
     /// Where statements may begin.
     from: usize,
     cuts: Vec<Cut>,
-    names: Known,
-    stmts: Vec<Statement>,
-    /// What was spent before the first of them.
-    before: Cost,
-    /// Some statement changes others, in ways that names do not tell.
-    has_sets: bool,
+    pub(super) names: Known,
+    pub(super) stmts: Vec<Statement>,
+    /// What was spent before the first of them and after the last.
+    around: Cost,
+    /// How much is set of labelled things.
+    pub(super) n_sets: usize,
+    /// How much was told of the text and its names.
+    pub(super) n_read: usize,
 }
 
 impl Record {
     fn note(&mut self, stmt: &Stmt, facts: &Facts, made: Made) {
         let names = self.names.numbered(facts);
+        let set = set_label(stmt, &mut self.names);
         let range = self.cuts.get(self.stmts.len()).map_or(0..0, |cut| cut.range.clone());
         let id = narrow(self.stmts.len());
-        self.stmts.push(Statement::new(id, range, names, stmt, facts).with(made));
+        self.stmts
+            .push(Statement { set, ..Statement::new(id, range, names, stmt, facts) }.with(made));
     }
 }
 
@@ -55,7 +60,7 @@ impl Statement {
         let declares = matches!(stmt.node, StmtNode::Units(_) | StmtNode::Param(_));
         let shadows = facts.defines.iter().any(|name| builtins::begins(&name.text));
         let is_wide = declares || shadows;
-        Self { id, range, names, made: Made::default(), declares, shadows, is_wide }
+        Self { id, range, names, made: Made::default(), set: None, declares, shadows, is_wide }
     }
 
     /// The same, evaluated.
@@ -69,7 +74,7 @@ impl Evaluator<'_> {
     pub(in crate::eval) fn begin_record(&mut self, from: usize, cuts: Vec<Cut>) {
         let before = Cost::of(self);
         if let Some(record) = &mut self.record {
-            (record.from, record.cuts, record.before) = (from, cuts, before);
+            (record.from, record.cuts, record.around) = (from, cuts, before);
         }
     }
 
@@ -102,10 +107,14 @@ impl Evaluator<'_> {
         }
     }
 
-    /// All of them have been evaluated, and `set` is still to be.
-    pub(in crate::eval) fn end_record(&mut self) {
+    /// All of them have been evaluated: does what `set` says. So much was told of the text and its names.
+    pub(in crate::eval) fn end_record(&mut self, n_read: usize) {
+        let (n_sets, before) = (self.labels.sets.len(), Cost::of(self));
+        self.apply_sets();
+        let cost = Cost::of(self).minus(before);
         if let Some(record) = &mut self.record {
-            record.has_sets = !self.labels.sets.is_empty();
+            (record.n_sets, record.n_read) = (n_sets, n_read);
+            record.around = record.around.plus(cost);
         }
     }
 
@@ -119,11 +128,16 @@ impl Evaluator<'_> {
         self.lacks();
         let record = self.record.take().filter(|record| {
             let is_whole = record.cuts.len() == record.stmts.len() && !record.stmts.is_empty();
-            is_whole && !record.has_sets && self.sink.is_empty() && !self.damaged && !self.stopped
+            is_whole && self.sink.errors() == 0 && !self.damaged && !self.stopped
         });
-        let Some(record) = record else { return (self.finish(), None) };
+        let known = record.and_then(|mut record| {
+            let ranges: Vec<_> = record.stmts.iter().map(|stmt| stmt.range.clone()).collect();
+            record.warn(&self.sink, &ranges)?;
+            let set_labels = record.set_labels(&self.labels)?;
+            Some((record, ranges, set_labels))
+        });
+        let Some((record, ranges, set_labels)) = known else { return (self.finish(), None) };
         let text: Arc<str> = self.sources.shared(SourceId(0));
-        let ranges: Vec<_> = record.stmts.iter().map(|stmt| stmt.range.clone()).collect();
         let place = |span: Span| in_statement(span, &ranges);
         let mut scene = std::mem::take(&mut self.scene);
         scene.root = std::mem::take(&mut self.open_groups).pop().unwrap_or_default().group;
@@ -149,7 +163,8 @@ impl Evaluator<'_> {
             tables,
             n_names: stmts.iter().map(|stmt| stmt.names.defines().len()).sum(),
             n_shadows: stmts.iter().filter(|stmt| stmt.shadows).count(),
-            spent: stmts.iter().fold(record.before, |sum, stmt| sum.plus(stmt.made.cost)),
+            set_labels,
+            spent: stmts.iter().fold(record.around, |sum, stmt| sum.plus(stmt.made.cost)),
             n_ids: stmts.len(),
             n_kept: scene.nodes.len() + scene.groups.len(),
             stmts,

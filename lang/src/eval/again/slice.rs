@@ -3,12 +3,13 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
+use luxel_core::diag::Diagnostic;
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
 
 use super::made::{Cost, Made};
 use super::plan::{After, Plan, Task};
-use super::{State, Statement};
+use super::{State, Statement, source_of};
 use crate::eval::env::{Env, File};
 use crate::eval::exec::{Body, Place};
 use crate::eval::note::Noting;
@@ -46,19 +47,26 @@ impl State {
         let text: Arc<str> = str::from_utf8(&bytes).ok()?.into();
         let plan = self.plan(&text)?;
         let mut evaluator = Evaluator::new(files, registry, settings, usize::MAX);
-        let made = self.evaluate(&plan, &text, &mut evaluator)?;
-        let values = self.values_after(&plan, evaluator.noted.take())?;
-        let after = After::of(self, &plan.gone, &plan.fresh);
-        let (spent, n_moved) = self.spent(&plan, &made, &after)?;
-        if evaluator.sink.is_stopped() {
+        let (mut made, found) = self.evaluate(&plan, &text, &mut evaluator)?;
+        let before = Cost::of(&evaluator);
+        if !self.set_again(&plan, &mut evaluator) {
             return None;
         }
-        if !plan.told.is_empty() || !evaluator.sink.is_empty() {
-            return self.told(plan, text, evaluator, &values);
+        let set = Cost::of(&evaluator).minus(before);
+        let values = self.values_after(&plan, evaluator.noted.take())?;
+        let after = After::of(self, &plan.gone, &plan.fresh);
+        let (spent, n_moved) = self.spent(&plan, &made, &after, set)?;
+        let is_told_of_sets = !evaluator.sink.kept().is_empty();
+        if evaluator.sink.is_full() || !evaluator.sink.is_whole() || is_told_of_sets {
+            return None;
+        }
+        if plan.is_wrong() || evaluator.sink.errors() > 0 {
+            return self.told(plan, text, (evaluator, found), &values);
         }
         if n_moved > MOVED {
             return None;
         }
+        self.warn(&plan, &mut made, found)?;
         let renamed = self.renamed(&plan.tasks, &made, &after, &plan)?;
         (self.n_evaluated, self.spent) = (plan.tasks.len(), spent);
         self.put(plan, made, text, &mut evaluator, renamed);
@@ -71,22 +79,27 @@ impl State {
         self.scene.nodes.len() + self.scene.groups.len() > 2 * self.n_kept + self.stmts.len()
     }
 
-    /// What each statement of a plan comes to; `None` if that cannot be put in the place of what it did.
+    /// What each statement of a plan comes to and what is told of it; `None` if that cannot be put in the
+    /// place of what it did.
     fn evaluate(
         &self,
         plan: &Plan,
         text: &Arc<str>,
         evaluator: &mut Evaluator<'_>,
-    ) -> Option<Vec<Made>> {
+    ) -> Option<(Vec<Made>, Vec<Vec<Diagnostic>>)> {
         let env = self.surroundings(text, evaluator);
+        let after = After::of(self, &plan.gone, &plan.fresh);
+        let begun = |task: &Task| (task.stmt.span.source, after.get(task.i, &plan.edit).1.start);
+        evaluator.begun.extend(plan.tasks.iter().map(begun));
         let mut body = Body::new(Place::File);
-        let (mut all, mut is_poisoned) = (vec![], false);
+        let (mut all, mut told, mut is_poisoned) = (vec![], vec![], false);
         let mut room = self.room(plan);
         for task in &plan.tasks {
             let Task { stmt, is_new, .. } = task;
             let mark = evaluator.mark();
             let most = plan.most_noted(task, room);
             evaluator.note_at_most(most);
+            evaluator.labels.keep(*is_new && !self.set_labels.is_empty());
             if *is_new {
                 evaluator.begin_noting(Noting { id: stmt.span.source, span: stmt.span });
             }
@@ -99,12 +112,14 @@ impl State {
                 return None;
             }
             all.push(made);
+            told.push(evaluator.sink.take());
         }
         // Nothing comes of a mistake, but without one something does.
-        let is_told = !evaluator.sink.is_empty() || !plan.told.is_empty();
+        let is_told = evaluator.sink.errors() > 0 || plan.is_wrong();
         let is_good = !evaluator.stopped && (is_told || !evaluator.damaged && !is_poisoned);
         let is_alike = evaluator.sources.n_texts() == self.sources.n_texts();
-        (is_good && is_alike && evaluator.labels.sets.is_empty()).then_some(all)
+        let is_set = evaluator.labels.sets.len() == plan.sets.setters.len();
+        (is_good && is_alike && is_set).then_some((all, told))
     }
 
     /// What stands around the statements of the file, with the texts that were read before.
@@ -115,8 +130,10 @@ impl State {
         let read = |stmt: &Statement| {
             // They stand where they stood: what declares is not among what is gone.
             let part = &self.text[stmt.range.clone()];
-            read_piece(part, false, super::source_of(stmt.id), budgets).0
+            read_piece(part, false, source_of(stmt.id), budgets).0
         };
+        let begun = |stmt: &Statement| (source_of(stmt.id), stmt.range.start);
+        evaluator.begun.extend(declaring.clone().map(begun));
         let declared = Tree { stmts: declaring.flat_map(read).collect() };
         let units = evaluator.units(&declared.stmts);
         let overrides = evaluator.settings(&declared, set);
@@ -157,16 +174,22 @@ impl State {
         Some(out)
     }
 
-    /// What is spent now, and how many statements have come to another number of things; `None` if it is
+    /// What is spent now, with the cost of what is `set`, and how many statements have come to another number of things; `None` if it is
     /// more than the budgets allow.
-    fn spent(&self, plan: &Plan, made: &[Made], after: &After<'_>) -> Option<(Cost, usize)> {
+    fn spent(
+        &self,
+        plan: &Plan,
+        made: &[Made],
+        after: &After<'_>,
+        set: Cost,
+    ) -> Option<(Cost, usize)> {
         let gone = self.stmts[plan.gone.clone()].iter();
-        let mut spent = gone.fold(self.spent, |sum, stmt| sum.minus(stmt.made.cost));
-        let (mut n_moved, end) = (0, plan.gone.start + plan.fresh.len());
+        let mut spent = gone.fold(self.spent.plus(set), |sum, stmt| sum.minus(stmt.made.cost));
+        let mut n_moved = 0;
         for (task, made) in plan.tasks.iter().zip(made).filter(|(task, _)| task.is_new) {
             let before = &after.get(task.i, &plan.edit).0.made;
             spent = spent.minus(before.cost).plus(made.cost);
-            n_moved += usize::from(task.i >= end && before.n_items != made.n_items);
+            n_moved += usize::from(!plan.is_fresh(task.i) && before.n_items != made.n_items);
         }
         spent.is_within(&self.settings.budgets).then_some((spent, n_moved))
     }

@@ -1,12 +1,13 @@
 //! What is wrong after an edit, if that is in the statements that it concerns.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
 use luxel_sdk::kind::Kind;
 
 use super::edit::Edit;
+use super::made::Warnings;
 use super::plan::{After, Plan, Task, read};
 use super::values::KeptValues;
 use super::{State, in_file, source_of};
@@ -58,20 +59,28 @@ impl State {
         &mut self,
         plan: Plan,
         text: Arc<str>,
-        evaluator: Evaluator<'_>,
+        (evaluator, found): (Evaluator<'_>, Vec<Vec<Diagnostic>>),
         values: &KeptValues,
     ) -> Option<Loaded> {
-        let Plan { edit, gone, fresh, tasks, told, .. } = plan;
+        // What is set may be wrong for things that are right, and the other way round.
+        if !plan.sets.labels.is_empty() {
+            return None;
+        }
+        let Plan { edit, gone, fresh, tasks, read, names, .. } = plan;
         let after = After::of(self, &gone, &fresh);
         if concerns_others(&after, &tasks, &evaluator) {
             return None;
         }
         let mut sink = Sink::new(self.settings.budgets.diagnostics);
-        for found in told {
+        let now = read.into_iter().zip(gone.start..).map(|(told, i)| (i, told)).collect();
+        merge(&after, now, |warnings| &warnings.read, &mut sink);
+        for found in names {
             sink.push(found);
         }
-        sink.absorb(evaluator.sink);
-        if sink.errors() == 0 || sink.is_full() {
+        let now = tasks.iter().zip(found).filter(|(task, _)| task.is_new);
+        let now = now.map(|(task, told)| (task.i, told)).collect();
+        merge(&after, now, |warnings| &warnings.found, &mut sink);
+        if sink.is_full() {
             return None;
         }
         let begun = (0..after.iter().count()).map(|i| {
@@ -103,8 +112,27 @@ impl State {
     }
 }
 
+/// Tells what is said of each statement now, or was and still is.
+fn merge(
+    after: &After<'_>,
+    mut now: BTreeMap<usize, Vec<Diagnostic>>,
+    kept: fn(&Warnings) -> &Vec<Diagnostic>,
+    sink: &mut Sink,
+) {
+    for (i, stmt) in after.iter().enumerate() {
+        let told = match (now.remove(&i), &stmt.made.rare) {
+            (Some(told), _) => told,
+            (None, Some(rare)) => kept(&rare.warnings).clone(),
+            (None, None) => continue,
+        };
+        for found in told {
+            sink.push(found);
+        }
+    }
+}
+
 /// Whether more may be wrong than with the statements that were evaluated: an expectation is held against
-/// the whole scene, and what two statements give is told of the second.
+/// the whole scene, what two statements give is told of the second, and a camera may be missing.
 fn concerns_others(after: &After<'_>, tasks: &[Task], evaluator: &Evaluator<'_>) -> bool {
     let evaluated: BTreeSet<usize> = tasks.iter().map(|task| task.i).collect();
     let others = after.iter().enumerate().filter(|(i, _)| !evaluated.contains(i));
@@ -114,10 +142,10 @@ fn concerns_others(after: &After<'_>, tasks: &[Task], evaluator: &Evaluator<'_>)
         given.extend(rare.slots.iter().map(|slot| slot.kind));
         expects |= !rare.expectations.is_empty();
     }
-    let n_given = given.len();
+    let (n_given, has_camera) = (given.len(), given.contains(&Kind::Camera));
     given.sort_unstable();
     given.dedup();
-    expects || given.len() < n_given
+    expects || given.len() < n_given || !has_camera
 }
 
 /// The names of the statements after an edit.

@@ -1,0 +1,99 @@
+//! Warnings of statements, kept with them.
+//!
+//! Known are only those whose places all lie in the statement that they are told of.
+
+use std::ops::Range;
+
+use luxel_core::diag::{Diagnostic, Span};
+
+use super::made::{Made, Warnings};
+use super::plan::Plan;
+use super::record::{Record, in_statement};
+use super::{State, Statement, in_file, source_of};
+use crate::sink::Sink;
+
+/// The same with other places.
+fn placed(told: &Diagnostic, place: &dyn Fn(Span) -> Span) -> Diagnostic {
+    let mut told = told.clone();
+    told.labels.iter_mut().for_each(|label| label.span = place(label.span));
+    told.fixes.iter_mut().for_each(|fix| fix.span = place(fix.span));
+    told
+}
+
+/// Whether it concerns nothing but the statement with this number.
+fn is_of(told: &Diagnostic, id: u32) -> bool {
+    let fixes = told.fixes.iter().map(|fix| fix.span);
+    let mut spans = told.labels.iter().map(|label| label.span).chain(fixes);
+    !told.labels.is_empty() && spans.all(|span| span.source == source_of(id))
+}
+
+impl Record {
+    /// Keeps with each statement what is said of it; `None` if something is said of several.
+    pub(super) fn warn(&mut self, sink: &Sink, ranges: &[Range<usize>]) -> Option<()> {
+        let (read, found) =
+            sink.kept().split_at_checked(self.n_read).filter(|_| sink.is_whole())?;
+        let place = |span: Span| in_statement(span, ranges);
+        for told in read {
+            let at = told.span()?.range().start;
+            let i = ranges.partition_point(|range| range.start <= at).checked_sub(1)?;
+            let (told, stmt) = (placed(told, &place), &mut self.stmts[i]);
+            is_of(&told, stmt.id).then(|| stmt.made.warnings_mut().read.push(told))?;
+        }
+        let mut found = found.iter();
+        for stmt in &mut self.stmts {
+            let n_told = stmt.made.rare.as_ref().map_or(0, |rare| rare.n_told);
+            for told in found.by_ref().take(n_told) {
+                let told = placed(told, &place);
+                is_of(&told, stmt.id).then(|| stmt.made.warnings_mut().found.push(told))?;
+            }
+        }
+        found.next().is_none().then_some(())
+    }
+}
+
+impl Plan {
+    /// Whether something is wrong with what is written or with names.
+    pub(super) fn is_wrong(&self) -> bool {
+        self.read.iter().flatten().chain(&self.names).any(Diagnostic::is_error)
+    }
+}
+
+impl State {
+    /// Keeps what is said of the statements that were evaluated; `None` if it is said of others too.
+    pub(super) fn warn(
+        &self,
+        plan: &Plan,
+        made: &mut [Made],
+        found: Vec<Vec<Diagnostic>>,
+    ) -> Option<()> {
+        for ((task, made), found) in plan.tasks.iter().zip(made).zip(found) {
+            if !task.is_new {
+                continue;
+            }
+            let (id, read) = if let Some(old) = plan.old(task.i) {
+                let Statement { id, made, .. } = &self.stmts[old];
+                let read = made.rare.as_ref().map(|rare| rare.warnings.read.clone());
+                (*id, read.unwrap_or_default())
+            } else {
+                let k = task.i - plan.gone.start;
+                (plan.fresh[k].id, plan.read[k].clone())
+            };
+            if !read.iter().chain(&found).all(|told| is_of(told, id)) {
+                return None;
+            }
+            if !read.is_empty() || !found.is_empty() {
+                *made.warnings_mut() = Warnings { read, found };
+            }
+        }
+        Some(())
+    }
+
+    /// All warnings, by places in the file: first of how it is written.
+    pub(super) fn warnings(&self, starts: &[usize]) -> Vec<Diagnostic> {
+        let rare = self.stmts.iter().filter_map(|stmt| stmt.made.rare.as_ref());
+        let (read, found): (Vec<_>, Vec<_>) =
+            rare.map(|rare| (&rare.warnings.read, &rare.warnings.found)).unzip();
+        let all = read.into_iter().chain(found).flatten();
+        all.map(|told| placed(told, &|span| in_file(span, starts))).collect()
+    }
+}

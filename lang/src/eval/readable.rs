@@ -1,5 +1,7 @@
 //! Values as people read them: seven digits, and a unit in which they are neither tiny nor huge.
 
+use std::sync::LazyLock;
+
 use luxel_sdk::params::{Dimension, UNITS, Unit};
 
 use super::value::{Range, Value};
@@ -83,7 +85,6 @@ fn in_units(numbers: &[f64], dimension: Dimension, shown: &dyn Fn(&[f64]) -> Str
     }
     let in_si = format!("{} {}", shown(numbers), si_unit(dimension));
     let most = numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let is_si = |unit: &Unit| (unit.scale - 1.0).abs() <= f64::EPSILON;
     match chosen(dimension, most) {
         Some((name, unit)) if !is_si(&unit) => {
             let scaled: Vec<f64> = numbers.iter().map(|x| x / unit.scale).collect();
@@ -93,24 +94,34 @@ fn in_units(numbers: &[f64], dimension: Dimension, shown: &dyn Fn(&[f64]) -> Str
     }
 }
 
+/// Every unit, with its name.
+static ALL: LazyLock<Vec<(&str, Unit)>> = LazyLock::new(|| {
+    let compound = COMPOUND.iter().filter_map(|name| Some((*name, Unit::parse(name).ok()?)));
+    UNITS.iter().copied().chain(compound).collect()
+});
+
+/// Those that values are told in, the largest first.
+static FALLING: LazyLock<Vec<(&str, Unit)>> = LazyLock::new(|| {
+    let mut all = ALL.clone();
+    all.retain(|(name, _)| !UNSAID.contains(name));
+    all.sort_by(|(_, a), (_, b)| b.scale.total_cmp(&a.scale));
+    all
+});
+
 /// The largest unit of which the number is one or more, else the smallest.
 fn chosen(dimension: Dimension, most: f64) -> Option<(&'static str, Unit)> {
-    let mut fit: Vec<_> = units(dimension).filter(|(name, _)| !UNSAID.contains(name)).collect();
-    fit.sort_by(|(_, a), (_, b)| b.scale.total_cmp(&a.scale));
-    let found = fit.iter().find(|(_, unit)| rounded(most / unit.scale) >= 1.0);
-    found.or(fit.last()).copied().filter(|_| most > 0.0)
+    let mut fit = FALLING.iter().filter(|(_, unit)| unit.dimension == dimension);
+    let found = fit.clone().find(|(_, unit)| rounded(most / unit.scale) >= 1.0);
+    found.or(fit.next_back()).copied().filter(|_| most > 0.0)
+}
+
+fn is_si(unit: &Unit) -> bool {
+    (unit.scale - 1.0).abs() <= f64::EPSILON
 }
 
 fn si_unit(dimension: Dimension) -> String {
-    let mut fit = units(dimension);
-    let found = fit.find(|(_, unit)| (unit.scale - 1.0).abs() <= f64::EPSILON);
-    found.map_or_else(|| dimension.to_string(), |(name, _)| name.to_owned())
-}
-
-fn units(dimension: Dimension) -> impl Iterator<Item = (&'static str, Unit)> {
-    let compound = COMPOUND.iter().filter_map(|name| Some((*name, Unit::parse(name).ok()?)));
-    let all = UNITS.iter().copied().chain(compound);
-    all.filter(move |(_, unit)| unit.dimension == dimension)
+    let found = ALL.iter().find(|(_, unit)| unit.dimension == dimension && is_si(unit));
+    found.map_or_else(|| dimension.to_string(), |(name, _)| (*name).to_owned())
 }
 
 #[cfg(test)]

@@ -90,8 +90,7 @@ pub(crate) struct State {
     set_labels: BTreeSet<u32>,
     stmts: Vec<Statement>,
     n_ids: usize,
-    /// All nodes and groups of all statements, those that are gone too; hashed, in no order but that each
-    /// stands behind those that it refers to.
+    /// All nodes and groups of all statements, those that are gone too; hashed, in no order.
     scene: Scene,
     /// Nodes and groups when nothing was gone.
     n_kept: usize,

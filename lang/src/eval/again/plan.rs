@@ -18,6 +18,9 @@ use crate::syntax::{Stmt, read_head, read_piece};
 /// Of how many statements one at most is evaluated again: of more, all are as soon.
 const SHARE: usize = 4;
 
+/// How often at most something that is set may bring on more that is: each time all names are looked through.
+const ROUNDS: usize = 8;
+
 /// What an edit comes to.
 pub(super) struct Plan {
     pub(super) edit: Edit,
@@ -153,7 +156,8 @@ impl State {
         gone.len() == fresh.len() && pairs.all(|(one, other)| one.names == other.names)
     }
 
-    /// The statements that come to something else, with those of which something else is set.
+    /// The statements that come to something else, with those of which something else is set; `None` if they
+    /// are too many, or come after one another too often.
     fn concerned_with_sets(
         &self,
         gone: &Range<usize>,
@@ -161,7 +165,7 @@ impl State {
         firsts: &Firsts<'_>,
     ) -> Option<(Vec<usize>, Sets)> {
         let mut bearers = BTreeSet::new();
-        loop {
+        for _ in 0..ROUNDS {
             let new = self.concerned(gone, after, &bearers)?;
             let sets = self.sets(gone, after, firsts, &new)?;
             if sets.bearers.iter().all(|i| new.binary_search(i).is_ok()) {
@@ -169,6 +173,7 @@ impl State {
             }
             bearers.clone_from(&sets.bearers);
         }
+        None
     }
 
     /// The statements that are new, one of `those`, or use a name that a statement with another value defines.

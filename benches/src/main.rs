@@ -35,8 +35,14 @@ mod watch;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use luxel_core::memory::Memory;
+
 use process::Luxel;
 use tables::Part;
+
+/// As in the program under test.
+#[global_allocator]
+pub(crate) static MEMORY: Memory = Memory::new();
 
 /// With which programs something is measured.
 struct Plan {
@@ -165,6 +171,7 @@ fn plan(mut words: impl Iterator<Item = String>) -> Result<(&'static [Bench], Pl
 }
 
 fn main() -> ExitCode {
+    MEMORY.begin();
     if parse::once() || evaluate::once() {
         return ExitCode::SUCCESS;
     }

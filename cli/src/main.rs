@@ -47,8 +47,13 @@ mod written;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use luxel_core::memory::Memory;
 
 use crate::exit::{Exit, Failure};
+
+/// What large scenes take is given back sooner.
+#[global_allocator]
+static MEMORY: Memory = Memory::new();
 
 /// A scene written as text becomes a picture that obeys physics and says how wrong it may be.
 #[derive(Parser)]
@@ -92,6 +97,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    MEMORY.begin();
     let cli = match Cli::try_parse_from(watch::with_address(std::env::args_os())) {
         Ok(cli) => cli,
         Err(error) => {

@@ -8,6 +8,7 @@ pub mod accel;
 pub mod diag;
 pub mod files;
 pub mod film;
+pub mod memory;
 pub mod object;
 pub mod registry;
 pub mod render;

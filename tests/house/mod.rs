@@ -85,6 +85,8 @@ const ROOMS: [(&str, &[&str]); 17] = [
             "core/src/object/",
             "core/src/accel/",
             "core/src/registry/dynamic",
+            // An allocator.
+            "core/src/memory.rs",
         ],
     ),
     ("static mut", &[]),

@@ -3,6 +3,7 @@
 mod checker;
 mod decode;
 mod exr;
+mod unpack;
 mod image;
 mod jpeg;
 mod scale;

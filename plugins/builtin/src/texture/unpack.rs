@@ -20,8 +20,8 @@ use crate::stop::go_on;
 
 /// Between two looks at whether a picture is still wanted, while its blocks are waited for.
 const PATIENCE: Duration = Duration::from_millis(1);
-/// Blocks that are read ahead of those that are being unpacked.
-const AHEAD: usize = 2;
+/// Blocks for each thread that are in hand, or done or read ahead while an earlier one takes longer.
+const AHEAD: usize = 4;
 
 /// A block, or what is wrong with it.
 pub(super) type Unpacked = ::exr::error::Result<UncompressedBlock>;
@@ -56,7 +56,7 @@ pub(super) fn unpack(
         let (to, block) = mpsc::channel();
         jobs.send(Job { chunk: chunk.ok()?, to }).ok()?;
         blocks.push_back(block);
-        if blocks.len() > n_threads + AHEAD {
+        if blocks.len() >= AHEAD * n_threads {
             take(&meta, wait(&blocks.pop_front()?, context)?)?;
         }
     }

@@ -215,48 +215,51 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
 
 #[test]
 fn beside_warnings_and_what_is_set_an_edit_concerns_its_statement() {
-    let lines = |radius: &str, set: &str| -> Vec<String> {
-        let more =
-            (0..60).map(|i| format!("shape sphere {{ radius = {radius}, center = (0, {i}, 0) }}"));
-        let head = [
-            "let r = 5 cm",
-            "let q = 1 cm",
-            "/// What is said of nothing.",
-            "material dielectric { }",
-        ];
-        let set = [
-            "shape sphere \"one\" { radius = 1 m }",
-            set,
-            "twice(q)",
-            "fn half(x: length) = x / 2",
-        ];
-        let [one, set, call, half] = set.map(str::to_owned);
-        let call = call.replace("twice", "half");
-        head.map(str::to_owned)
-            .into_iter()
-            .chain([half, one])
-            .chain(more)
-            .chain([set, call])
-            .collect()
-    };
+    let mut now = [
+        "let r = 5 cm",
+        "let q = 1 cm",
+        "material dielectric { }",
+        "fn half(x: length) = x / 2",
+        "half(q)",
+        "shape sphere \"one\" { radius = 1 m }",
+        "set one.radius = 2 * q",
+        CAMERA,
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    now.extend((0..60).map(|i| format!("shape disk {{ radius = 2 m, center = (0, {i}, 0) }}")));
     let settings = Settings { noting: true, ..Settings::default() };
     let (registry, kept) = (registry(), Kept::default());
     let mut edited =
         Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
     let mut n = |lines: &[String]| {
-        let loaded = edited.load(&format!("{}\n{CAMERA}\n", text_of(lines)), "an edit");
-        let n_warnings = loaded.diagnostics.len();
-        (edited.kept.n_evaluated().unwrap_or_default(), n_warnings)
+        let loaded = edited.load(&text_of(lines), "an edit");
+        (edited.kept.n_evaluated().unwrap_or_default(), loaded.diagnostics.len())
     };
-    let mut now = lines("2 m", "set one.radius = 2 * q");
     assert_eq!(n(&now).1, 2);
-    // One of many alone; what is set with what it is set of; a mistake beside the warnings.
+    // One of many and what it uses.
     now[20] = now[20].replace("2 m", "r");
     assert_eq!(n(&now), (2, 2));
+    // A length, the call that it is given to, the function, the sphere of which it is set, the `set`.
     now[1] = "let q = 2 cm".to_owned();
     assert_eq!(n(&now), (5, 2));
+    // The sphere, the `set`, the length.
     now[5] = now[5].replace("1 m", "3 m");
     assert_eq!(n(&now), (3, 2));
     now[21] = now[21].replace("2 m", "2 s");
     assert_eq!(n(&now), (1, 3));
+}
+
+#[test]
+fn a_mistake_in_place_of_the_camera_leaves_the_camera_missing() {
+    let settings = Settings::default();
+    let (registry, kept) = (registry(), Kept::default());
+    let mut edited =
+        Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
+    let mut lines = vec!["shape sphere { radius = 1 m }".to_owned(), CAMERA.to_owned()];
+    assert!(is_good(&edited.load(&text_of(&lines), "with a camera")));
+    lines[1] = "shape sphere { radius = 1 s }".to_owned();
+    let codes: Vec<_> =
+        edited.load(&text_of(&lines), "without").diagnostics.iter().map(|it| it.code).collect();
+    assert!(codes.contains(&"E0409"), "{codes:?}");
 }

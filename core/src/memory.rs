@@ -31,7 +31,7 @@ struct Block {
 unsafe impl Send for Block {}
 
 /// From how many bytes on memory is large: two milliseconds' work to give back. What is smaller glibc comes
-/// to keep for the next who asks, which is sooner still.
+/// to keep for the next who asks, which is sooner still (its `M_MMAP_THRESHOLD` grows to this much).
 const LARGE: usize = 32 << 20;
 /// Bytes that may wait.
 const MOST: usize = 1 << 30;

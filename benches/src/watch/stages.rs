@@ -115,12 +115,12 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
         let scene = scene_in(&registry, &texts)?;
         let load = Load { scene: &scene, registry: &registry, files: &files };
         let whole = load.whole(part)?;
-        let [until, threads] = load.given_up(part, whole).map(|ms| {
+        let [ended, free] = load.given_up(part, whole).map(|ms| {
             let [p50, p95, p99] = [50, 95, 99].map(|percent| ms.percentile(percent));
             format!("{p50:.1} / {p95:.1} / {p99:.1}")
         });
         let whole = whole.as_secs_f64() * 1e3;
-        println!("{name:<46}{TIMES:>4}{until:>24}{threads:>24}  of {whole:.0}");
+        println!("{name:<46}{TIMES:>4}{ended:>24}{free:>24}  of {whole:.0}");
     }
     Ok(())
 }

@@ -203,6 +203,12 @@ impl Diagnostic {
         self.labels.first().map(|label| label.span)
     }
 
+    /// Changes every place that it tells of.
+    pub fn place(&mut self, place: impl Fn(Span) -> Span) {
+        self.labels.iter_mut().for_each(|label| label.span = place(label.span));
+        self.fixes.iter_mut().for_each(|fix| fix.span = place(fix.span));
+    }
+
     /// Whether the scene cannot be rendered.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error

@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn what_is_gathered_is_what_is_compact() {
-        let nodes = vec![node(0, None), node(1, None), node(2, None), node(3, Some(2))];
+        let nodes = vec![node(0, None), node(1, Some(2)), node(2, None), node(3, Some(1))];
         let mut scene = Scene { nodes, camera: Some(NodeId(0)), ..Scene::default() };
         let inner = Group { label: None, items: vec![placed(Target::Node(NodeId(3)), 0)] };
         scene.groups = vec![Group::default(), inner];

@@ -229,13 +229,11 @@ impl Document {
                 return true;
             }
             let moved = at >= range.end && met.is_some_and(|met| shift(at) >= met);
-            let place = |span: &mut Span| {
-                let range = span.range();
-                *span = Span::new(span.source, shift(range.start), shift(range.end));
-            };
             if moved {
-                fault.labels.iter_mut().for_each(|label| place(&mut label.span));
-                fault.fixes.iter_mut().for_each(|fix| place(&mut fix.span));
+                fault.place(|span| {
+                    let range = span.range();
+                    Span::new(span.source, shift(range.start), shift(range.end))
+                });
             }
             moved
         });

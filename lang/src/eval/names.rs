@@ -205,9 +205,7 @@ fn scope(odd: &Odd<'_>, around: &dyn Around) -> Scope {
 
 /// Brings a diagnostic of a statement into its file.
 pub(crate) fn place(diagnostic: &mut Diagnostic, start: usize) {
-    let place = |span: &mut Span| *span = moved(*span, start);
-    diagnostic.labels.iter_mut().for_each(|label| place(&mut label.span));
-    diagnostic.fixes.iter_mut().for_each(|fix| place(&mut fix.span));
+    diagnostic.place(|span| moved(span, start));
 }
 
 /// A relative span in its file.

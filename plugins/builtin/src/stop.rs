@@ -161,13 +161,18 @@ pub(crate) mod testing {
         let whole = Patience::endless();
         assert!(work(&whole).is_ok(), "the whole work fails");
         let looks = whole.looks.get();
+        ends_within(looks, work);
+        looks
+    }
+
+    /// The same of work that takes at least so many looks.
+    pub(crate) fn ends_within<T, E>(looks: usize, work: impl Fn(&Patience) -> Result<T, E>) {
         for most in (0..looks).step_by(looks / 50 + 1) {
             let patience = Patience::of(most);
             assert!(work(&patience).is_err(), "it was done after {most} looks of {looks}");
             let after = patience.looks.get() - most;
             assert!(after <= 20, "went on for {after} looks after {most} of {looks}");
         }
-        looks
     }
 }
 

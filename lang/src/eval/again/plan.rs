@@ -6,7 +6,7 @@ use std::ops::Range;
 use luxel_core::diag::Diagnostic;
 
 use super::edit::{Edit, Recut, recut};
-use super::sets::{Sets, set_label};
+use super::sets::Sets;
 use super::{State, Statement, source_of};
 use crate::eval::builtins;
 use crate::eval::mention::mention_stmts;
@@ -124,9 +124,7 @@ impl State {
             }
             said.push(found);
             let facts = Facts::of(part, std::slice::from_ref(&stmt));
-            let names = self.names.numbered(&facts);
-            let set = set_label(&stmt, &mut self.names);
-            fresh.push(Statement { set, ..Statement::new(id, range, names, &stmt, &facts) });
+            fresh.push(Statement::new(id, range, &stmt, &facts, &mut self.names));
             trees.push(Some(stmt));
         }
         let after = After::of(self, &gone, &fresh);

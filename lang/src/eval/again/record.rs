@@ -39,12 +39,9 @@ pub(in crate::eval) struct Record {
 
 impl Record {
     fn note(&mut self, stmt: &Stmt, facts: &Facts, made: Made) {
-        let names = self.names.numbered(facts);
-        let set = set_label(stmt, &mut self.names);
         let range = self.cuts.get(self.stmts.len()).map_or(0..0, |cut| cut.range.clone());
         let id = narrow(self.stmts.len());
-        self.stmts
-            .push(Statement { set, ..Statement::new(id, range, names, stmt, facts) }.with(made));
+        self.stmts.push(Statement::new(id, range, stmt, facts, &mut self.names).with(made));
     }
 }
 
@@ -53,14 +50,15 @@ impl Statement {
     pub(super) fn new(
         id: u32,
         range: Range<usize>,
-        names: crate::eval::names::Numbered,
         stmt: &Stmt,
         facts: &Facts,
+        known: &mut Known,
     ) -> Self {
+        let (names, set) = (known.numbered(facts), set_label(stmt, known));
         let declares = matches!(stmt.node, StmtNode::Units(_) | StmtNode::Param(_));
         let shadows = facts.defines.iter().any(|name| builtins::begins(&name.text));
         let is_wide = declares || shadows;
-        Self { id, range, names, made: Made::default(), set: None, declares, shadows, is_wide }
+        Self { id, range, names, made: Made::default(), set, declares, shadows, is_wide }
     }
 
     /// The same, evaluated.

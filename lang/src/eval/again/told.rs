@@ -89,11 +89,7 @@ impl State {
         });
         let mut starts = vec![0; self.n_ids + fresh.len()];
         begun.clone().for_each(|(start, id)| starts[id as usize] = start);
-        let place = |span: &mut Span| *span = in_file(*span, &starts);
-        sink.each(&mut |found| {
-            found.labels.iter_mut().for_each(|label| place(&mut label.span));
-            found.fixes.iter_mut().for_each(|fix| place(&mut fix.span));
-        });
+        sink.each(&mut |found| found.place(|span| in_file(span, &starts)));
         let mut sources = self.sources.clone();
         sources.replace(SourceId(0), text);
         let param =

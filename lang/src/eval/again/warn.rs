@@ -13,10 +13,9 @@ use super::{State, Statement, in_file, source_of};
 use crate::sink::Sink;
 
 /// The same with other places.
-fn placed(told: &Diagnostic, place: &dyn Fn(Span) -> Span) -> Diagnostic {
+fn placed(told: &Diagnostic, place: impl Fn(Span) -> Span) -> Diagnostic {
     let mut told = told.clone();
-    told.labels.iter_mut().for_each(|label| label.span = place(label.span));
-    told.fixes.iter_mut().for_each(|fix| fix.span = place(fix.span));
+    told.place(place);
     told
 }
 
@@ -36,14 +35,14 @@ impl Record {
         for told in read {
             let at = told.span()?.range().start;
             let i = ranges.partition_point(|range| range.start <= at).checked_sub(1)?;
-            let (told, stmt) = (placed(told, &place), &mut self.stmts[i]);
+            let (told, stmt) = (placed(told, place), &mut self.stmts[i]);
             is_of(&told, stmt.id).then(|| stmt.made.warnings_mut().read.push(told))?;
         }
         let mut found = found.iter();
         for stmt in &mut self.stmts {
             let n_told = stmt.made.rare.as_ref().map_or(0, |rare| rare.n_told);
             for told in found.by_ref().take(n_told) {
-                let told = placed(told, &place);
+                let told = placed(told, place);
                 is_of(&told, stmt.id).then(|| stmt.made.warnings_mut().found.push(told))?;
             }
         }
@@ -94,6 +93,6 @@ impl State {
         let (read, found): (Vec<_>, Vec<_>) =
             rare.map(|rare| (&rare.warnings.read, &rare.warnings.found)).unzip();
         let all = read.into_iter().chain(found).flatten();
-        all.map(|told| placed(told, &|span| in_file(span, starts))).collect()
+        all.map(|told| placed(told, |span| in_file(span, starts))).collect()
     }
 }

@@ -3,12 +3,12 @@
 mod checker;
 mod decode;
 mod exr;
-mod unpack;
 mod image;
 mod jpeg;
 mod scale;
 #[cfg(test)]
 pub(crate) mod testing;
+mod unpack;
 mod vertex_color;
 
 pub(crate) use decode::{Pixels, Wrap, decode};

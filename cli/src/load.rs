@@ -128,6 +128,7 @@ pub(crate) fn read(
 ) -> Result<Text, Failure> {
     let mut text = blaming(&path.display().to_string(), || {
         let files = DiskFiles::new(path, &args.allow_path).knowing(known).telling(asked);
+        let files = files.until(watch.flag());
         beat.reading(files.shared());
         beat.phase(Phase::Loading);
         let settings = luxel_lang::Settings {

@@ -7,9 +7,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
-use luxel_core::files::{FileError, Files, MemoryFiles};
-use luxel_core::registry::Registry;
-use luxel_core::scene::{Hash, Scene};
+use luxel_core::files::{FileError, Files, MemoryFiles, read_whole};
+use luxel_core::scene::Hash;
 use luxel_core::stage::build_watched;
 use luxel_sdk::sampling::Rng;
 
@@ -24,6 +23,11 @@ use crate::series::Series;
 const TIMES: usize = 60;
 /// Columns and rows of the pictures: as many pixels as 4096 × 2048.
 const SIDE: u32 = 2896;
+/// Those of the landscape whose tree is built: it takes long enough.
+const SMALL: u32 = 1024;
+
+/// Megabytes of the files that are read.
+const READ: [usize; 2] = [19, 300];
 
 /// What every scene has.
 const HEAD: &str = "scene 1
@@ -54,7 +58,7 @@ enum Part {
     Tree,
 }
 
-/// Files in memory whose hashes are known: reading and hashing are the disk's and are not measured.
+/// Files in memory whose hashes are known: reading and hashing them are measured by themselves.
 struct Held {
     files: MemoryFiles,
     hashes: BTreeMap<PathBuf, Hash>,
@@ -91,7 +95,9 @@ impl Files for Held {
 pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
     let files = Held { files: MemoryFiles::default(), hashes: BTreeMap::new() };
     let files = files.with("large.ply", grid(LARGE));
-    let [exr, png] = pictures(luxel)?;
+    let [_, png] = pictures(luxel, SMALL)?;
+    let files = files.with("small.png", png);
+    let [exr, png] = pictures(luxel, SIDE)?;
     let files = files.with("seen.exr", exr).with("seen.png", png);
     let painted = |name: &str| PAINTED.replace("FILE", name);
     let n = 2 * (LARGE - 1) * (LARGE - 1);
@@ -99,7 +105,14 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
     println!(
         "then until its last thread ends and its memory is given back; and what the whole takes"
     );
-    println!("pictures of {SIDE} x {SIDE} pixels; reading files and hashing them is left out");
+    println!(
+        "pictures of {SIDE} x {SIDE} pixels; files are in memory, but where they alone are read"
+    );
+    for mb in READ {
+        let path = write("read.bin", &vec![7; mb << 20])?;
+        let work = |watch: &Watch| is_read(&path, watch);
+        told(&format!("file of {mb} MB, read and hashed"), Part::Any, &work)?;
+    }
     let cases = [
         (format!("PLY of {n} triangles, read"), MESH.to_owned(), Part::Before),
         ("its tree, built".to_owned(), MESH.to_owned(), Part::Tree),
@@ -107,37 +120,57 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
         ("texture of an EXR, decoded".to_owned(), painted("seen.exr"), Part::Any),
         ("environment of an EXR, decoded and weighed".to_owned(), SKY.to_owned(), Part::Any),
         ("heightfield of a PNG, decoded and laid out".to_owned(), LAND.to_owned(), Part::Before),
+        (
+            format!("tree of one of {SMALL} x {SMALL}, built"),
+            LAND.replace("seen", "small"),
+            Part::Tree,
+        ),
     ];
     let registry = linked();
     for (name, text, part) in cases {
         let lit = if text == SKY { "" } else { "light constant { radiance = 1 W/m^2/sr }\n" };
         let texts = MemoryFiles::default().with("a.scene", format!("{HEAD}{lit}{text}").as_bytes());
         let scene = scene_in(&registry, &texts)?;
-        let load = Load { scene: &scene, registry: &registry, files: &files };
-        let whole = load.whole(part)?;
-        let [ended, free] = load.given_up(part, whole).map(|ms| {
-            let [p50, p95, p99] = [50, 95, 99].map(|percent| ms.percentile(percent));
-            format!("{p50:.1} / {p95:.1} / {p99:.1}")
-        });
-        let whole = whole.as_secs_f64() * 1e3;
-        println!("{name:<46}{TIMES:>4}{ended:>24}{free:>24}  of {whole:.0}");
+        let work = |watch: &Watch| build_watched(&scene, &registry, &files, None, watch).is_ok();
+        told(&name, part, &work)?;
     }
     Ok(())
 }
 
-/// A picture of this program's, as EXR and as PNG.
-fn pictures(luxel: &Luxel) -> Result<[Vec<u8>; 2], String> {
+/// Prints what giving up some work comes to.
+fn told(name: &str, part: Part, work: &(dyn Fn(&Watch) -> bool + Sync)) -> Result<(), String> {
+    let load = Load { work };
+    let whole = load.whole(part)?;
+    let [ended, free] = load.given_up(part, whole).map(|ms| {
+        let [p50, p95, p99] = [50, 95, 99].map(|percent| ms.percentile(percent));
+        format!("{p50:.1} / {p95:.1} / {p99:.1}")
+    });
+    let whole = whole.as_secs_f64() * 1e3;
+    println!("{name:<46}{TIMES:>4}{ended:>24}{free:>24}  of {whole:.0}");
+    Ok(())
+}
+
+/// Reads a file from the disk, or rather from the system's memory, as the program does; whether all of it.
+fn is_read(path: &Path, watch: &Watch) -> bool {
+    #[expect(clippy::disallowed_methods, reason = "the reading of files is what is measured")]
+    let file = std::fs::File::open(path).expect("it has just been written");
+    let length = file.metadata().expect("it is open").len();
+    let n = usize::try_from(length).expect("it has been in memory");
+    read_whole(file, n, length, &watch.flag()).is_ok()
+}
+
+/// A picture of this program's, as EXR and as PNG, of so many columns and rows.
+fn pictures(luxel: &Luxel, side: u32) -> Result<[Vec<u8>; 2], String> {
     let scene = write("seen.scene", format!("{HEAD}{SEEN}").as_bytes())?;
-    luxel.render(&scene, SIDE, 1)?;
+    luxel.render(&scene, side, 1)?;
     let of = |name: &str| read(&scratch()?.join(name));
     Ok([of("picture.exr")?, of("picture.png")?])
 }
 
 /// What is loaded, again and again.
 struct Load<'a> {
-    scene: &'a Scene,
-    registry: &'a Registry,
-    files: &'a Held,
+    /// Whether it was done before the watch was cancelled.
+    work: &'a (dyn Fn(&Watch) -> bool + Sync),
 }
 
 impl Load<'_> {
@@ -153,7 +186,7 @@ impl Load<'_> {
                 Part::Before => tree - began,
                 Part::Tree => end - tree,
             };
-            is_made.then_some(took).ok_or_else(|| "a scene that cannot be built".to_owned())
+            is_made.then_some(took).ok_or_else(|| "what cannot be loaded".to_owned())
         })
     }
 
@@ -186,8 +219,7 @@ impl Load<'_> {
 
     /// Whether it is whole, and when it came to its end.
     fn load(&self, watch: &Watch) -> (bool, Instant) {
-        let is_made = build_watched(self.scene, self.registry, self.files, None, watch).is_ok();
-        (is_made, Instant::now())
+        ((self.work)(watch), Instant::now())
     }
 }
 

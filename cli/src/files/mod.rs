@@ -5,12 +5,13 @@ mod stamp;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use luxel_core::diag::Sources;
-use luxel_core::files::{FileError, Files, normalise};
+use luxel_core::files::{FileError, Files, Whole, hash_whole, normalise, read_whole};
 use luxel_core::scene::Hash;
 
 pub(crate) use known::Known;
@@ -18,9 +19,6 @@ pub(crate) use stamp::{Identity, Stamp, identity};
 
 /// Bytes of one file, at most: far above any mesh, below what would take a machine down.
 const MAX_BYTES: u64 = 4 << 30;
-
-/// Bytes that are hashed at a time: they stay in the processor's cache, and are enough for all its lanes.
-const PIECE: usize = 256 << 10;
 
 /// Hash of a file's bytes, or of the names of the libraries in a folder; `None` when it could not be
 /// read.
@@ -40,6 +38,8 @@ pub(crate) struct DiskFiles {
     /// Of what was read, the hash of its bytes: in one load a file is one thing.
     read: Mutex<BTreeMap<PathBuf, Hash>>,
     known: Known,
+    /// Set once nothing more is to be read.
+    stop: Arc<AtomicBool>,
 }
 
 impl DiskFiles {
@@ -52,7 +52,13 @@ impl DiskFiles {
         let allowed = std::iter::once(own).chain(allow.iter().map(PathBuf::as_path));
         // A folder that does not exist holds nothing that could be allowed.
         let allowed = allowed.filter_map(|folder| fs::canonicalize(folder).ok()).collect();
-        Self { allowed, asked: Asked::default(), read: Mutex::default(), known: Known::default() }
+        let (asked, read, known, stop) = Default::default();
+        Self { allowed, asked, read, known, stop }
+    }
+
+    /// The same, that read nothing more once this is set.
+    pub(crate) fn until(self, stop: Arc<AtomicBool>) -> Self {
+        Self { stop, ..self }
     }
 
     /// The same, for whoever watches files and knows what is in them.
@@ -97,7 +103,7 @@ impl DiskFiles {
 
     /// Where a file is, if it may be read.
     fn place(&self, path: &Path) -> Result<PathBuf, FileError> {
-        let place = fs::canonicalize(path).map_err(|error| told(&error))?;
+        let place = fs::canonicalize(path).map_err(|error| FileError::from(&error))?;
         let allowed = self.allowed.iter().any(|folder| place.starts_with(folder));
         if allowed { Ok(place) } else { Err(FileError::Outside) }
     }
@@ -107,8 +113,9 @@ impl DiskFiles {
         self.place(path) == Err(FileError::Outside)
     }
 
-    fn fetch(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
-        read_regular(&self.place(path)?).map(Arc::from)
+    fn fetch(&self, path: &Path) -> Result<Whole, FileError> {
+        let (file, length) = open_regular(&self.place(path)?, MAX_BYTES)?;
+        read_whole(file, length, MAX_BYTES, &self.stop)
     }
 
     fn note(&self, path: &Path, seen: Seen) {
@@ -119,18 +126,21 @@ impl DiskFiles {
 
 impl Files for DiskFiles {
     fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
-        let found = self.fetch(path);
-        let seen = match &found {
-            Ok(bytes) => {
-                let hash = blake3::hash(bytes);
-                lock(&self.read).insert(path.to_path_buf(), hash.into());
-                Some(hash)
+        match self.fetch(path) {
+            Ok((bytes, hash)) => {
+                lock(&self.read).insert(path.to_path_buf(), hash);
+                self.note(path, Some(hash.into()));
+                Ok(bytes)
             }
+            // It is not known what is there.
+            Err(FileError::Unwanted) => Err(FileError::Unwanted),
             // A folder, or a file that may not be read, is no news if it stays as it is.
-            Err(_) => look(path).filter(|_| self.fetch(path).is_err()),
-        };
-        self.note(path, seen);
-        found
+            Err(error) => {
+                let seen = seen(path, &self.stop).filter(|_| self.fetch(path).is_err());
+                self.note(path, seen);
+                Err(error)
+            }
+        }
     }
 
     fn hash(&self, path: &Path) -> Option<Hash> {
@@ -157,28 +167,16 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// What is there now.
 pub(crate) fn look(path: &Path) -> Seen {
+    seen(path, &AtomicBool::new(false))
+}
+
+/// The same, unless it is not wanted any more.
+fn seen(path: &Path, stop: &AtomicBool) -> Seen {
     if path.is_dir() {
         return fs::read_dir(path).ok().map(|entries| names_of_libraries(entries.flatten()));
     }
-    hash(path).ok()
-}
-
-/// The hash of a regular file, read piece by piece: room for a whole mesh takes the system longer to give
-/// than its bytes take to read.
-fn hash(path: &Path) -> Result<blake3::Hash, FileError> {
-    let file = open_regular(path, MAX_BYTES)?;
-    let length = file.metadata().map_or(PIECE as u64, |about| about.len());
-    let mut piece = vec![0; usize::try_from(length).map_or(PIECE, |n| n.clamp(1, PIECE))];
-    let (mut file, mut hasher) = (file.take(MAX_BYTES + 1), blake3::Hasher::new());
-    loop {
-        match file.read(&mut piece) {
-            Ok(0) => break,
-            Ok(n) => _ = hasher.update(&piece[..n]),
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(told(&error)),
-        }
-    }
-    if file.limit() == 0 { Err(FileError::TooLarge(MAX_BYTES)) } else { Ok(hasher.finalize()) }
+    let (file, length) = open_regular(path, MAX_BYTES).ok()?;
+    hash_whole(file, length, MAX_BYTES, stop).ok().map(blake3::Hash::from)
 }
 
 /// Other files come and go in a folder of libraries and concern nobody.
@@ -196,17 +194,16 @@ pub(crate) fn read_regular(path: &Path) -> Result<Vec<u8>, FileError> {
 
 /// The bytes of a regular file, if it has at most so many.
 pub(crate) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
-    let file = open_regular(path, limit)?;
-    let length = file.metadata().map_or(0, |about| about.len().min(limit));
-    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| told(&error))?;
+    let (file, length) = open_regular(path, limit)?;
+    let mut bytes = Vec::with_capacity(length);
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| FileError::from(&error))?;
     if bytes.len() as u64 > limit { Err(FileError::TooLarge(limit)) } else { Ok(bytes) }
 }
 
-/// A regular file to be read, if it has at most so many bytes; a pipe or a device would wait for
-/// ever or never end.
-pub(crate) fn open_regular(path: &Path, limit: u64) -> Result<fs::File, FileError> {
-    let about = fs::metadata(path).map_err(|error| told(&error))?;
+/// A regular file to be read and its length, if it has at most so many bytes; a pipe or a device would
+/// wait for ever or never end.
+pub(crate) fn open_regular(path: &Path, limit: u64) -> Result<(fs::File, usize), FileError> {
+    let about = fs::metadata(path).map_err(|error| FileError::from(&error))?;
     if !about.is_file() {
         let what = if about.is_dir() { "it is a folder" } else { "it is not a regular file" };
         return Err(FileError::Unreadable(what.into()));
@@ -215,18 +212,15 @@ pub(crate) fn open_regular(path: &Path, limit: u64) -> Result<fs::File, FileErro
         return Err(FileError::TooLarge(limit));
     }
     #[expect(clippy::disallowed_methods, reason = "the one place where files are opened")]
-    fs::File::open(path).map_err(|error| told(&error))
-}
-
-fn told(error: &io::Error) -> FileError {
-    match error.kind() {
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => FileError::NotFound,
-        _ => FileError::Unreadable(error.to_string()),
-    }
+    let file = fs::File::open(path).map_err(|error| FileError::from(&error))?;
+    let length = usize::try_from(about.len()).map_err(|_| FileError::TooLarge(limit))?;
+    Ok((file, length))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::Ordering;
+
     use super::*;
     use crate::testing::Folder;
 
@@ -253,14 +247,17 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_any_length_has_the_hash_of_its_bytes() {
-        let folder = Folder::new("hashes");
-        for n in [0, 1, 1000, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE, 3 * PIECE + 7] {
-            let bytes: Vec<_> = (0..n).map(|i| u8::try_from(i * 7 % 251).unwrap()).collect();
-            folder.write("a", &bytes);
-            assert_eq!(look(&folder.path("a")), Some(blake3::hash(&bytes)), "{n}");
-        }
-        assert_eq!(look(&folder.path("none")), None);
+    fn what_is_not_wanted_any_more_is_neither_read_nor_noted() {
+        let folder = Folder::new("unwanted-files");
+        folder.write("a.ply", b"ply");
+        let (path, none) = (folder.path("a.ply"), folder.path("none"));
+        let stop = Arc::new(AtomicBool::new(false));
+        let files = DiskFiles::new(&path, &[]).until(stop.clone());
+        stop.store(true, Ordering::Relaxed);
+        assert_eq!(files.read(&path), Err(FileError::Unwanted));
+        assert_eq!(Files::hash(&files, &path), None);
+        assert_eq!(files.read(&none), Err(FileError::NotFound));
+        assert_eq!(files.asked(), Watched::from([(none, None)]), "nobody knows what is there");
     }
 
     #[test]

@@ -33,7 +33,7 @@ impl PrivateCopy {
     /// # Errors
     /// What stands in the way, in words.
     pub(super) fn take(file: &Path, stem: &str, generation: u32) -> Result<Self, String> {
-        let from = open_regular(file, MAX_BYTES).map_err(|error| error.to_string())?;
+        let (from, _) = open_regular(file, MAX_BYTES).map_err(|error| error.to_string())?;
         match Self::of(from, stem, generation) {
             Ok(Some(copy)) => Ok(copy),
             Ok(None) => Err(FileError::TooLarge(MAX_BYTES).to_string()),
@@ -100,7 +100,7 @@ mod tests {
         assert!(name.starts_with("abc.") && name.contains(".7."), "{name}");
         folder.write("libabc.so", b"abd");
         let place = copy.path.clone();
-        assert_eq!(open_regular(&place, 9).unwrap().metadata().unwrap().len(), 3);
+        assert_eq!(open_regular(&place, 9).unwrap().1, 3);
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;

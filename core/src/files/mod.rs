@@ -2,11 +2,14 @@
 //!
 //! Because every byte comes through here, watch mode watches exactly what the last load asked for.
 
+mod whole;
+
 use std::collections::BTreeMap;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::{fmt, io};
 
+pub use self::whole::{Whole, hash_whole, read_whole};
 use crate::scene::Hash;
 
 /// Why a file could not be read.
@@ -20,6 +23,8 @@ pub enum FileError {
     TooLarge(u64),
     /// It lies outside the folders that a scene may read.
     Outside,
+    /// Whoever asked for it does not want it any more.
+    Unwanted,
 }
 
 impl fmt::Display for FileError {
@@ -29,11 +34,21 @@ impl fmt::Display for FileError {
             Self::Unreadable(why) => write!(f, "it cannot be read: {why}"),
             Self::TooLarge(limit) => write!(f, "it is larger than the limit of {limit} bytes"),
             Self::Outside => write!(f, "it lies outside the scene's folder (see --allow-path)"),
+            Self::Unwanted => write!(f, "it is not wanted any more"),
         }
     }
 }
 
 impl std::error::Error for FileError {}
+
+impl From<&io::Error> for FileError {
+    fn from(error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => Self::NotFound,
+            _ => Self::Unreadable(error.to_string()),
+        }
+    }
+}
 
 /// Where bytes come from.
 ///
@@ -44,7 +59,7 @@ pub trait Files: Send + Sync {
     /// The whole file.
     ///
     /// # Errors
-    /// `FileError` says which of the four things went wrong.
+    /// `FileError` says what went wrong.
     fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError>;
 
     /// The BLAKE3 hash of the whole file, `None` when it cannot be read: for whoever knows what was in

@@ -1,0 +1,303 @@
+//! Whole files in memory, and their hashes, for as long as they are wanted.
+
+use std::io::{self, Read};
+use std::iter;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use super::FileError;
+use crate::scene::Hash;
+
+/// Bytes that are read and hashed between two looks at whether they are still wanted: they stay in the
+/// processor's cache, and are enough for all lanes of the hash.
+const PIECE: usize = 256 << 10;
+/// Bytes from which on a thread reads that nobody waits for once they are not wanted any more: the system
+/// takes some 5 ms to give room for so many.
+const LARGE: usize = 16 << 20;
+/// Between two looks at whether that thread's file is still wanted.
+const PATIENCE: Duration = Duration::from_millis(1);
+
+/// Such threads at this moment.
+static READING: AtomicUsize = AtomicUsize::new(0);
+
+/// A file's bytes and their BLAKE3 hash.
+pub type Whole = (Arc<[u8]>, Hash);
+
+/// Reads all of a source that should have `length` bytes, and at most `most`.
+///
+/// Once `stop` is set it returns within some milliseconds, however large and slow the source is. At most
+/// as many as the machine has cores are read on beside that, each for one call of its `read` and until
+/// there is room for its bytes.
+///
+/// # Errors
+/// What the source says; that it has more bytes; that it is not wanted any more.
+pub fn read_whole(
+    from: impl Read + Send + 'static,
+    length: usize,
+    most: u64,
+    stop: &Arc<AtomicBool>,
+) -> Result<Whole, FileError> {
+    if length < LARGE {
+        return gather(Pieces::new(from, most, stop), length);
+    }
+    let (reading, own) = (Reading::begin(stop)?, stop.clone());
+    let (give, take) = mpsc::channel();
+    let work = move || {
+        let whole = gather(Pieces::new(from, most, &own), length);
+        drop(reading);
+        // Whoever has left does not take it.
+        let _ = give.send(whole);
+    };
+    let thread = thread::Builder::new().name("reads".to_owned()).spawn(work);
+    thread.map_err(|error| FileError::from(&error))?;
+    loop {
+        match take.recv_timeout(PATIENCE) {
+            Ok(whole) => return whole,
+            Err(RecvTimeoutError::Timeout) if stop.load(Ordering::Relaxed) => {
+                return Err(FileError::Unwanted);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(FileError::Unreadable("reading it has failed".to_owned()));
+            }
+        }
+    }
+}
+
+/// The hash of all of a source that has at most so many bytes.
+///
+/// # Errors
+/// As `read_whole`.
+pub fn hash_whole(
+    from: impl Read,
+    length: usize,
+    most: u64,
+    stop: &AtomicBool,
+) -> Result<Hash, FileError> {
+    // Room for all of a mesh takes the system longer to give than its bytes take to read.
+    let mut piece = vec![0; length.clamp(1, PIECE)];
+    let mut pieces = Pieces::new(from, most, stop);
+    while pieces.fill(&mut piece)? > 0 {}
+    pieces.hash()
+}
+
+/// A thread that reads, as one of few.
+struct Reading;
+
+impl Reading {
+    /// Waits until it may be begun, or is not wanted any more.
+    fn begin(stop: &AtomicBool) -> Result<Self, FileError> {
+        let most = thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        let one_more = |n: usize| (n < most).then_some(n + 1);
+        while READING.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_more).is_err() {
+            if stop.load(Ordering::Relaxed) {
+                return Err(FileError::Unwanted);
+            }
+            thread::sleep(PATIENCE);
+        }
+        Ok(Self)
+    }
+}
+
+impl Drop for Reading {
+    fn drop(&mut self) {
+        READING.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// All bytes of a source, most likely so many.
+fn gather(mut pieces: Pieces<'_, impl Read>, length: usize) -> Result<Whole, FileError> {
+    #[expect(clippy::manual_repeat_n, reason = "that takes twice as long for 19 MB")]
+    let mut bytes: Arc<[u8]> = iter::repeat(0).take(length).collect();
+    let room = Arc::get_mut(&mut bytes).unwrap_or_default();
+    let n = pieces.fill(room)?;
+    if n < length {
+        bytes = Arc::from(&bytes[..n]);
+    } else {
+        // It may have grown since its length was asked for.
+        let (mut more, mut piece) = (vec![], vec![0; PIECE.min(length.max(1))]);
+        while let n @ 1.. = pieces.fill(&mut piece)? {
+            more.extend_from_slice(&piece[..n]);
+        }
+        if !more.is_empty() {
+            bytes = [&bytes[..], &more].concat().into();
+        }
+    }
+    Ok((bytes, pieces.hash()?))
+}
+
+/// A source, hashed as it is read.
+struct Pieces<'a, R> {
+    from: io::Take<R>,
+    most: u64,
+    hasher: blake3::Hasher,
+    stop: &'a AtomicBool,
+}
+
+impl<'a, R: Read> Pieces<'a, R> {
+    fn new(from: R, most: u64, stop: &'a AtomicBool) -> Self {
+        Self { from: from.take(most.saturating_add(1)), most, hasher: blake3::Hasher::new(), stop }
+    }
+
+    /// Fills some room as far as there are bytes: with how many.
+    fn fill(&mut self, room: &mut [u8]) -> Result<usize, FileError> {
+        let mut n = 0;
+        while n < room.len() {
+            if self.stop.load(Ordering::Relaxed) {
+                return Err(FileError::Unwanted);
+            }
+            let end = room.len().min(n + PIECE);
+            match self.from.read(&mut room[n..end]) {
+                Ok(0) => break,
+                Ok(some) => {
+                    self.hasher.update(&room[n..n + some]);
+                    n += some;
+                }
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(FileError::from(&error)),
+            }
+        }
+        Ok(n)
+    }
+
+    /// The hash of all that was read, which is all there is.
+    fn hash(self) -> Result<Hash, FileError> {
+        if self.from.limit() == 0 {
+            return Err(FileError::TooLarge(self.most));
+        }
+        Ok(*self.hasher.finalize().as_bytes())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+    use std::time::Instant;
+
+    use super::*;
+
+    fn never() -> Arc<AtomicBool> {
+        Arc::default()
+    }
+
+    fn bytes(n: usize) -> Vec<u8> {
+        (0..n).map(|i| u8::try_from(i * 7 % 251).unwrap()).collect()
+    }
+
+    #[test]
+    fn all_bytes_come_with_their_hash_whatever_length_was_told() {
+        for n in [0, 1, 1000, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE + 7, LARGE, LARGE + 5] {
+            let all: &'static [u8] = bytes(n).leak();
+            let hash = *blake3::hash(all).as_bytes();
+            for length in [n, 0, n / 2, n.saturating_sub(1), n + 1, 2 * n] {
+                let (read, own) = read_whole(all, length, u64::MAX, &never()).unwrap();
+                assert!(*read == *all && own == hash, "{n} told as {length}");
+                assert_eq!(hash_whole(all, length, u64::MAX, &never()), Ok(hash));
+            }
+        }
+    }
+
+    #[test]
+    fn more_than_the_limit_is_refused() {
+        let all: &'static [u8] = bytes(100).leak();
+        for length in [0, 99, 100, LARGE] {
+            assert!(read_whole(all, length, 100, &never()).is_ok());
+            let refused = FileError::TooLarge(99);
+            assert_eq!(read_whole(all, length, 99, &never()), Err(refused.clone()));
+            assert_eq!(hash_whole(all, length, 99, &never()), Err(refused));
+        }
+    }
+
+    /// Gives a byte at a time and wants an end after some.
+    struct Unwanted {
+        left: usize,
+        stop: Arc<AtomicBool>,
+    }
+
+    impl Read for Unwanted {
+        fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+            assert!(!self.stop.load(Ordering::SeqCst), "read though it is not wanted any more");
+            self.left -= 1;
+            self.stop.store(self.left == 0, Ordering::SeqCst);
+            to[0] = 7;
+            Ok(1)
+        }
+    }
+
+    #[test]
+    fn nothing_more_is_read_once_it_is_not_wanted() {
+        for left in [1, 2, 100] {
+            for length in [0, 50, 1000, LARGE] {
+                let unwanted = || Unwanted { left, stop: never() };
+                let from = unwanted();
+                let stop = from.stop.clone();
+                assert_eq!(read_whole(from, length, 1000, &stop), Err(FileError::Unwanted));
+                let from = unwanted();
+                let stop = from.stop.clone();
+                assert_eq!(hash_whole(from, length, 1000, &stop), Err(FileError::Unwanted));
+            }
+        }
+    }
+
+    /// Gives nothing until its sender is dropped, and then an end.
+    struct Stuck {
+        released: Mutex<mpsc::Receiver<()>>,
+        begun: Arc<AtomicUsize>,
+    }
+
+    impl Read for Stuck {
+        fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+            self.begun.fetch_add(1, Ordering::SeqCst);
+            let _ = self.released.lock().unwrap().recv();
+            Ok(0)
+        }
+    }
+
+    #[test]
+    fn a_source_that_gives_nothing_is_not_waited_for_and_few_are_read_beside() {
+        let most = thread::available_parallelism().unwrap().get();
+        let (mut releases, begun, stop) = (vec![], Arc::<AtomicUsize>::default(), never());
+        let mut load = || {
+            let (release, released) = mpsc::channel();
+            releases.push(release);
+            let stuck = Stuck { released: Mutex::new(released), begun: begun.clone() };
+            let stop = stop.clone();
+            thread::spawn(move || read_whole(stuck, LARGE, u64::MAX, &stop))
+        };
+        let loads: Vec<_> = (0..most + 2).map(|_| load()).collect();
+        let since = Instant::now();
+        while begun.load(Ordering::SeqCst) < most {
+            assert!(since.elapsed() < Duration::from_secs(60), "they are not begun");
+            thread::sleep(PATIENCE);
+        }
+        assert!(loads.iter().all(|load| !load.is_finished()));
+        stop.store(true, Ordering::SeqCst);
+        for load in loads {
+            assert_eq!(load.join().unwrap(), Err(FileError::Unwanted));
+        }
+        assert_eq!(begun.load(Ordering::SeqCst), most, "more were begun");
+        drop(releases);
+        while Arc::strong_count(&begun) > 1 {
+            assert!(since.elapsed() < Duration::from_secs(60), "they do not end");
+            thread::sleep(PATIENCE);
+        }
+    }
+
+    #[test]
+    fn what_the_source_says_is_told() {
+        struct Broken;
+        impl Read for Broken {
+            fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+                Err(io::Error::other("broken"))
+            }
+        }
+        for length in [0, LARGE] {
+            let told = read_whole(Broken, length, 9, &never());
+            assert_eq!(told, Err(FileError::Unreadable("broken".into())));
+        }
+    }
+}

@@ -277,9 +277,7 @@ impl Scene {
         if !node.params.iter().any(|argument| names.contains(&argument.name)) {
             return Some(node.hash);
         }
-        let mut rest = node.clone();
-        rest.params.to_mut().retain(|argument| !names.contains(&argument.name));
-        Some(value::hash_node(&rest, |id| self.node(id).hash))
+        Some(value::hash_params(node, |name| !names.contains(&name), |id| self.node(id).hash))
     }
 
     /// Hash of a node without the parameters that the host adds to its kind: equal where the object
@@ -289,13 +287,7 @@ impl Scene {
     }
 
     fn new_own_hash(&self, node: &Node) -> Hash {
-        let added = |name: &str| common_params(node.kind).iter().any(|param| param.name == name);
-        if !node.params.iter().any(|argument| added(argument.name)) {
-            return node.hash;
-        }
-        let mut own = node.clone();
-        own.params.to_mut().retain(|argument| !added(argument.name));
-        value::hash_node(&own, |id| self.node(id).hash)
+        own_hash(node, node.hash, |id| self.node(id).hash)
     }
 
     /// Adds a node whose children are already here; its hash is computed.
@@ -314,6 +306,15 @@ impl Scene {
         self.own.push(own);
         NodeId(u32::try_from(self.nodes.len() - 1).expect("the node budget is far below 2^32"))
     }
+}
+
+/// The hash of a node that has this one, without the parameters that the host adds to its kind.
+fn own_hash(node: &Node, hash: Hash, child: impl Fn(NodeId) -> Hash) -> Hash {
+    let is_own = |name: &str| common_params(node.kind).iter().all(|param| param.name != name);
+    if node.params.iter().all(|argument| is_own(argument.name)) {
+        return hash;
+    }
+    value::hash_params(node, is_own, child)
 }
 
 #[cfg(test)]

@@ -51,12 +51,50 @@ impl Value {
     }
 }
 
+/// Bytes that are hashed at a time: those of most nodes.
+const PIECE: usize = 1 << 10;
+
+/// Hashes bytes that come a few at a time: many at once take a fraction of the time.
+#[derive(Default)]
+struct Hashing {
+    bytes: ArrayVec<u8, PIECE>,
+    /// Has what came before these.
+    hasher: Option<blake3::Hasher>,
+}
+
+impl Hashing {
+    fn update(&mut self, bytes: &[u8]) -> &mut Self {
+        if self.bytes.try_extend_from_slice(bytes).is_err() {
+            let hasher = self.hasher.get_or_insert_default();
+            hasher.update(&self.bytes).update(bytes);
+            self.bytes.clear();
+        }
+        self
+    }
+
+    fn finish(mut self) -> Hash {
+        match &mut self.hasher {
+            Some(hasher) => *hasher.update(&self.bytes).finalize().as_bytes(),
+            None => *blake3::hash(&self.bytes).as_bytes(),
+        }
+    }
+}
+
 /// The hash of a node, its children by theirs. Label and place in the file do not count.
 pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
-    let mut hasher = blake3::Hasher::new();
+    hash_params(node, |_| true, child)
+}
+
+/// The same with some of its parameters alone.
+pub(super) fn hash_params(
+    node: &Node,
+    counts: impl Fn(&str) -> bool,
+    child: impl Fn(NodeId) -> Hash,
+) -> Hash {
+    let mut hasher = Hashing::default();
     text(&mut hasher, node.kind.word());
     text(&mut hasher, &node.class);
-    let mut params: Vec<_> = node.params.iter().collect();
+    let mut params: Vec<_> = node.params.iter().filter(|argument| counts(argument.name)).collect();
     params.sort_by_key(|argument| argument.name);
     for argument in params {
         text(&mut hasher, argument.name);
@@ -66,7 +104,7 @@ pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
         text(&mut hasher, name);
         hasher.update(&child(*material));
     }
-    *hasher.finalize().as_bytes()
+    hasher.finish()
 }
 
 /// The hash of what stands in the places of a scene.
@@ -82,7 +120,7 @@ pub(super) fn hash_scene(
     film: Option<Hash>,
     sampler: Option<Hash>,
 ) -> Hash {
-    let mut hasher = blake3::Hasher::new();
+    let mut hasher = Hashing::default();
     hasher.update(content);
     hash_pose(&mut hasher, &scene.camera_pose);
     let Scene { camera, integrator, filter, medium, .. } = scene;
@@ -93,7 +131,7 @@ pub(super) fn hash_scene(
     for feature in scene.left_out() {
         hasher.update(feature.name().as_bytes()).update(&[0]);
     }
-    *hasher.finalize().as_bytes()
+    hasher.finish()
 }
 
 /// The hashes of a scene's groups.
@@ -107,22 +145,22 @@ pub(super) fn group_hashes(scene: &Scene) -> Vec<Hash> {
 
 /// `before` holds the hashes of the groups that may stand in this one.
 fn hash_group(scene: &Scene, group: &Group, before: &[Hash]) -> Hash {
-    let mut hasher = blake3::Hasher::new();
+    let mut hasher = Hashing::default();
     for item in &group.items {
         update_item(&mut hasher, scene, item, before);
     }
-    *hasher.finalize().as_bytes()
+    hasher.finish()
 }
 
 /// The hash of what stands in a place, and of the place; `groups` holds those of the groups that may
 /// stand there.
 pub(super) fn hash_item(scene: &Scene, item: &Placed, groups: &[Hash]) -> Hash {
-    let mut hasher = blake3::Hasher::new();
+    let mut hasher = Hashing::default();
     update_item(&mut hasher, scene, item, groups);
-    *hasher.finalize().as_bytes()
+    hasher.finish()
 }
 
-fn update_item(hasher: &mut blake3::Hasher, scene: &Scene, item: &Placed, groups: &[Hash]) {
+fn update_item(hasher: &mut Hashing, scene: &Scene, item: &Placed, groups: &[Hash]) {
     match item.target {
         Target::Node(id) => hasher.update(&[0]).update(&scene.node(id).hash),
         Target::Group(id) => {
@@ -133,7 +171,7 @@ fn update_item(hasher: &mut blake3::Hasher, scene: &Scene, item: &Placed, groups
     hasher.update(&item.material.map_or([0; 32], |id| scene.node(id).hash));
 }
 
-fn hash_pose(hasher: &mut blake3::Hasher, pose: &Pose) {
+fn hash_pose(hasher: &mut Hashing, pose: &Pose) {
     let steps = pose.steps();
     hasher.update(&steps.len().to_le_bytes());
     for step in steps {
@@ -150,27 +188,19 @@ fn hash_pose(hasher: &mut blake3::Hasher, pose: &Pose) {
     }
 }
 
-fn text(hasher: &mut blake3::Hasher, text: &str) {
+fn text(hasher: &mut Hashing, text: &str) {
     hasher.update(&text.len().to_le_bytes());
     hasher.update(text.as_bytes());
 }
 
-/// Numbers that are hashed at a time.
-const PIECE: usize = 256;
-
-fn numbers(hasher: &mut blake3::Hasher, numbers: &[f64]) {
+fn numbers(hasher: &mut Hashing, numbers: &[f64]) {
     hasher.update(&numbers.len().to_le_bytes());
-    // Many at a time: what is hashed is the same, and takes a fraction of the time.
-    let mut bytes = [0; 8 * PIECE];
-    for piece in numbers.chunks(PIECE) {
-        for (to, x) in bytes.chunks_exact_mut(8).zip(piece) {
-            to.copy_from_slice(&x.to_bits().to_le_bytes());
-        }
-        hasher.update(&bytes[..8 * piece.len()]);
+    for x in numbers {
+        hasher.update(&x.to_bits().to_le_bytes());
     }
 }
 
-fn hash_value(hasher: &mut blake3::Hasher, value: &Value, child: &impl Fn(NodeId) -> Hash) {
+fn hash_value(hasher: &mut Hashing, value: &Value, child: &impl Fn(NodeId) -> Hash) {
     match value {
         Value::Bool(b) => {
             hasher.update(&[0, u8::from(*b)]);
@@ -219,6 +249,25 @@ fn hash_value(hasher: &mut blake3::Hasher, value: &Value, child: &impl Fn(NodeId
             hasher.update(&[10]);
             hasher.update(&child(*id));
             numbers(hasher, &transform.to_cols_array());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_hashed_alike_however_many_come_at_a_time() {
+        let all: Vec<u8> = (0..=255).cycle().take(5 * PIECE).collect();
+        for n in [0, 1, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE, 5 * PIECE] {
+            for piece in [1, 7, 8, PIECE - 1, PIECE, PIECE + 1, 2 * PIECE + 3] {
+                let mut hashing = Hashing::default();
+                for bytes in all[..n].chunks(piece) {
+                    hashing.update(bytes);
+                }
+                assert_eq!(hashing.finish(), *blake3::hash(&all[..n]).as_bytes(), "{n} by {piece}");
+            }
         }
     }
 }

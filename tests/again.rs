@@ -263,3 +263,22 @@ fn a_mistake_in_place_of_the_camera_leaves_the_camera_missing() {
         edited.load(&text_of(&lines), "without").diagnostics.iter().map(|it| it.code).collect();
     assert!(codes.contains(&"E0409"), "{codes:?}");
 }
+
+#[test]
+fn what_a_call_is_depends_on_what_stands_elsewhere() {
+    let settings = Settings::default();
+    let (registry, kept) = (registry(), Kept::default());
+    let mut edited =
+        Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
+    let mut lines = vec![
+        "fn twice(x: length) = 2 * x".to_owned(),
+        "shape sphere { radius = 1 m twice(3 m) }".to_owned(),
+        CAMERA.to_owned(),
+    ];
+    assert!(is_good(&edited.load(&text_of(&lines), "a call that gives a value")));
+    // Now it is a parameter whose `=` is missing.
+    "fn twice_(x: length) = 2 * x".clone_into(&mut lines[0]);
+    let told = edited.load(&text_of(&lines), "nothing that can be called").diagnostics;
+    let codes: Vec<_> = told.iter().map(|it| it.code).collect();
+    assert!(codes.contains(&"E0012") && !codes.contains(&"E0114"), "{codes:?}");
+}

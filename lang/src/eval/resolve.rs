@@ -313,10 +313,11 @@ impl<'a> Resolver<'a> {
         }
     }
 
+    /// Whether nobody defines a name. Of a statement that is looked at alone, others may.
     pub(super) fn is_unknown(&self, name: &Name) -> bool {
         let name = &name.text;
         let known = |s: &Scope| s.names.contains_key(name) || s.later.contains_key(name);
-        !self.scopes.iter().any(known) && builtins::value(name).is_none()
+        self.free.is_none() && !self.scopes.iter().any(known) && builtins::value(name).is_none()
     }
 
     /// Arguments of a call; of a function that every scene has, `to (0, 1, 0)` is one whose `=` is

@@ -15,7 +15,7 @@ const CAMERA: &str = "camera perspective { fov = 40 deg, look = look_at(from = (
                       to = (0, 0, 0) m, up = (0, 1, 0)) }";
 
 /// Statements that depend on others, emit, share, declare, read other files, or are wrong.
-const LINES: [&str; 52] = [
+const LINES: [&str; 58] = [
     "let r = 5 cm",
     "let r = 25 cm",
     "let grey = material diffuse { reflectance = 0.5 }",
@@ -68,6 +68,12 @@ const LINES: [&str; 52] = [
     "/// What is said of nothing.",
     "assert size < 0.3 and r > 1 cm, \"it is large\"",
     "let later = shape sphere { radius = r radius 2 }",
+    "shape sphere { radius = r, material = grey, center = (1, 2, 3) m }",
+    "shape sphere \"three\" { radius= r, material = material mix { a = grey, b = shiny, weight = size } }",
+    "shape disk { radius /* how far */ = r, center = (r, r, 0), material = grey }",
+    "light area { shape = shape sphere { radius = r, center = (0, 3, 0) m }, radiance = bright }",
+    "let bright = 3 W/m^2/sr",
+    "let bright = rgb.linear_srgb(1, 2, 3) W/m^2/sr",
 ];
 
 /// Half-written things, and what ends statements.
@@ -180,7 +186,7 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
         let other = OTHER.to_owned();
         let (registry, kept) = (registry(), Kept::default());
         let mut edited = Edited { registry, kept, settings, other, n_short: 0, n_told: 0 };
-        let good = [0, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24];
+        let good = [0, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24, 52, 53, 54];
         let more: &[usize] = [&[][..], &[33, 34], &[42, 43], &[44, 48]][pick(&mut rng, 4)];
         let mut lines: Vec<String> =
             good.iter().chain(more).map(|i| LINES[*i].to_owned()).collect();
@@ -248,6 +254,46 @@ fn beside_warnings_and_what_is_set_an_edit_concerns_its_statement() {
     assert_eq!(n(&now), (3, 2));
     now[21] = now[21].replace("2 m", "2 s");
     assert_eq!(n(&now), (1, 3));
+}
+
+#[test]
+fn what_only_hands_a_value_on_is_not_evaluated() {
+    let mut now: Vec<String> =
+        ["let r = 5 cm", "let grey = material diffuse { reflectance = 0.5 }", CAMERA]
+            .map(str::to_owned)
+            .to_vec();
+    let ball = |i: usize| match i % 3 {
+        0 => "shape sphere { radius = r, center = (1, 2, 3) m, material = grey }",
+        1 => "light area { shape = shape disk { radius = r }, radiance = 1 W/m^2/sr }",
+        _ => {
+            "shape disk { radius = 2 m, material = material mix { a = grey, b = grey, weight = 0.1 } }"
+        }
+    };
+    now.extend((0..60).map(|i| ball(i).to_owned()));
+    for noting in [false, true] {
+        let settings = Settings { noting, ..Settings::default() };
+        let (registry, kept) = (registry(), Kept::default());
+        let mut edited =
+            Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
+        let mut lines = now.clone();
+        let mut n = |lines: &[String]| {
+            let loaded = edited.load(&text_of(lines), "an edit");
+            (edited.kept.n_evaluated().unwrap_or_default(), is_good(&loaded))
+        };
+        assert_eq!(n(&lines), (65, true));
+        lines[0] = "let r = 7 cm".to_owned();
+        assert_eq!(n(&lines), (1, true));
+        lines[1] = "let grey = material conductor { eta = metal(\"Au\") }".to_owned();
+        assert_eq!(n(&lines), (1, true));
+        // One that does more than that is evaluated, with what it uses.
+        lines[9] = lines[9].replace("radius = r", "radius = 2 * r");
+        assert_eq!(n(&lines), (3, true));
+        lines[0] = "let r = 8 cm".to_owned();
+        assert_eq!(n(&lines), (3, true));
+        // What is wrong for all of them is told of each.
+        lines[0] = "let r = 8 s".to_owned();
+        assert!(!n(&lines).1);
+    }
 }
 
 #[test]

@@ -9,11 +9,11 @@ use luxel_core::diag::SourceId;
 pub(crate) type Place = (SourceId, u32);
 
 /// Names of a statement, by their first byte, with their values.
-pub(crate) type Notes = [(u32, Box<str>)];
+pub(crate) type Notes = [(u32, Arc<str>)];
 
 /// Names that have their value by what stands elsewhere, as those in the body of a function: with the
 /// statement that gave it.
-pub(crate) type Elsewhere = BTreeMap<Place, (SourceId, Box<str>)>;
+pub(crate) type Elsewhere = BTreeMap<Place, (SourceId, Arc<str>)>;
 
 /// What was noted of statements.
 pub(crate) type Layer = BTreeMap<SourceId, Arc<Notes>>;

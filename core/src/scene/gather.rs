@@ -82,7 +82,10 @@ impl Scene {
 }
 
 /// What `f` makes of a list, in parts of it on as many threads as there are cores, in order.
-fn in_parts<T: Sync, R: Send>(list: &[T], f: &(dyn Fn(&[T]) -> Vec<R> + Sync)) -> Vec<R> {
+pub(super) fn in_parts<T: Sync, R: Send>(
+    list: &[T],
+    f: &(dyn Fn(&[T]) -> Vec<R> + Sync),
+) -> Vec<R> {
     let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
     let length = list.len().div_ceil(n_cores).max(PART);
     let mut parts = list.chunks(length);

@@ -5,6 +5,7 @@
 //! reads files or knows a plugin by name.
 
 mod arguments;
+mod changed;
 mod color;
 mod compact;
 mod conform;
@@ -27,6 +28,7 @@ use crate::diag::Span;
 use crate::registry::common_params;
 
 pub use arguments::Arguments;
+pub use changed::Changed;
 pub use color::Color;
 pub use conform::{
     DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, said,

@@ -32,7 +32,7 @@ pub(super) struct Noting {
 pub(super) struct Noted {
     of: Option<Noting>,
     /// Names in that statement.
-    own: BTreeMap<u32, Box<str>>,
+    own: BTreeMap<u32, Arc<str>>,
     /// Names in the statements before.
     pub(super) layer: Layer,
     pub(super) others: Elsewhere,
@@ -100,21 +100,27 @@ impl Evaluator<'_> {
     /// Keeps the first value of a name, if values are wanted.
     pub(super) fn note(&mut self, name: &Name, value: &Value) {
         let Some(noted) = &mut self.noted else { return };
-        // Of an object or a function, the text says more.
-        let is_plain = !matches!(
-            value,
-            Value::Poison
-                | Value::Object(_)
-                | Value::Module(_)
-                | Value::Function(_)
-                | Value::Builtin(_)
-        );
-        if is_plain {
-            noted.note(name.span, || match value {
-                Value::Color(color, dimension) if dimension.is_none() => shown(color),
-                other => readable(other),
-            });
+        if is_shown(value) {
+            noted.note(name.span, || as_shown(value));
         }
+    }
+
+    /// How a value is shown that a name may have, if values are wanted.
+    pub(super) fn shown(&self, value: &Value) -> Option<String> {
+        (self.noted.is_some() && is_shown(value)).then(|| as_shown(value))
+    }
+}
+
+/// Of an object or a function, the text says more.
+fn is_shown(value: &Value) -> bool {
+    use Value::{Builtin, Function, Module, Object, Poison};
+    !matches!(value, Poison | Object(_) | Module(_) | Function(_) | Builtin(_))
+}
+
+fn as_shown(value: &Value) -> String {
+    match value {
+        Value::Color(color, dimension) if dimension.is_none() => shown(color),
+        other => readable(other),
     }
 }
 

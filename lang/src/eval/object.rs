@@ -461,7 +461,7 @@ impl Evaluator<'_> {
 }
 
 /// Whether objects of a kind stand in the scene and so take a `transform`.
-fn stands_somewhere(kind: Kind) -> bool {
+pub(super) fn stands_somewhere(kind: Kind) -> bool {
     matches!(kind, Kind::Shape | Kind::Light | Kind::Importer | Kind::Camera)
 }
 

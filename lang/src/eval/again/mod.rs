@@ -13,6 +13,7 @@
 
 mod asked;
 mod edit;
+mod handed;
 mod made;
 mod plan;
 mod put;
@@ -69,8 +70,8 @@ struct Statement {
     declares: bool,
     /// It defines a name that every scene has.
     shadows: bool,
-    /// What it concerns is not known from its names.
-    is_wide: bool,
+    /// Where it hands a value on, its objects need not be made anew.
+    is_plain: bool,
 }
 
 /// What is kept of a load.

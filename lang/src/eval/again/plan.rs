@@ -6,6 +6,7 @@ use std::ops::Range;
 use luxel_core::diag::Diagnostic;
 
 use super::edit::{Edit, Recut, recut};
+use super::handed::Handed;
 use super::sets::Sets;
 use super::{State, Statement, source_of};
 use crate::eval::builtins;
@@ -39,6 +40,8 @@ pub(super) struct Plan {
     /// What is wrong with names.
     pub(super) names: Vec<Diagnostic>,
     pub(super) sets: Sets,
+    /// What hands on the values that have changed.
+    pub(super) handed: Handed,
 }
 
 impl Plan {
@@ -143,9 +146,9 @@ impl State {
             tables = Some(found);
         }
         let firsts = Firsts::new(&self.names, tables.as_ref().unwrap_or(&self.tables));
-        let (new, sets) = self.concerned_with_sets(&gone, &after, &firsts)?;
+        let (new, handed, sets) = self.concerned_with_sets(&gone, &after, &firsts)?;
         let tasks = self.tasks((text, &edit), &after, &firsts, (&new, &sets), trees)?;
-        Some(Plan { edit, gone, fresh, tasks, tables, n_names, read: said, names, sets })
+        Some(Plan { edit, gone, fresh, tasks, tables, n_names, read: said, names, sets, handed })
     }
 
     /// Whether statements have the same to do with names as those that they stand for.
@@ -161,30 +164,31 @@ impl State {
         gone: &Range<usize>,
         after: &After<'_>,
         firsts: &Firsts<'_>,
-    ) -> Option<(Vec<usize>, Sets)> {
+    ) -> Option<(Vec<usize>, Handed, Sets)> {
         let mut bearers = BTreeSet::new();
         for _ in 0..ROUNDS {
-            let new = self.concerned(gone, after, &bearers)?;
+            let (new, handed) = self.concerned(gone, after, &bearers)?;
             let sets = self.sets(gone, after, firsts, &new)?;
             if sets.bearers.iter().all(|i| new.binary_search(i).is_ok()) {
-                return Some((new, sets));
+                return Some((new, handed, sets));
             }
             bearers.clone_from(&sets.bearers);
         }
         None
     }
 
-    /// The statements that are new, one of `those`, or use a name that a statement with another value defines.
+    /// The statements that are new, one of `those`, or use a name that a statement with another value defines;
+    /// apart from them those that only hand that value on.
     fn concerned(
         &self,
         gone: &Range<usize>,
         after: &After<'_>,
         those: &BTreeSet<usize>,
-    ) -> Option<Vec<usize>> {
+    ) -> Option<(Vec<usize>, Handed)> {
         let mut is_changed = vec![false; self.names.len()];
         let mut changes = !those.is_empty();
         for stmt in self.stmts[gone.clone()].iter().chain(after.fresh) {
-            if stmt.is_wide {
+            if stmt.is_wide() {
                 return None;
             }
             for name in stmt.names.defines() {
@@ -193,22 +197,28 @@ impl State {
         }
         let fresh = gone.start..gone.start + after.fresh.len();
         if !changes {
-            return Some(fresh.collect());
+            return Some((fresh.collect(), Handed::default()));
         }
-        let mut new = vec![];
+        let (mut new, mut handing) = (vec![], vec![]);
         let most = (self.stmts.len() / SHARE).max(1);
         let first = those.first().map_or(fresh.start, |first| fresh.start.min(*first));
         for (i, stmt) in after.iter().enumerate().skip(first) {
             let is_new = fresh.contains(&i) || those.contains(&i);
-            if is_new || stmt.names.uses().any(|(name, _)| is_changed[name as usize]) {
-                if stmt.is_wide || new.len() >= most + fresh.len() {
+            let is_user = stmt.names.uses().any(|(name, _)| is_changed[name as usize]);
+            if is_user && !is_new && self.may_hand_on(stmt) {
+                handing.push((i, stmt));
+            } else if is_new || is_user {
+                if stmt.is_wide() || new.len() >= most + fresh.len() {
                     return None;
                 }
                 stmt.names.defines().iter().for_each(|name| is_changed[*name as usize] = true);
                 new.push(i);
             }
         }
-        Some(new)
+        let (handed, others) = self.handed(&handing, &is_changed);
+        new.extend(others);
+        new.sort_unstable();
+        (new.len() <= most + fresh.len()).then_some((new, handed))
     }
 
     /// The statements that are new or set something of them, and those that define what they use.

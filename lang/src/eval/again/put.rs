@@ -7,6 +7,7 @@ use luxel_core::diag::SourceId;
 use luxel_core::scene::{NodeId, Placed};
 
 use super::State;
+use super::handed::Fitted;
 use super::made::Made;
 use super::plan::Plan;
 use crate::eval::Evaluator;
@@ -17,7 +18,7 @@ impl State {
     pub(super) fn put(
         &mut self,
         plan: Plan,
-        mut made: Vec<Made>,
+        (mut made, fitted): (Vec<Made>, Fitted),
         text: Arc<str>,
         evaluator: &mut Evaluator<'_>,
         [nodes, groups]: [Vec<u32>; 2],
@@ -34,7 +35,8 @@ impl State {
                 slot.id = NodeId(nodes[slot.id.0 as usize]);
             }
         }
-        let Plan { edit, gone, fresh, tasks, tables, n_names, .. } = plan;
+        let Plan { edit, gone, fresh, tasks, tables, n_names, handed, .. } = plan;
+        self.hand_on(handed, fitted, &nodes);
         self.n_names = n_names;
         if let Some(tables) = tables {
             self.tables = tables;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use luxel_core::diag::{SourceId, Span};
 
 use super::asked::Questions;
+use super::handed::is_plain;
 use super::made::{Cost, Made};
 use super::sets::set_label;
 use super::values::KeptValues;
@@ -41,7 +42,8 @@ impl Record {
     fn note(&mut self, stmt: &Stmt, facts: &Facts, made: Made) {
         let range = self.cuts.get(self.stmts.len()).map_or(0..0, |cut| cut.range.clone());
         let id = narrow(self.stmts.len());
-        self.stmts.push(Statement::new(id, range, stmt, facts, &mut self.names).with(made));
+        let stmt = Statement::new(id, range, stmt, facts, &mut self.names);
+        self.stmts.push(Statement { made, ..stmt });
     }
 }
 
@@ -57,13 +59,13 @@ impl Statement {
         let (names, set) = (known.numbered(facts), set_label(stmt, known));
         let declares = matches!(stmt.node, StmtNode::Units(_) | StmtNode::Param(_));
         let shadows = facts.defines.iter().any(|name| builtins::begins(&name.text));
-        let is_wide = declares || shadows;
-        Self { id, range, names, made: Made::default(), set, declares, shadows, is_wide }
+        let is_plain = is_plain(stmt);
+        Self { id, range, names, made: Made::default(), set, declares, shadows, is_plain }
     }
 
-    /// The same, evaluated.
-    pub(super) fn with(self, made: Made) -> Self {
-        Self { is_wide: self.is_wide || made.has_read(), made, ..self }
+    /// What it concerns is not known from its names.
+    pub(super) fn is_wide(&self) -> bool {
+        self.declares || self.shadows || self.made.has_read()
     }
 }
 

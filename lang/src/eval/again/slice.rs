@@ -7,6 +7,7 @@ use luxel_core::diag::Diagnostic;
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
 
+use super::handed::Fitted;
 use super::made::{Cost, Made};
 use super::plan::{After, Plan, Task};
 use super::{State, Statement, source_of};
@@ -25,6 +26,14 @@ const NONE: u32 = u32::MAX;
 /// How many statements may come to another number of things than before: for each, all that stand behind
 /// it are moved.
 const MOVED: usize = 8;
+
+/// What the statements of a plan came to.
+struct Evaluated {
+    made: Vec<Made>,
+    /// What is told of each.
+    found: Vec<Vec<Diagnostic>>,
+    fitted: Fitted,
+}
 
 impl State {
     /// The load that follows an edit; `None` if it cannot go on from this one, which stays as it is or
@@ -47,13 +56,14 @@ impl State {
         let text: Arc<str> = str::from_utf8(&bytes).ok()?.into();
         let plan = self.plan(&text)?;
         let mut evaluator = Evaluator::new(files, registry, settings, usize::MAX);
-        let (mut made, found) = self.evaluate(&plan, &text, &mut evaluator)?;
+        let Evaluated { mut made, found, fitted } = self.evaluate(&plan, &text, &mut evaluator)?;
         let before = Cost::of(&evaluator);
         if !self.set_again(&plan, &mut evaluator) {
             return None;
         }
         let set = Cost::of(&evaluator).minus(before);
         let values = self.values_after(&plan, evaluator.noted.take())?;
+        let values = values.handed_on(&plan.handed, &fitted);
         let after = After::of(self, &plan.gone, &plan.fresh);
         let (spent, n_moved) = self.spent(&plan, &made, &after, set)?;
         let is_told_of_sets = !evaluator.sink.kept().is_empty();
@@ -69,7 +79,7 @@ impl State {
         self.warn(&plan, &mut made, found)?;
         let renamed = self.renamed(&plan.tasks, &made, &after, &plan)?;
         (self.n_evaluated, self.spent) = (plan.tasks.len(), spent);
-        self.put(plan, made, text, &mut evaluator, renamed);
+        self.put(plan, (made, fitted), text, &mut evaluator, renamed);
         self.values = values;
         self.gathered(&mut evaluator, settings)
     }
@@ -86,7 +96,7 @@ impl State {
         plan: &Plan,
         text: &Arc<str>,
         evaluator: &mut Evaluator<'_>,
-    ) -> Option<(Vec<Made>, Vec<Vec<Diagnostic>>)> {
+    ) -> Option<Evaluated> {
         let env = self.surroundings(text, evaluator);
         let after = After::of(self, &plan.gone, &plan.fresh);
         let begun = |task: &Task| (task.stmt.span.source, after.get(task.i, &plan.edit).1.start);
@@ -119,7 +129,8 @@ impl State {
         let is_good = !evaluator.stopped && (is_told || !evaluator.damaged && !is_poisoned);
         let is_alike = evaluator.sources.n_texts() == self.sources.n_texts();
         let is_set = evaluator.labels.sets.len() == plan.sets.setters.len();
-        (is_good && is_alike && is_set).then_some((all, told))
+        let fitted = self.fitted(&plan.handed, &env, evaluator)?;
+        (is_good && is_alike && is_set).then_some(Evaluated { made: all, found: told, fitted })
     }
 
     /// What stands around the statements of the file, with the texts that were read before.

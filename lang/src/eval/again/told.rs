@@ -62,8 +62,8 @@ impl State {
         (evaluator, found): (Evaluator<'_>, Vec<Vec<Diagnostic>>),
         values: &KeptValues,
     ) -> Option<Loaded> {
-        // What is set may be wrong for things that are right, and the other way round.
-        if !plan.sets.labels.is_empty() {
+        // What is set may be wrong for things that are right, and the other way round; and what is handed on.
+        if !plan.sets.labels.is_empty() || !plan.handed.is_empty() {
             return None;
         }
         let Plan { edit, gone, fresh, tasks, read, names, .. } = plan;

@@ -15,7 +15,7 @@ use crate::values::{Elsewhere, Layers, Values};
 /// The values of a load, by statement.
 #[derive(Clone, Debug, Default)]
 pub(super) struct KeptValues {
-    own: Layers,
+    pub(super) own: Layers,
     others: Arc<Elsewhere>,
     /// How many there are of statements' own names.
     n_own: usize,

@@ -23,6 +23,8 @@ use crate::series::Series;
 const TIMES: usize = 60;
 /// Columns and rows of the pictures: as many pixels as 4096 × 2048.
 const SIDE: u32 = 2896;
+/// Nodes of the asset.
+const NODES: usize = 100_000;
 /// Those of the landscape whose tree is built: it takes long enough.
 const SMALL: u32 = 1024;
 
@@ -45,6 +47,7 @@ const MESH: &str = "shape mesh { file = \"large.ply\", unit = 1 m }\n";
 const LAND: &str = "shape heightfield { width = 1 m, depth = 1 m, file = \"seen.png\" }\n";
 const PAINTED: &str = "shape rectangle { u = (4, 0, 0) m, v = (0, 0, -4) m, material = material \
                        diffuse { reflectance = texture image { file = \"FILE\" } } }\n";
+const ASSET: &str = "asset gltf { file = \"seen.gltf\", unit = 1 m }\n";
 const SKY: &str = "light environment { file = \"seen.exr\" }\n";
 
 /// In which part of a load it is given up.
@@ -119,6 +122,7 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
         ("texture of a PNG, decoded".to_owned(), painted("seen.png"), Part::Any),
         ("texture of an EXR, decoded".to_owned(), painted("seen.exr"), Part::Any),
         ("environment of an EXR, decoded and weighed".to_owned(), SKY.to_owned(), Part::Any),
+        (format!("asset of {NODES} nodes, read"), ASSET.to_owned(), Part::Any),
         ("heightfield of a PNG, decoded and laid out".to_owned(), LAND.to_owned(), Part::Before),
         (
             format!("tree of one of {SMALL} x {SMALL}, built"),
@@ -126,6 +130,7 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
             Part::Tree,
         ),
     ];
+    let files = files.with("seen.gltf", asset());
     let registry = linked();
     for (name, text, part) in cases {
         let lit = if text == SKY { "" } else { "light constant { radiance = 1 W/m^2/sr }\n" };
@@ -165,6 +170,24 @@ fn pictures(luxel: &Luxel, side: u32) -> Result<[Vec<u8>; 2], String> {
     luxel.render(&scene, side, 1)?;
     let of = |name: &str| read(&scratch()?.join(name));
     Ok([of("picture.exr")?, of("picture.png")?])
+}
+
+/// A glTF file of many nodes, that refer to one triangle.
+fn asset() -> Vec<u8> {
+    let many = |one: &dyn Fn(usize) -> String| (0..NODES).map(one).collect::<Vec<_>>().join(",");
+    let nodes = many(&|i| format!(r#"{{"mesh":0,"translation":[{i},0,0]}}"#));
+    let roots = many(&|i| i.to_string());
+    // Twelve zeros and the corners of a triangle beside them.
+    let buffer =
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":36,"uri":"{buffer}"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "nodes":[{nodes}],"scenes":[{{"nodes":[{roots}]}}],"scene":0}}"#
+    );
+    json.into_bytes()
 }
 
 /// What is loaded, again and again.

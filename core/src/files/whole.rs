@@ -2,12 +2,10 @@
 
 use std::io::{self, Read};
 use std::iter;
-use std::num::NonZeroUsize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use luxel_sdk::params::{Unfinished, apart};
 
 use super::FileError;
 use crate::scene::Hash;
@@ -18,20 +16,13 @@ const PIECE: usize = 256 << 10;
 /// Bytes from which on a thread reads that nobody waits for once they are not wanted any more: the system
 /// takes some 5 ms to give room for so many.
 const LARGE: usize = 16 << 20;
-/// Between two looks at whether that thread's file is still wanted.
-const PATIENCE: Duration = Duration::from_millis(1);
-
-/// Such threads at this moment.
-static READING: AtomicUsize = AtomicUsize::new(0);
-
 /// A file's bytes and their BLAKE3 hash.
 pub type Whole = (Arc<[u8]>, Hash);
 
 /// Reads all of a source that should have `length` bytes, and at most `most`.
 ///
-/// Once `stop` is set it returns within some milliseconds, however large and slow the source is. At most
-/// as many as the machine has cores are read on beside that, each for one call of its `read` and until
-/// there is room for its bytes.
+/// Once `stop` is set it returns within some milliseconds, however large and slow the source is: a large
+/// one is left to itself (`apart`), until there is room for its bytes and a call of its `read` has ended.
 ///
 /// # Errors
 /// What the source says; that it has more bytes; that it is not wanted any more.
@@ -39,32 +30,16 @@ pub fn read_whole(
     from: impl Read + Send + 'static,
     length: usize,
     most: u64,
-    stop: &Arc<AtomicBool>,
+    stop: &AtomicBool,
 ) -> Result<Whole, FileError> {
     if length < LARGE {
         return gather(Pieces::new(from, most, stop), length);
     }
-    let (reading, own) = (Reading::begin(stop)?, stop.clone());
-    let (give, take) = mpsc::channel();
-    let work = move || {
-        let whole = gather(Pieces::new(from, most, &own), length);
-        drop(reading);
-        // Whoever has left does not take it.
-        let _ = give.send(whole);
-    };
-    let thread = thread::Builder::new().name("reads".to_owned()).spawn(work);
-    thread.map_err(|error| FileError::from(&error))?;
-    loop {
-        match take.recv_timeout(PATIENCE) {
-            Ok(whole) => return whole,
-            Err(RecvTimeoutError::Timeout) if stop.load(Ordering::Relaxed) => {
-                return Err(FileError::Unwanted);
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => {
-                return Err(FileError::Unreadable("reading it has failed".to_owned()));
-            }
-        }
+    let read = move |is_over: &AtomicBool| gather(Pieces::new(from, most, is_over), length);
+    match apart(&|| !stop.load(Ordering::Relaxed), read) {
+        Ok(whole) => whole,
+        Err(Unfinished::Unwanted) => Err(FileError::Unwanted),
+        Err(Unfinished::Failed) => Err(FileError::Unreadable(Unfinished::Failed.to_string())),
     }
 }
 
@@ -83,30 +58,6 @@ pub fn hash_whole(
     let mut pieces = Pieces::new(from, most, stop);
     while pieces.fill(&mut piece)? > 0 {}
     pieces.hash()
-}
-
-/// A thread that reads, as one of few.
-struct Reading;
-
-impl Reading {
-    /// Waits until it may be begun, or is not wanted any more.
-    fn begin(stop: &AtomicBool) -> Result<Self, FileError> {
-        let most = thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let one_more = |n: usize| (n < most).then_some(n + 1);
-        while READING.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_more).is_err() {
-            if stop.load(Ordering::Relaxed) {
-                return Err(FileError::Unwanted);
-            }
-            thread::sleep(PATIENCE);
-        }
-        Ok(Self)
-    }
-}
-
-impl Drop for Reading {
-    fn drop(&mut self) {
-        READING.fetch_sub(1, Ordering::Relaxed);
-    }
 }
 
 /// All bytes of a source, most likely so many.
@@ -175,8 +126,7 @@ impl<'a, R: Read> Pieces<'a, R> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Mutex;
-    use std::time::Instant;
+    use std::sync::{Mutex, mpsc};
 
     use super::*;
 
@@ -231,7 +181,7 @@ mod tests {
     #[test]
     fn nothing_more_is_read_once_it_is_not_wanted() {
         for left in [1, 2, 100] {
-            for length in [0, 50, 1000, LARGE] {
+            for length in [0, 50, 1000] {
                 let unwanted = || Unwanted { left, stop: never() };
                 let from = unwanted();
                 let stop = from.stop.clone();
@@ -244,47 +194,26 @@ mod tests {
     }
 
     /// Gives nothing until its sender is dropped, and then an end.
-    struct Stuck {
-        released: Mutex<mpsc::Receiver<()>>,
-        begun: Arc<AtomicUsize>,
-    }
+    struct Stuck(Mutex<mpsc::Receiver<()>>);
 
     impl Read for Stuck {
         fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
-            self.begun.fetch_add(1, Ordering::SeqCst);
-            let _ = self.released.lock().unwrap().recv();
+            let _ = self.0.lock().unwrap().recv();
             Ok(0)
         }
     }
 
     #[test]
-    fn a_source_that_gives_nothing_is_not_waited_for_and_few_are_read_beside() {
-        let most = thread::available_parallelism().unwrap().get();
-        let (mut releases, begun, stop) = (vec![], Arc::<AtomicUsize>::default(), never());
-        let mut load = || {
-            let (release, released) = mpsc::channel();
-            releases.push(release);
-            let stuck = Stuck { released: Mutex::new(released), begun: begun.clone() };
-            let stop = stop.clone();
-            thread::spawn(move || read_whole(stuck, LARGE, u64::MAX, &stop))
-        };
-        let loads: Vec<_> = (0..most + 2).map(|_| load()).collect();
-        let since = Instant::now();
-        while begun.load(Ordering::SeqCst) < most {
-            assert!(since.elapsed() < Duration::from_secs(60), "they are not begun");
-            thread::sleep(PATIENCE);
-        }
-        assert!(loads.iter().all(|load| !load.is_finished()));
-        stop.store(true, Ordering::SeqCst);
-        for load in loads {
+    fn a_large_source_that_gives_nothing_is_not_waited_for() {
+        let ((release, released), stop) = (mpsc::channel(), never());
+        let stuck = Stuck(Mutex::new(released));
+        std::thread::scope(|scope| {
+            let load = scope.spawn(|| read_whole(stuck, LARGE, u64::MAX, &stop));
+            assert!(!load.is_finished());
+            stop.store(true, Ordering::SeqCst);
             assert_eq!(load.join().unwrap(), Err(FileError::Unwanted));
-        }
-        assert_eq!(begun.load(Ordering::SeqCst), most, "more were begun");
-        drop(releases);
-        while Arc::strong_count(&begun) > 1 {
-            assert!(since.elapsed() < Duration::from_secs(60), "they do not end");
-            thread::sleep(PATIENCE);
-        }
+        });
+        drop(release);
     }
 
     #[test]

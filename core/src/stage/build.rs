@@ -158,7 +158,7 @@ impl Maker<'_> {
     /// # Errors
     /// There is too much of it.
     fn world(&mut self) -> Result<(), Box<Diagnostic>> {
-        let flats = flatten(self.scene);
+        let flats = flatten(self.scene, self.watch);
         for flat in flats.iter().flatten().take_while(|_| !self.watch.is_cancelled()) {
             self.place(flat);
         }

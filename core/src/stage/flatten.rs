@@ -2,7 +2,7 @@
 
 use luxel_sdk::kind::Kind;
 
-use crate::accel::TopBvh;
+use crate::accel::{TopBvh, Watch};
 use crate::diag::Diagnostic;
 use crate::scene::{Group, NodeId, Pose, Scene, Target};
 
@@ -25,17 +25,20 @@ const LIMIT: usize = 100_000_000;
 
 const _: () = assert!(LIMIT <= TopBvh::MOST, "a tree numbers every placement");
 
-/// Every shape and light of the scene in the world.
+/// Placements between two looks at the watch: far below a millisecond's work.
+const STRIDE: usize = 1 << 12;
+
+/// Every shape and light of the scene in the world; some of them once the watch is cancelled.
 ///
 /// # Errors
 /// E0501 when there are too many.
-pub(super) fn flatten(scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
-    within(scene.most_instances().min(LIMIT), scene)
+pub(super) fn flatten(scene: &Scene, watch: &Watch) -> Result<Vec<Flat>, Box<Diagnostic>> {
+    within(scene.most_instances().min(LIMIT), scene, watch)
 }
 
 /// The same with at most `limit`.
-fn within(limit: usize, scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
-    let mut walk = Walk { scene, limit, out: vec![] };
+fn within(limit: usize, scene: &Scene, watch: &Watch) -> Result<Vec<Flat>, Box<Diagnostic>> {
+    let mut walk = Walk { scene, limit, watch, out: vec![] };
     walk.over(&scene.root, &Pose::IDENTITY, None)?;
     Ok(walk.out)
 }
@@ -44,6 +47,7 @@ fn within(limit: usize, scene: &Scene) -> Result<Vec<Flat>, Box<Diagnostic>> {
 struct Walk<'a> {
     scene: &'a Scene,
     limit: usize,
+    watch: &'a Watch,
     out: Vec<Flat>,
 }
 
@@ -54,7 +58,10 @@ impl Walk<'_> {
         pose: &Pose,
         material: Option<NodeId>,
     ) -> Result<(), Box<Diagnostic>> {
-        for item in &group.items {
+        for (i, item) in group.items.iter().enumerate() {
+            if i.is_multiple_of(STRIDE) && self.watch.is_cancelled() {
+                return Ok(());
+            }
             let pose = item.pose.then(pose);
             if matches!(&pose, Pose::Moving(steps) if steps.len() > MOST_STEPS) {
                 let message = format!(
@@ -108,8 +115,11 @@ mod tests {
         scene.groups.push(Group { label: None, items: pair });
         let group = Target::Group(GroupId(0));
         scene.root.items = [7, 8].map(|place| placed(group, place)).to_vec();
-        assert_eq!(within(4, &scene).unwrap().len(), 4);
-        let told = within(3, &scene).unwrap_err();
+        let watch = Watch::default();
+        assert_eq!(within(4, &scene, &watch).unwrap().len(), 4);
+        let told = within(3, &scene, &watch).unwrap_err();
         assert_eq!((told.code, &*told.message), ("E0501", "more than 3 instances"));
+        watch.cancel();
+        assert!(within(3, &scene, &watch).unwrap().is_empty());
     }
 }

@@ -72,18 +72,23 @@ pub(crate) fn gather<I: IntoIterator>(
 /// wanted any more.
 pub(crate) struct Stoppable<'a> {
     bytes: Cursor<&'a [u8]>,
-    context: &'a dyn BuildContext,
+    is_over: &'a dyn Fn() -> bool,
 }
 
 impl<'a> Stoppable<'a> {
-    pub(crate) fn new(bytes: &'a [u8], context: &'a dyn BuildContext) -> Self {
-        Self { bytes: Cursor::new(bytes), context }
+    /// Until `is_over`.
+    pub(crate) fn new(bytes: &'a [u8], is_over: &'a dyn Fn() -> bool) -> Self {
+        Self { bytes: Cursor::new(bytes), is_over }
+    }
+
+    fn go_on(&self) -> io::Result<()> {
+        if (self.is_over)() { Err(io::Error::other(STOPPED)) } else { Ok(()) }
     }
 }
 
 impl Read for Stoppable<'_> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        go_on(self.context).map_err(io::Error::other)?;
+        self.go_on()?;
         let n = to.len().min(PIECE);
         self.bytes.read(&mut to[..n])
     }
@@ -91,7 +96,7 @@ impl Read for Stoppable<'_> {
 
 impl BufRead for Stoppable<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        go_on(self.context).map_err(io::Error::other)?;
+        self.go_on()?;
         let left = self.bytes.fill_buf()?;
         Ok(&left[..left.len().min(PIECE)])
     }
@@ -185,12 +190,13 @@ mod tests {
     fn bytes_come_piece_by_piece_and_end_when_they_are_not_wanted() {
         let bytes = vec![7; 3 * PIECE];
         let (endless, short) = (Patience::endless(), Patience::of(2));
+        let (never, soon) = (|| endless.cancelled(), || short.cancelled());
         let mut all = vec![];
-        assert_eq!(Stoppable::new(&bytes, &endless).read_to_end(&mut all).unwrap(), bytes.len());
+        assert_eq!(Stoppable::new(&bytes, &never).read_to_end(&mut all).unwrap(), bytes.len());
         assert!(endless.looks.get() > 3, "asked only {} times", endless.looks.get());
-        let stopped = Stoppable::new(&bytes, &short).read_to_end(&mut all).unwrap_err();
+        let stopped = Stoppable::new(&bytes, &soon).read_to_end(&mut all).unwrap_err();
         assert_eq!(stopped.to_string(), STOPPED);
-        let mut lines = Stoppable::new(&bytes, &endless);
+        let mut lines = Stoppable::new(&bytes, &never);
         assert_eq!(lines.fill_buf().unwrap().len(), PIECE);
     }
 

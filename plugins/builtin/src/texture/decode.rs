@@ -109,7 +109,8 @@ pub(crate) fn decode(bytes: &[u8], context: &dyn BuildContext) -> Result<Pixels,
     if name == "JPEG" && !has_end(bytes) {
         return Err(format!("a JPEG picture that {CUT}"));
     }
-    let mut reader = ImageReader::new(Stoppable::new(bytes, context));
+    let is_over = || context.cancelled();
+    let mut reader = ImageReader::new(Stoppable::new(bytes, &is_over));
     reader.set_format(format.expect("it has just been named"));
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);

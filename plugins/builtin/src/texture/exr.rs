@@ -21,7 +21,8 @@ pub(super) fn sound(
     (side, room): (u32, u64),
     context: &dyn BuildContext,
 ) -> Option<DynamicImage> {
-    let file = block::read(Stoppable::new(bytes, context), false).ok()?;
+    let is_over = || context.cancelled();
+    let file = block::read(Stoppable::new(bytes, &is_over), false).ok()?;
     let [header] = file.headers() else { return None };
     let (window, own) = (header.shared_attributes.display_window, &header.own_attributes);
     let is_whole = own.layer_position == window.position && header.layer_size == window.size;
@@ -106,7 +107,8 @@ mod tests {
         let exr = encoded(&noise(64, 512).into());
         // How often it looks while it waits for blocks is a matter of time; while it reads it is not.
         let sure = ends_wherever(|patience| {
-            let file = block::read(Stoppable::new(&exr, patience), false)?;
+            let is_over = || patience.cancelled();
+            let file = block::read(Stoppable::new(&exr, &is_over), false)?;
             file.filter_chunks(false, |_, _, _| true)?.try_for_each(|chunk| chunk.map(drop))
         });
         assert!(sure >= 512 / 16, "{sure} looks");

@@ -4,6 +4,7 @@
 //! scenes against it, `describe` prints it, and the host writes values into the struct at the
 //! offsets that it lists.
 
+mod apart;
 mod dimension;
 mod kind;
 mod fields;
@@ -12,6 +13,7 @@ mod unit;
 mod refuse;
 mod boundary;
 
+pub use apart::{Unfinished, apart};
 pub use boundary::{
     Built, ContextRef, ContextTable, FaultSink, HANDLE, ParamTable, TYPES, param_tables,
 };

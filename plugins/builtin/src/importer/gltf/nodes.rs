@@ -5,6 +5,7 @@ use gltf::json::{Index, Node};
 use luxel_sdk::num::Transform;
 
 use super::Builder;
+use crate::stop::{STRIDE, go_on};
 
 /// Places what stands in a scene of the file: in order of the tree, in double precision.
 ///
@@ -19,7 +20,12 @@ pub(super) fn walk(
     let mut seen = vec![false; source.root.nodes.len()];
     let mut open: Vec<_> = roots(build, scene)?.into_iter().map(|node| (node, base)).collect();
     open.reverse();
+    let mut n_seen = 0_usize;
     while let Some((index, parent)) = open.pop() {
+        if n_seen.is_multiple_of(STRIDE) {
+            go_on(source.context)?;
+        }
+        n_seen += 1;
         let i = index.value();
         let node = source.root.get(index).ok_or_else(|| format!("there is no nodes[{i}]"))?;
         // A second way to a node could lead in circles, and unfold without end.

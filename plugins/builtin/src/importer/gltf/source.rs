@@ -2,10 +2,11 @@
 
 use std::cell::Cell;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use gltf::binary::Glb;
 use gltf::json::{Index, Root, buffer, image};
-use luxel_sdk::params::BuildContext;
+use luxel_sdk::params::{BuildContext, apart};
 
 use super::{EXTENSIONS, uri};
 use crate::sniff;
@@ -47,8 +48,7 @@ impl<'a> Source<'a> {
                 "not glTF, which is JSON or begins with `glTF`, but {found}"
             )]);
         }
-        let root = Root::from_slice(json)
-            .map_err(|error| vec![format!("its JSON is damaged or not glTF 2.0 ({error})")])?;
+        let root = parsed(json, context).map_err(|message| vec![message])?;
         let unknown: Vec<String> = root
             .extensions_required
             .iter()
@@ -181,6 +181,22 @@ pub(super) fn sub_slice(bytes: &[u8], start: u64, length: u64) -> Option<&[u8]> 
 }
 
 type Chunk<'a> = std::borrow::Cow<'a, [u8]>;
+
+/// Bytes of JSON from which on they are parsed apart: some milliseconds' work.
+const LARGE: usize = 1 << 18;
+
+fn parsed(json: &[u8], context: &dyn BuildContext) -> Result<Root, String> {
+    let parse = |json: &[u8]| {
+        let damaged = |error| format!("its JSON is damaged or not glTF 2.0 ({error})");
+        Root::from_slice(json).map_err(damaged)
+    };
+    if json.len() < LARGE {
+        return parse(json);
+    }
+    let json = json.to_vec();
+    let work = move |_: &AtomicBool| parse(&json);
+    apart(&|| !context.cancelled(), work).map_err(|error| error.to_string())?
+}
 
 /// The JSON and the binary chunk, if there is one.
 fn split(bytes: &[u8]) -> Result<(Chunk<'_>, Option<Chunk<'_>>), String> {

@@ -31,7 +31,8 @@ pub(super) fn read(
         Cow::Borrowed(text) => Cow::Borrowed(text.as_bytes()),
         Cow::Owned(text) => Cow::Owned(text.into_bytes()),
     };
-    let loaded = tobj::load_obj_buf(&mut Stoppable::new(&text, context), &OPTIONS, |_| {
+    let is_over = || context.cancelled();
+    let loaded = tobj::load_obj_buf(&mut Stoppable::new(&text, &is_over), &OPTIONS, |_| {
         Ok(Default::default())
     });
     let (models, _) = loaded.map_err(|error| error.to_string().to_lowercase())?;

@@ -48,6 +48,7 @@ pub(crate) fn run() -> Result<(), String> {
     let objects = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), object));
     let told = format!("{objects}set one.radius = 30 cm\nmaterial dielectric {{ }}\n")
         .replacen("ball 3", "one", 1);
+    let reckoning = objects.replace("radius = r,", "radius = r / 2,");
     let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
     let case = |name, text: &str, from, to| Case { name, text: text.to_owned(), from, to };
     let cases = [
@@ -70,7 +71,14 @@ pub(crate) fn run() -> Result<(), String> {
             "reflectance = 0.2",
             "reflectance = 0.3",
         ),
-        case("objects, what all use", &objects, "r = 50 cm", "r = 40 cm"),
+        case("objects, a length that all hand on", &objects, "r = 50 cm", "r = 40 cm"),
+        case(
+            "objects, a material of nearly all",
+            &objects,
+            "reflectance = 0.5",
+            "reflectance = 0.4",
+        ),
+        case("objects, a length that all reckon with", &reckoning, "r = 50 cm", "r = 40 cm"),
         case(
             "objects, a mistake",
             &objects,

@@ -113,7 +113,7 @@ mod tests {
         // What refers to the first is behind it in its run, what refers to the fourth too.
         scene.change(&[0..3, 3..5], &[change(0, 0), change(2, 1), change(3, 0)], &values);
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 4.0]));
-        scene.change(&[3..5], &[change(4, 1)], &values);
+        scene.change(&[0..3, 3..5], &[change(4, 1)], &values);
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 8.0]));
     }
 

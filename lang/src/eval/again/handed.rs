@@ -1,6 +1,7 @@
 //! Statements that only hand a value on, as `radius = r` does: where that has changed, the parameters that
 //! it became get the new value, and nothing of the statement is evaluated.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -27,6 +28,8 @@ pub(super) struct Handed {
     /// By statement.
     places: Vec<Place>,
     wanted: Vec<Wanted>,
+    /// Which of those each name is.
+    of_names: BTreeMap<u32, Vec<u32>>,
 }
 
 /// A parameter that a value is handed on to.
@@ -43,7 +46,7 @@ struct Place {
 }
 
 /// What a name's value is for a parameter of a class.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 struct Wanted {
     name: u32,
     kind: Kind,
@@ -105,11 +108,14 @@ impl Handed {
 
     /// Which of those that are wanted this is.
     fn number(&mut self, wanted: Wanted) -> u32 {
-        let known = self.wanted.iter().position(|known| *known == wanted);
-        narrow(known.unwrap_or_else(|| {
-            self.wanted.push(wanted);
-            self.wanted.len() - 1
-        }))
+        let known = self.of_names.entry(wanted.name).or_default();
+        if let Some(i) = known.iter().find(|i| self.wanted[**i as usize] == wanted) {
+            return *i;
+        }
+        let i = narrow(self.wanted.len());
+        known.push(i);
+        self.wanted.push(wanted);
+        i
     }
 
     /// With those of later statements.

@@ -16,6 +16,7 @@ const PIECE: usize = 256 << 10;
 /// Bytes from which on a thread reads that nobody waits for once they are not wanted any more: the system
 /// takes some 5 ms to give room for so many.
 const LARGE: usize = 16 << 20;
+
 /// A file's bytes and their BLAKE3 hash.
 pub type Whole = (Arc<[u8]>, Hash);
 

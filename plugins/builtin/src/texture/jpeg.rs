@@ -11,7 +11,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 use crate::stop::Stoppable;
 
 /// Pixels from which on a picture is decoded apart: the last step of a progressive one, from its
-/// coefficients to pixels, takes some 5 ms for so many.
+/// coefficients to pixels, cannot be stopped.
 const LARGE: u64 = 1 << 19;
 
 /// The pixels of a sound picture of at most `side` pixels on a side and `room` bytes; `None` where

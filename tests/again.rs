@@ -113,6 +113,11 @@ struct Edited {
 }
 
 impl Edited {
+    fn new(settings: Settings) -> Self {
+        let (registry, kept, other) = (registry(), Kept::default(), OTHER.to_owned());
+        Self { registry, kept, settings, other, n_short: 0, n_told: 0 }
+    }
+
     fn load(&mut self, text: &str, step: &str) -> Loaded {
         let files = || {
             let other: Arc<[u8]> = self.other.as_bytes().into();
@@ -183,9 +188,7 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
         let noting = seed % 5 != 1;
         let without_scene = seed % 7 == 1;
         let settings = Settings { set, budgets, noting, without_scene, ..Settings::default() };
-        let other = OTHER.to_owned();
-        let (registry, kept) = (registry(), Kept::default());
-        let mut edited = Edited { registry, kept, settings, other, n_short: 0, n_told: 0 };
+        let mut edited = Edited::new(settings);
         let good = [0, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24, 52, 53, 54];
         let more: &[usize] = [&[][..], &[33, 34], &[42, 43], &[44, 48]][pick(&mut rng, 4)];
         let mut lines: Vec<String> =
@@ -235,9 +238,7 @@ fn beside_warnings_and_what_is_set_an_edit_concerns_its_statement() {
     .to_vec();
     now.extend((0..60).map(|i| format!("shape disk {{ radius = 2 m, center = (0, {i}, 0) }}")));
     let settings = Settings { noting: true, ..Settings::default() };
-    let (registry, kept) = (registry(), Kept::default());
-    let mut edited =
-        Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
+    let mut edited = Edited::new(settings);
     let mut n = |lines: &[String]| {
         let loaded = edited.load(&text_of(lines), "an edit");
         (edited.kept.n_evaluated().unwrap_or_default(), loaded.diagnostics.len())
@@ -272,9 +273,7 @@ fn what_only_hands_a_value_on_is_not_evaluated() {
     now.extend((0..60).map(|i| ball(i).to_owned()));
     for noting in [false, true] {
         let settings = Settings { noting, ..Settings::default() };
-        let (registry, kept) = (registry(), Kept::default());
-        let mut edited =
-            Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
+        let mut edited = Edited::new(settings);
         let mut lines = now.clone();
         let mut n = |lines: &[String]| {
             let loaded = edited.load(&text_of(lines), "an edit");
@@ -298,10 +297,7 @@ fn what_only_hands_a_value_on_is_not_evaluated() {
 
 #[test]
 fn a_mistake_in_place_of_the_camera_leaves_the_camera_missing() {
-    let settings = Settings::default();
-    let (registry, kept) = (registry(), Kept::default());
-    let mut edited =
-        Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
+    let mut edited = Edited::new(Settings::default());
     let mut lines = vec!["shape sphere { radius = 1 m }".to_owned(), CAMERA.to_owned()];
     assert!(is_good(&edited.load(&text_of(&lines), "with a camera")));
     lines[1] = "shape sphere { radius = 1 s }".to_owned();
@@ -312,10 +308,7 @@ fn a_mistake_in_place_of_the_camera_leaves_the_camera_missing() {
 
 #[test]
 fn what_a_call_is_depends_on_what_stands_elsewhere() {
-    let settings = Settings::default();
-    let (registry, kept) = (registry(), Kept::default());
-    let mut edited =
-        Edited { registry, kept, settings, other: OTHER.to_owned(), n_short: 0, n_told: 0 };
+    let mut edited = Edited::new(Settings::default());
     let mut lines = vec![
         "fn twice(x: length) = 2 * x".to_owned(),
         "shape sphere { radius = 1 m twice(3 m) }".to_owned(),

@@ -177,7 +177,7 @@ fn asset() -> Vec<u8> {
     let many = |one: &dyn Fn(usize) -> String| (0..NODES).map(one).collect::<Vec<_>>().join(",");
     let nodes = many(&|i| format!(r#"{{"mesh":0,"translation":[{i},0,0]}}"#));
     let roots = many(&|i| i.to_string());
-    // Twelve zeros and the corners of a triangle beside them.
+    // The corners (0, 0, 0), (1, 0, 0) and (0, 1, 0).
     let buffer =
         "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
     let json = format!(

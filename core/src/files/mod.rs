@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::{fmt, io};
 
+use luxel_sdk::params::Unfinished;
+
 pub use self::whole::{Whole, hash_whole, read_whole};
 use crate::scene::Hash;
 
@@ -34,7 +36,7 @@ impl fmt::Display for FileError {
             Self::Unreadable(why) => write!(f, "it cannot be read: {why}"),
             Self::TooLarge(limit) => write!(f, "it is larger than the limit of {limit} bytes"),
             Self::Outside => write!(f, "it lies outside the scene's folder (see --allow-path)"),
-            Self::Unwanted => write!(f, "it is not wanted any more"),
+            Self::Unwanted => Unfinished::Unwanted.fmt(f),
         }
     }
 }

@@ -13,8 +13,8 @@ use crate::scene::Hash;
 /// Bytes that are read and hashed between two looks at whether they are still wanted: they stay in the
 /// processor's cache, and are enough for all lanes of the hash.
 const PIECE: usize = 256 << 10;
-/// Bytes from which on a thread reads that nobody waits for once they are not wanted any more: the system
-/// takes some 5 ms to give room for so many.
+/// Bytes from which on a thread reads that nobody waits for once they are not wanted any more: while the
+/// system gives room for them, nobody can look.
 const LARGE: usize = 16 << 20;
 
 /// A file's bytes and their BLAKE3 hash.
@@ -194,24 +194,26 @@ mod tests {
         }
     }
 
-    /// Gives nothing until its sender is dropped, and then an end.
-    struct Stuck(Mutex<mpsc::Receiver<()>>);
+    /// Tells that it is read, and gives nothing until its sender is dropped, and then an end.
+    struct Stuck(mpsc::Sender<()>, Mutex<mpsc::Receiver<()>>);
 
     impl Read for Stuck {
         fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
-            let _ = self.0.lock().unwrap().recv();
+            self.0.send(()).unwrap();
+            let _ = self.1.lock().unwrap().recv();
             Ok(0)
         }
     }
 
     #[test]
     fn a_large_source_that_gives_nothing_is_not_waited_for() {
-        let ((release, released), stop) = (mpsc::channel(), never());
-        let stuck = Stuck(Mutex::new(released));
+        let ((read, is_read), (release, released)) = (mpsc::channel(), mpsc::channel());
+        let (stuck, stop) = (Stuck(read, Mutex::new(released)), never());
         std::thread::scope(|scope| {
             let load = scope.spawn(|| read_whole(stuck, LARGE, u64::MAX, &stop));
-            assert!(!load.is_finished());
+            is_read.recv().unwrap();
             stop.store(true, Ordering::SeqCst);
+            // It would wait for ever for what is released below.
             assert_eq!(load.join().unwrap(), Err(FileError::Unwanted));
         });
         drop(release);

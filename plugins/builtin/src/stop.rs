@@ -2,7 +2,7 @@
 
 use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
 
-use luxel_sdk::params::BuildContext;
+use luxel_sdk::params::{BuildContext, Unfinished};
 
 /// Lines or elements of a file between two looks at whether it is still wanted: a millisecond's work
 /// at most.
@@ -12,12 +12,10 @@ pub(crate) const STRIDE: usize = 1 << 12;
 /// work.
 const PIECE: usize = 1 << 12;
 
-const STOPPED: &str = "it is not wanted any more";
-
 /// # Errors
 /// If the work is not wanted any more.
 pub(crate) fn go_on(context: &dyn BuildContext) -> Result<(), String> {
-    if context.cancelled() { Err(STOPPED.to_owned()) } else { Ok(()) }
+    if context.cancelled() { Err(Unfinished::Unwanted.to_string()) } else { Ok(()) }
 }
 
 /// Items, until the work is not wanted any more: what was made of them is whole only if `go_on` says so
@@ -82,7 +80,7 @@ impl<'a> Stoppable<'a> {
     }
 
     fn go_on(&self) -> io::Result<()> {
-        if (self.is_over)() { Err(io::Error::other(STOPPED)) } else { Ok(()) }
+        if (self.is_over)() { Err(io::Error::other(Unfinished::Unwanted)) } else { Ok(()) }
     }
 }
 
@@ -195,7 +193,7 @@ mod tests {
         assert_eq!(Stoppable::new(&bytes, &never).read_to_end(&mut all).unwrap(), bytes.len());
         assert!(endless.looks.get() > 3, "asked only {} times", endless.looks.get());
         let stopped = Stoppable::new(&bytes, &soon).read_to_end(&mut all).unwrap_err();
-        assert_eq!(stopped.to_string(), STOPPED);
+        assert_eq!(stopped.to_string(), Unfinished::Unwanted.to_string());
         let mut lines = Stoppable::new(&bytes, &never);
         assert_eq!(lines.fill_buf().unwrap().len(), PIECE);
     }

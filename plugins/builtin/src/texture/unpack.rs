@@ -113,7 +113,7 @@ mod tests {
             rows.push(block.index.pixel_position.y());
             Some(())
         })?;
-        // Those who write EXR files put the blocks into them as they are packed.
+        // What writes them on several threads puts them into the file as they are packed, in any order.
         let read = chunks();
         let meta = read.meta_data().clone();
         let row = |chunk| plainly(chunk, &meta).unwrap().index.pixel_position.y();

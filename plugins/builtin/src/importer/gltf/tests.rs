@@ -387,6 +387,19 @@ impl BuildContext for Impatient<'_> {
 }
 
 #[test]
+fn a_long_text_is_read_as_a_short_one() {
+    let nodes = r#""nodes":[{"mesh":0,"translation":[1,2,3]}]"#;
+    let short = file(&format!("{STRIP},{nodes}"));
+    let long = |text: &str| format!("{text}{}", " ".repeat(1 << 18));
+    let [one, other] = [short.clone(), long(&short)].map(|text| import(&text).unwrap());
+    assert!(!one.placed.is_empty());
+    assert_eq!((one.placed, one.nodes.len()), (other.placed, other.nodes.len()));
+    let damaged = short.replacen("translation", "\u{1}", 1);
+    let told = |text: &str| import(text).unwrap_err().remove(0).message;
+    assert_eq!(told(&damaged), told(&long(&damaged)));
+}
+
+#[test]
 fn collapsed_nodes_are_left_out_with_a_warning() {
     let nodes = r#""nodes":[{"mesh":0,"scale":[0,0,0],"children":[1]},{"mesh":0}]"#;
     let found = import(&file(&format!("{STRIP},{nodes}"))).unwrap();

@@ -70,6 +70,13 @@ pub fn apart<T: Send + 'static>(
     }
 }
 
+/// Gives a value's memory back on a thread of its own: many small pieces of it take tens of milliseconds,
+/// for which nobody who has given up a load should wait.
+pub fn leave<T: Send + 'static>(value: T) {
+    // Without a thread it is dropped here.
+    let _ = thread::Builder::new().name("leaves".to_owned()).spawn(move || drop(value));
+}
+
 /// A thread that works, as one of few.
 struct Busy;
 
@@ -109,6 +116,19 @@ mod tests {
             apart(&|| true, |_| -> u32 { panic!("as it is meant to") }),
             Err(Unfinished::Failed)
         );
+    }
+
+    #[test]
+    fn what_is_left_is_dropped_elsewhere() {
+        struct Told(mpsc::Sender<thread::ThreadId>);
+        impl Drop for Told {
+            fn drop(&mut self) {
+                self.0.send(thread::current().id()).unwrap();
+            }
+        }
+        let (give, take) = mpsc::channel();
+        leave(Told(give));
+        assert_ne!(take.recv_timeout(LONG).unwrap(), thread::current().id());
     }
 
     #[test]

@@ -13,7 +13,7 @@ mod unit;
 mod refuse;
 mod boundary;
 
-pub use apart::{Unfinished, apart};
+pub use apart::{Unfinished, apart, leave};
 pub use boundary::{
     Built, ContextRef, ContextTable, FaultSink, HANDLE, ParamTable, TYPES, param_tables,
 };

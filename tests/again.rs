@@ -2,6 +2,9 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
 
 use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::files::MemoryFiles;
@@ -293,6 +296,35 @@ fn what_only_hands_a_value_on_is_not_evaluated() {
         lines[0] = "let r = 8 s".to_owned();
         assert!(!n(&lines).1);
     }
+}
+
+#[test]
+fn a_load_that_was_given_up_at_any_moment_leaves_what_can_be_gone_on_from() {
+    let mut now = vec!["let r = 5 cm".to_owned(), "let q = 1 cm".to_owned(), CAMERA.to_owned()];
+    now.extend((0..1500).map(|i| match i % 8 {
+        0 => format!("shape sphere {{ radius = 2 * q, center = ({i}, 0, 0) m }}"),
+        _ => format!("shape sphere {{ radius = r, center = ({i}, 0, 0) m }}"),
+    }));
+    let mut edited = Edited::new(Settings::default());
+    assert!(is_good(&edited.load(&text_of(&now), "from nothing")));
+    let (mut rng, mut n_given_up) = (Rng::new(7), 0);
+    for round in 0..40 {
+        let stop = Arc::new(AtomicBool::new(round == 0));
+        let settings = Settings { stop: Some(stop.clone()), ..Settings::default() };
+        let pause = Duration::from_micros(u64::from(rng.u32() % 8000));
+        now[round % 2] = format!("let {} = {round}.5 cm", ["r", "q"][round % 2]);
+        let text = text_of(&now);
+        let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+        let later = thread::spawn(move || {
+            thread::sleep(pause);
+            stop.store(true, Ordering::Relaxed);
+        });
+        let loaded = edited.kept.load(Path::new("a.scene"), &files, &edited.registry, &settings);
+        n_given_up += usize::from(loaded.scene.is_none());
+        later.join().unwrap();
+        edited.load(&text, &format!("after {pause:?} in round {round}"));
+    }
+    assert!(n_given_up > 0);
 }
 
 #[test]

@@ -48,6 +48,12 @@ impl Sink {
         self.stop.clone()
     }
 
+    /// Whether it was told to stop, for others to ask.
+    pub(crate) fn over(&self) -> impl Fn() -> bool + Sync + 'static {
+        let stop = self.stop();
+        move || stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
     /// Whether it was told to stop.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))

@@ -16,10 +16,10 @@ pub struct Arguments {
 
 impl Arguments {
     /// Runs of a list, which follow one another and have these lengths.
-    pub(super) fn runs(all: Vec<Argument>, lengths: &[u32]) -> impl Iterator<Item = Self> {
+    pub(super) fn runs(all: Vec<Argument>, lengths: Vec<u32>) -> impl Iterator<Item = Self> {
         let all = Arc::new(all);
         let mut end = 0;
-        lengths.iter().map(move |length| {
+        lengths.into_iter().map(move |length| {
             let start = end;
             end += length;
             Self { all: all.clone(), range: start..end }
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn runs_of_one_list_change_each_for_itself() {
         let all: Vec<_> = ["a", "b", "c"].map(argument).into();
-        let mut runs: Vec<_> = Arguments::runs(all, &[2, 0, 1]).collect();
+        let mut runs: Vec<_> = Arguments::runs(all, vec![2, 0, 1]).collect();
         runs[0].to_mut().push(argument("d"));
         runs[1].to_mut().push(argument("e"));
         runs[1].to_mut().insert(0, argument("f"));

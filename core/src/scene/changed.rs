@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::compact::IsOver;
 use super::gather::in_parts;
 use super::{Argument, Arguments, Hash, Node, NodeId, Scene, Value, own_hash, value};
 
@@ -23,8 +24,13 @@ impl Scene {
     /// Gives parameters other values, in a scene whose nodes are hashed.
     ///
     /// `changes` go by node and parameter, and all lie in `runs` of nodes, which follow one another. No node
-    /// but those behind it in its run refers to one of a run.
-    pub fn change(&mut self, runs: &[Range<usize>], changes: &[Changed], values: &[Value]) {
+    /// but those behind it in its run refers to one of a run. `None`, and a scene of no use, once it is over.
+    pub fn change(
+        &mut self,
+        runs: &[Range<usize>],
+        (changes, values): (&[Changed], &[Value]),
+        is_over: IsOver<'_>,
+    ) -> Option<()> {
         let (mut parts, mut left): (Vec<Part<'_>>, _) = (vec![], changes);
         for run in runs {
             let n = left.partition_point(|change| (change.node as usize) < run.end);
@@ -32,19 +38,22 @@ impl Scene {
             parts.push((run, own));
             left = others;
         }
-        let params = in_parts(&parts, &|parts| self.changed(parts, values));
+        let changed =
+            |parts: &[Part<'_>], out: &mut Vec<_>| out.extend(self.changed(parts, values));
+        let params = in_parts(&parts, is_over, &changed)?;
         let nodes = || runs.iter().cloned().flatten();
         for (i, params) in nodes().zip(params) {
             self.nodes[i].params = params;
         }
-        let hashes = in_parts(runs, &|runs| self.hashes_of(runs));
+        let hashes = in_parts(runs, is_over, &|runs, out| self.hashes_of(runs, out))?;
         for (i, (hash, own)) in nodes().zip(hashes) {
             (self.nodes[i].hash, self.own[i]) = (hash, own);
         }
+        Some(())
     }
 
     /// The parameters of nodes after changes.
-    fn changed(&self, parts: &[Part<'_>], values: &[Value]) -> Vec<Arguments> {
+    fn changed(&self, parts: &[Part<'_>], values: &[Value]) -> impl Iterator<Item = Arguments> {
         let (mut all, mut lengths) = (vec![], vec![]);
         for (run, changes) in parts {
             let mut changes = changes.iter().peekable();
@@ -65,19 +74,17 @@ impl Scene {
                 }
             }
         }
-        Arguments::runs(all, &lengths).collect()
+        Arguments::runs(all, lengths)
     }
 
-    /// The hashes of nodes in runs, of which only nodes behind them in the same run refer to them.
-    fn hashes_of(&self, runs: &[Range<usize>]) -> Vec<(Hash, Hash)> {
-        let mut out: Vec<(Hash, Hash)> = Vec::with_capacity(runs.iter().map(Range::len).sum());
+    /// Adds the hashes of nodes in runs, of which only nodes behind them in the same run refer to them.
+    fn hashes_of(&self, runs: &[Range<usize>], out: &mut Vec<(Hash, Hash)>) {
         for run in runs {
             let first = out.len();
             for node in &self.nodes[run.clone()] {
                 out.push(self.hashes_in(node, run.start, &out[first..]));
             }
         }
-        out
     }
 
     /// The hashes of a node, where those of the nodes from `start` on are new.
@@ -104,16 +111,20 @@ mod tests {
                 nodes: numbers.iter().zip(inner).map(|(x, inner)| numbered(*x, inner)).collect(),
                 ..Scene::default()
             };
-            scene.prepare(&|span| span);
+            scene.prepare(&|span| span, &|| false).unwrap();
             scene
         };
         let mut scene = made([0.0, 1.0, 2.0, 3.0, 4.0]);
         let change = |node, value| Changed { node, argument: 0, value };
         let values = [7.0, 8.0].map(number);
         // What refers to the first is behind it in its run, what refers to the fourth too.
-        scene.change(&[0..3, 3..5], &[change(0, 0), change(2, 1), change(3, 0)], &values);
+        scene
+            .change(&[0..3, 3..5], (&[change(0, 0), change(2, 1), change(3, 0)], &values), &|| {
+                false
+            })
+            .unwrap();
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 4.0]));
-        scene.change(&[0..3, 3..5], &[change(4, 1)], &values);
+        scene.change(&[0..3, 3..5], (&[change(4, 1)], &values), &|| false).unwrap();
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 8.0]));
     }
 

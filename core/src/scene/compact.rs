@@ -5,32 +5,47 @@ use super::{GroupId, NodeId, Placed, Scene, Target, Value, value};
 /// The number of what was not met.
 pub(super) const UNMET: u32 = u32::MAX;
 
+/// Says whether what is made of a scene is not wanted any more; asked every few thousand nodes.
+pub type IsOver<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// Nodes between two looks at that: a millisecond's work to hash.
+pub(super) const STRIDE: usize = 1 << 12;
+
 impl Scene {
     /// Leaves out nodes and groups that nothing refers to, brings children before those that refer to
     /// them, in the order in which they are met from the world on, and computes every hash anew: until
     /// then nodes may be put among `nodes` as they come.
     ///
-    /// Nothing may stand in itself, nor so deep that the recursion has no room.
-    pub fn compact(&mut self) {
+    /// Nothing may stand in itself, nor so deep that the recursion has no room. `None`, and a scene of no
+    /// use, once it is over.
+    pub fn compact(&mut self, is_over: IsOver<'_>) -> Option<()> {
         let Order { nodes, groups, n_nodes, n_groups, .. } = Order::of(self);
         self.rename(&nodes, &groups);
+        if is_over() {
+            return None;
+        }
         arrange(&mut self.nodes, nodes, n_nodes);
         arrange(&mut self.groups, groups, n_groups);
         self.own.clear();
-        self.hash_more();
+        self.hash_more(is_over)
     }
 
-    /// Computes the hashes of the nodes that were put among `nodes` since it was last called.
-    pub(super) fn hash_more(&mut self) {
+    /// Computes the hashes of the nodes that were put among `nodes` since it was last called; `None`, and
+    /// only some of them, once it is over.
+    pub(super) fn hash_more(&mut self, is_over: IsOver<'_>) -> Option<()> {
         let first = self.own.len();
+        let goes_on = |i: usize| !(i.is_multiple_of(STRIDE) && is_over());
         let mut is_hashed = vec![false; self.nodes.len() - first];
         for i in first..self.nodes.len() {
+            goes_on(i).then_some(())?;
             self.hash_from(i, first, &mut is_hashed);
         }
         for i in first..self.nodes.len() {
+            goes_on(i).then_some(())?;
             let own = self.new_own_hash(&self.nodes[i]);
             self.own.push(own);
         }
+        Some(())
     }
 
     /// Computes a node's hash after those of what it refers to; those before `first` are there.
@@ -187,7 +202,7 @@ pub(super) mod tests {
         scene.groups = vec![group(Target::Node(NodeId(1))), group(Target::Node(NodeId(3)))];
         scene.root.items = vec![placed(Target::Group(GroupId(1)), 7)];
         scene.camera = Some(NodeId(0));
-        scene.compact();
+        scene.compact(&|| false).unwrap();
         let places: Vec<_> = scene.nodes.iter().map(|node| node.span.start).collect();
         assert_eq!(places, [2, 3, 0]);
         assert_eq!(scene.nodes[1].params[0].value, Value::Node(NodeId(0)));

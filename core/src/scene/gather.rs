@@ -3,31 +3,35 @@
 
 use std::sync::Arc;
 
-use super::compact::{Order, UNMET};
+use super::compact::{IsOver, Order, STRIDE, UNMET};
 use super::{
     Argument, Arguments, Expectation, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value,
 };
 use crate::diag::Span;
 
-/// Of how much a thread has something to do at least.
-const PART: usize = 4096;
-
 impl Scene {
     /// The scene that `compact` would make of this one, whose nodes are hashed, with every place in a
-    /// file as `place` has it.
-    #[must_use]
-    pub fn gathered(&self, place: &(dyn Fn(Span) -> Span + Sync)) -> Self {
+    /// file as `place` has it; `None` once it is over.
+    pub fn gathered(
+        &self,
+        place: &(dyn Fn(Span) -> Span + Sync),
+        is_over: IsOver<'_>,
+    ) -> Option<Self> {
         let order = Order::of(self);
         let nodes = met(&order.nodes, order.n_nodes);
         let groups = met(&order.groups, order.n_groups);
         let put = Put { nodes: &order.nodes, groups: &order.groups, place };
         let slot = |id: Option<NodeId>| id.map(|id| put.id(id));
         let expected = |said: &Expectation| Expectation { span: place(said.span), ..said.clone() };
-        let of_nodes = |part: &[u32]| put.nodes(part.iter().map(|old| self.node(NodeId(*old))));
-        let of_items = |part: &[Placed]| part.iter().map(|item| put.item(item)).collect();
-        let root = Group { label: None, items: in_parts(&self.root.items, &of_items) };
-        Self {
-            nodes: in_parts(&nodes, &of_nodes),
+        let of_nodes = |part: &[u32], out: &mut Vec<Node>| {
+            put.nodes(part.iter().map(|old| self.node(NodeId(*old))), out);
+        };
+        let of_items = |part: &[Placed], out: &mut Vec<Placed>| {
+            out.extend(part.iter().map(|item| put.item(item)));
+        };
+        let root = Group { label: None, items: in_parts(&self.root.items, is_over, &of_items)? };
+        Some(Self {
+            nodes: in_parts(&nodes, is_over, &of_nodes)?,
             groups: groups.iter().map(|old| put.group(self.group(GroupId(*old)))).collect(),
             root,
             camera: slot(self.camera),
@@ -42,29 +46,56 @@ impl Scene {
             dropped: self.dropped.clone(),
             most_instances: self.most_instances,
             own: nodes.iter().map(|old| self.own[*old as usize]).collect(),
-        }
+        })
+    }
+
+    /// The same scene once more; `None` once it is over.
+    pub fn copied(&self, is_over: IsOver<'_>) -> Option<Self> {
+        let items = in_parts(&self.root.items, is_over, &add)?;
+        Some(Self {
+            nodes: in_parts(&self.nodes, is_over, &add)?,
+            groups: in_parts(&self.groups, is_over, &add)?,
+            root: Group { label: self.root.label.clone(), items },
+            own: in_parts(&self.own, is_over, &add)?,
+            camera_pose: self.camera_pose.clone(),
+            expectations: self.expectations.clone(),
+            required: self.required.clone(),
+            dropped: self.dropped.clone(),
+            ..*self
+        })
     }
 
     /// Makes a scene as it was evaluated one of which copies are gathered: changes every place in a file,
-    /// and hashes the nodes.
-    pub fn prepare(&mut self, place: &(dyn Fn(Span) -> Span + Sync)) {
+    /// and hashes the nodes. `None`, and a scene of no use, once it is over.
+    pub fn prepare(
+        &mut self,
+        place: &(dyn Fn(Span) -> Span + Sync),
+        is_over: IsOver<'_>,
+    ) -> Option<()> {
         let numbers = |n: usize| (0..).take(n).collect::<Vec<u32>>();
         let (nodes, groups) = (numbers(self.nodes.len()), numbers(self.groups.len()));
         let put = Put { nodes: &nodes, groups: &groups, place };
-        self.nodes = in_parts(&self.nodes, &|part: &[Node]| put.nodes(part.iter()));
+        let of_nodes = |part: &[Node], out: &mut Vec<Node>| put.nodes(part.iter(), out);
+        self.nodes = in_parts(&self.nodes, is_over, &of_nodes)?;
         // Next to one another, so that copying finds them soon.
         for label in self.nodes.iter_mut().filter_map(|node| node.label.as_mut()) {
             *label = Arc::from(&**label);
         }
         self.groups = self.groups.iter().map(|group| put.group(group)).collect();
         self.root = put.group(&self.root);
-        self.hash_more();
+        self.hash_more(is_over)
     }
 
     /// Takes over nodes and groups of another scene: `nodes` and `groups` are their numbers here, of which
     /// those that are free are taken in order; what has the number of something here stands for that.
-    /// Gives what stands in the other's world. The settings stay what they are.
-    pub fn take_over(&mut self, mut other: Self, nodes: &[u32], groups: &[u32]) -> Vec<Placed> {
+    /// Gives what stands in the other's world. The settings stay what they are. `None`, and a scene of no
+    /// use, once it is over.
+    pub fn take_over(
+        &mut self,
+        mut other: Self,
+        [nodes, groups]: [&[u32]; 2],
+        is_over: IsOver<'_>,
+    ) -> Option<Vec<Placed>> {
         other.rename(nodes, groups);
         for (node, number) in other.nodes.into_iter().zip(nodes) {
             if *number as usize == self.nodes.len() {
@@ -76,29 +107,42 @@ impl Scene {
                 self.groups.push(group);
             }
         }
-        self.hash_more();
-        other.root.items
+        self.hash_more(is_over)?;
+        Some(other.root.items)
     }
 }
 
-/// What `f` makes of a list, in parts of it on as many threads as there are cores, in order.
+/// What `f` adds for each few neighbours of a list, on as many threads as there are cores, in order;
+/// `None` once it is over.
 pub(super) fn in_parts<T: Sync, R: Send>(
     list: &[T],
-    f: &(dyn Fn(&[T]) -> Vec<R> + Sync),
-) -> Vec<R> {
+    is_over: IsOver<'_>,
+    f: &(dyn Fn(&[T], &mut Vec<R>) + Sync),
+) -> Option<Vec<R>> {
     let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let length = list.len().div_ceil(n_cores).max(PART);
+    let length = list.len().div_ceil(n_cores).max(STRIDE);
+    let of_part = |part: &[T], room: usize| {
+        let mut out = Vec::with_capacity(room);
+        part.chunks(STRIDE).take_while(|_| !is_over()).for_each(|few| f(few, &mut out));
+        out
+    };
     let mut parts = list.chunks(length);
-    let Some(first) = parts.next() else { return vec![] };
-    std::thread::scope(|scope| {
-        let others: Vec<_> = parts.map(|part| scope.spawn(move || f(part))).collect();
-        let mut all = f(first);
-        all.reserve_exact(list.len().saturating_sub(all.len()));
+    let Some(first) = parts.next() else { return Some(vec![]) };
+    let all = std::thread::scope(|scope| {
+        let of_part = &of_part;
+        let others: Vec<_> =
+            parts.map(|part| scope.spawn(move || of_part(part, part.len()))).collect();
+        let mut all = of_part(first, list.len());
         for other in others {
             all.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         }
         all
-    })
+    });
+    (!is_over()).then_some(all)
+}
+
+fn add<T: Clone>(part: &[T], out: &mut Vec<T>) {
+    out.extend_from_slice(part);
 }
 
 /// The old numbers of what was met, by the new ones.
@@ -122,16 +166,16 @@ impl Put<'_> {
         NodeId(self.nodes[old as usize])
     }
 
-    /// Nodes whose parameters are one piece of memory.
-    fn nodes<'n>(&self, nodes: impl Iterator<Item = &'n Node> + Clone) -> Vec<Node> {
+    /// Adds nodes whose parameters are one piece of memory.
+    fn nodes<'n>(&self, nodes: impl Iterator<Item = &'n Node> + Clone, out: &mut Vec<Node>) {
         let lengths = nodes.clone().map(|node| u32::try_from(node.params.len()).unwrap_or(0));
         let lengths: Vec<u32> = lengths.collect();
         let mut all = Vec::with_capacity(lengths.iter().map(|length| *length as usize).sum());
         for node in nodes.clone() {
             all.extend(node.params.iter().map(|argument| self.argument(argument)));
         }
-        let runs = Arguments::runs(all, &lengths);
-        nodes.zip(runs).map(|(node, params)| self.node(node, params)).collect()
+        let runs = Arguments::runs(all, lengths);
+        out.extend(nodes.zip(runs).map(|(node, params)| self.node(node, params)));
     }
 
     fn argument(&self, argument: &Argument) -> Argument {
@@ -194,10 +238,12 @@ mod tests {
         scene.groups = vec![Group::default(), inner];
         scene.root.items = vec![placed(Target::Group(GroupId(1)), 7)];
         let mut kept = scene.clone();
-        kept.prepare(&|span| span);
-        scene.compact();
-        assert_eq!(kept.gathered(&|span| span), scene);
-        let further = kept.gathered(&|span| Span { start: span.start + 3, ..span });
+        kept.prepare(&|span| span, &|| false).unwrap();
+        scene.compact(&|| false).unwrap();
+        let wanted = || false;
+        assert_eq!(kept.gathered(&|span| span, &wanted).unwrap(), scene);
+        let further =
+            kept.gathered(&|span| Span { start: span.start + 3, ..span }, &wanted).unwrap();
         assert_eq!(further.nodes[1].span.start, scene.nodes[1].span.start + 3);
         assert_eq!(further.nodes[1].params[0].span.start, scene.nodes[1].span.start + 3);
         assert_eq!(further.root.items[0].span.start, 10);
@@ -206,11 +252,11 @@ mod tests {
     #[test]
     fn what_is_taken_over_refers_to_what_it_stands_for() {
         let mut kept = Scene { nodes: vec![node(0, None), node(1, None)], ..Scene::default() };
-        kept.prepare(&|span| span);
+        kept.prepare(&|span| span, &|| false).unwrap();
         let mut other = Scene { nodes: vec![node(1, None), node(5, Some(0))], ..Scene::default() };
         other.groups = vec![Group { label: None, items: vec![placed(Target::Node(NodeId(1)), 0)] }];
         other.root.items = vec![placed(Target::Group(GroupId(0)), 0)];
-        let items = kept.take_over(other, &[1, 2], &[0]);
+        let items = kept.take_over(other, [&[1, 2], &[0]], &|| false).unwrap();
         assert_eq!(kept.nodes.len(), 3);
         assert_eq!(kept.nodes[2].params[0].value, Value::Node(NodeId(1)));
         assert_eq!(kept.groups[0].items[0].target, Target::Node(NodeId(2)));
@@ -218,7 +264,7 @@ mod tests {
         let mut fresh = Scene { nodes: vec![node(1, None), node(5, Some(0))], ..Scene::default() };
         fresh.groups = vec![Group { label: None, items: vec![placed(Target::Node(NodeId(1)), 0)] }];
         fresh.root.items = vec![placed(Target::Group(GroupId(0)), 0)];
-        fresh.compact();
-        assert_eq!(kept.gathered(&|span| span), fresh);
+        fresh.compact(&|| false).unwrap();
+        assert_eq!(kept.gathered(&|span| span, &|| false).unwrap(), fresh);
     }
 }

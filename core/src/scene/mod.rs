@@ -30,6 +30,7 @@ use crate::registry::common_params;
 pub use arguments::Arguments;
 pub use changed::Changed;
 pub use color::Color;
+pub use compact::IsOver;
 pub use conform::{
     DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, said,
     said_unit, wanted,

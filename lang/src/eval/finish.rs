@@ -3,6 +3,7 @@
 use luxel_core::diag::Diagnostic;
 use luxel_core::scene::{NodeId, Placed, Pose, Scene, Target};
 use luxel_sdk::kind::Kind;
+use luxel_sdk::params::leave;
 
 use super::Evaluator;
 use super::note::Noted;
@@ -18,13 +19,17 @@ impl Evaluator<'_> {
         let errors = self.sink.errors();
         let is_good = errors == 0 && !self.damaged && !self.stopped;
         let is_small = !self.stopped && self.scene.nodes.len() <= LOOKED_AT;
-        let made = (is_good || is_small).then(|| {
+        let is_over = self.sink.over();
+        let mut made = (is_good || is_small).then_some(()).and_then(|()| {
             self.scene.root = self.open_groups.pop().unwrap_or_default().group;
             let orphans: Vec<_> = self.orphans.iter().map(|id| placed(&self.scene, *id)).collect();
             self.scene.root.items.extend(orphans);
-            self.scene.compact();
-            self.scene
+            self.scene.compact(&is_over)?;
+            Some(std::mem::take(&mut self.scene))
         });
+        if is_over() {
+            leave((self.scene, self.open_groups, made.take()));
+        }
         let (scene, rest) = if is_good { (made, None) } else { (None, made) };
         let mut diagnostics = self.sink.finish();
         if scene.is_none() && errors == 0 {

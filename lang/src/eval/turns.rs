@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use luxel_core::diag::{SourceId, Span};
+use luxel_sdk::params::leave;
 
 use super::Evaluator;
 use super::by_name::ByName;
@@ -36,7 +37,7 @@ impl Evaluator<'_> {
         }
         let (from, _) = syntax::read_head(text, &self.budgets);
         let from = from?;
-        let pieces = syntax::cut_whole(text, from, &self.budgets);
+        let pieces = syntax::cut_whole(text, from, &self.budgets, &self.sink.over());
         let mut out = Tree::default();
         for piece in &pieces {
             let part = &text[piece.range.clone()];
@@ -99,11 +100,14 @@ impl Evaluator<'_> {
         };
         let mut turns = Turns { bytes, take: &mut take };
         syntax::parse_in_turns(text, source, &budgets, &mut told, &mut turns);
-        if self.spent.is_none() {
+        if told.is_stopped() {
+            leave(names);
+        } else if self.spent.is_none() {
             names.tell(text, &mut told);
         }
         self.end_record(told.kept().len());
         self.stopped |= told.is_full();
+
         told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;
     }

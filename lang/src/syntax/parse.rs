@@ -97,20 +97,25 @@ pub(crate) fn cut(
     out
 }
 
-/// What stands from `from` on, up to a brace that never closes.
-fn whole_region(text: &str, from: usize, budgets: &Budgets) -> Region {
-    let mut found = region(text, from, budgets.brackets, &mut |_| false);
+/// What stands from `from` on, up to a brace that never closes, or to where it is over.
+fn whole_region(text: &str, from: usize, budgets: &Budgets, is_over: &dyn Fn() -> bool) -> Region {
+    let mut found = region(text, from, budgets.brackets, &mut |_| is_over());
     unopened(text, &mut found);
     found
 }
 
-/// The bytes of the statements from `from` on, as `parse` reads them.
-pub(crate) fn cut_whole(text: &str, from: usize, budgets: &Budgets) -> Vec<Cut> {
+/// The bytes of the statements from `from` on, as `parse` reads them; of some once it is over.
+pub(crate) fn cut_whole(
+    text: &str,
+    from: usize,
+    budgets: &Budgets,
+    is_over: &dyn Fn() -> bool,
+) -> Vec<Cut> {
     let mut pieces = vec![];
     let mut next = Some(from);
     for _ in 0..RESUME_LIMIT {
         let Some(from) = next else { break };
-        let found = whole_region(text, from, budgets);
+        let found = whole_region(text, from, budgets, is_over);
         pieces.extend(found.pieces);
         next = found.next.filter(|next| *next > from);
     }
@@ -298,7 +303,7 @@ impl Reader<'_> {
     /// Reads statements from `from` on, which are taken in turns. Gives where to go on after a brace
     /// that never closes.
     fn region(&mut self, from: usize, turns: &mut Turns<'_>) -> Option<usize> {
-        let found = whole_region(self.text, from, self.budgets);
+        let found = whole_region(self.text, from, self.budgets, &self.sink.over());
         self.region_faults(from, &found);
         let turn = |cut: &Cut| cut.range.start / turns.bytes;
         for pieces in found.pieces.chunk_by(|one, next| turn(one) == turn(next)) {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use luxel_core::diag::Span;
 use luxel_core::registry::Registry;
-use luxel_core::scene::{self, Changed, Node, NodeId};
+use luxel_core::scene::{self, Changed, IsOver, Node, NodeId};
 use luxel_sdk::kind::Kind;
 
 use super::values::KeptValues;
@@ -237,7 +237,14 @@ impl State {
     }
 
     /// Gives the parameters their new values. `nodes` are the numbers here of those that were evaluated.
-    pub(super) fn hand_on(&mut self, handed: Handed, fitted: Fitted, nodes: &[u32]) {
+    /// `None`, and a scene of no use, once it is over.
+    pub(super) fn hand_on(
+        &mut self,
+        handed: Handed,
+        fitted: Fitted,
+        nodes: &[u32],
+        is_over: IsOver<'_>,
+    ) -> Option<()> {
         let Handed { mut runs, places, .. } = handed;
         let mut values = fitted.values;
         for value in &mut values {
@@ -250,7 +257,7 @@ impl State {
         let mut changes: Vec<_> = places.into_iter().map(change).collect();
         changes.sort_unstable_by_key(|change| (change.node, change.argument));
         runs.sort_unstable_by_key(|run| run.start);
-        self.scene.change(&runs, &changes, &values);
+        self.scene.change(&runs, (&changes, &values), is_over)
     }
 }
 

@@ -33,6 +33,7 @@ use luxel_core::diag::{SourceId, Sources, Span};
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
 use luxel_core::scene::{Pose, Scene};
+use luxel_sdk::params::leave;
 
 use self::asked::{Questions, Remembering};
 use self::made::{Cost, Made};
@@ -98,6 +99,8 @@ pub(crate) struct State {
     sources: Sources,
     params: Vec<ParamInfo>,
     asked: Questions,
+    /// It was given up while it changed, and is of no use any more.
+    is_broken: bool,
     /// What was spent.
     spent: Cost,
     /// Bytes of other files.
@@ -131,7 +134,14 @@ fn load_in_turns(
     if let Some(loaded) = again.and_then(|state| state.again(files, registry, settings)) {
         return loaded;
     }
+    if let Some(broken) = kept.take_if(|state| state.is_broken) {
+        leave(broken);
+    }
     let plain = files;
+    let evaluator = Evaluator::new(files, registry, settings, turn);
+    if evaluator.sink.is_stopped() {
+        return evaluator.finish();
+    }
     let files = Remembering::new(files);
     let mut evaluator = Evaluator::new(&files, registry, settings, turn);
     evaluator.record = Some(Record::default());
@@ -194,7 +204,7 @@ impl State {
         let place = |span: Span| in_file(span, &starts);
         let is_wanted = !settings.without_scene || !self.scene.expectations.is_empty();
         if is_wanted {
-            evaluator.scene = self.scene.gathered(&place);
+            evaluator.scene = self.scene.gathered(&place, &evaluator.sink.over())?;
         } else {
             evaluator.scene.camera = self.scene.camera;
         }

@@ -4,6 +4,8 @@ use std::collections::{BTreeSet, VecDeque};
 use std::ops::Range;
 
 use luxel_core::diag::Diagnostic;
+use luxel_core::scene::IsOver;
+use luxel_sdk::params::leave;
 
 use super::edit::{Edit, Recut, recut};
 use super::handed::Handed;
@@ -107,8 +109,8 @@ impl<'s> After<'s> {
 }
 
 impl State {
-    /// What has to be evaluated for `text`; `None` if that cannot be told.
-    pub(super) fn plan(&mut self, text: &str) -> Option<Plan> {
+    /// What has to be evaluated for `text`; `None` if that cannot be told, or once it is over.
+    pub(super) fn plan(&mut self, text: &str, is_over: IsOver<'_>) -> Option<Plan> {
         let budgets = self.settings.budgets;
         let edit = Edit::of(&self.text, text);
         let (from, told) = read_head(text, &budgets);
@@ -147,7 +149,7 @@ impl State {
         }
         let firsts = Firsts::new(&self.names, tables.as_ref().unwrap_or(&self.tables));
         let (new, handed, sets) = self.concerned_with_sets(&gone, &after, &firsts)?;
-        let tasks = self.tasks((text, &edit), &after, &firsts, (&new, &sets), trees)?;
+        let tasks = self.tasks((text, &edit), &after, &firsts, (&new, &sets), (trees, is_over))?;
         Some(Plan { edit, gone, fresh, tasks, tables, n_names, read: said, names, sets, handed })
     }
 
@@ -228,12 +230,16 @@ impl State {
         after: &After<'_>,
         firsts: &Firsts<'_>,
         (new, sets): (&[usize], &Sets),
-        mut trees: Vec<Option<Stmt>>,
+        (mut trees, is_over): (Vec<Option<Stmt>>, IsOver<'_>),
     ) -> Option<Vec<Task>> {
         let mut met: BTreeSet<usize> = new.iter().chain(&sets.setters).copied().collect();
         let mut open: VecDeque<usize> = met.iter().copied().collect();
         let mut tasks = vec![];
         while let Some(i) = open.pop_front() {
+            if is_over() {
+                leave(tasks);
+                return None;
+            }
             let (statement, range) = after.get(i, edit);
             let tree = i.checked_sub(after.gone.start).and_then(|k| trees.get_mut(k)?.take());
             let stmt = match tree {

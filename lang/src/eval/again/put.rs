@@ -14,7 +14,7 @@ use crate::eval::Evaluator;
 
 impl State {
     /// Becomes the state of the new text. `nodes` and `groups` are the numbers here of those that were
-    /// evaluated.
+    /// evaluated. `None`, and broken, if that is given up.
     pub(super) fn put(
         &mut self,
         plan: Plan,
@@ -22,11 +22,13 @@ impl State {
         text: Arc<str>,
         evaluator: &mut Evaluator<'_>,
         [nodes, groups]: [Vec<u32>; 2],
-    ) {
+    ) -> Option<()> {
+        self.is_broken = true;
+        let is_over = evaluator.sink.over();
         let mut evaluated = std::mem::take(&mut evaluator.scene);
         let open = std::mem::take(&mut evaluator.open_groups);
         evaluated.root = open.into_iter().next().unwrap_or_default().group;
-        let items = self.scene.take_over(evaluated, &nodes, &groups);
+        let items = self.scene.take_over(evaluated, [&nodes, &groups], &is_over)?;
         self.put_items(&plan, &made, items);
         for made in &mut made {
             made.nodes = renamed(&made.nodes, &nodes);
@@ -36,7 +38,7 @@ impl State {
             }
         }
         let Plan { edit, gone, fresh, tasks, tables, n_names, handed, .. } = plan;
-        self.hand_on(handed, fitted, &nodes);
+        self.hand_on(handed, fitted, &nodes, &is_over)?;
         self.n_names = n_names;
         if let Some(tables) = tables {
             self.tables = tables;
@@ -51,6 +53,8 @@ impl State {
         }
         self.sources.replace(SourceId(0), text.clone());
         self.text = text;
+        self.is_broken = false;
+        Some(())
     }
 
     /// Puts what stands in the world now in the place of what stood there.

@@ -1,10 +1,12 @@
 //! A load that keeps what each statement came to.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
 use luxel_core::diag::{SourceId, Span};
+use luxel_sdk::params::leave;
 
 use super::asked::Questions;
 use super::handed::is_plain;
@@ -36,6 +38,15 @@ pub(in crate::eval) struct Record {
     pub(super) n_sets: usize,
     /// How much was told of the text and its names.
     pub(super) n_read: usize,
+}
+
+/// What was noted of a file in which everything went well.
+struct Sound {
+    record: Record,
+    /// The bytes of its statements.
+    ranges: Vec<Range<usize>>,
+    /// The labels of which something is set.
+    set_labels: BTreeSet<u32>,
 }
 
 impl Record {
@@ -125,64 +136,90 @@ impl Evaluator<'_> {
         path: &Path,
         settings: &Settings,
     ) -> (Loaded, Option<State>) {
+        let is_over = self.sink.over();
+        if is_over() {
+            leave(self.record.take());
+            return (self.finish(), None);
+        }
         self.lacks();
-        let record = self.record.take().filter(|record| {
+        let state = self.sound_record().and_then(|sound| self.state(sound, path, settings));
+        let Some(mut state) = state else { return (self.finish(), None) };
+        match state.gathered(&mut self, settings) {
+            Some(loaded) => (loaded, Some(state)),
+            None if is_over() => {
+                leave(state);
+                (self.finish(), None)
+            }
+            // What it lacks has been told.
+            None => (Loaded { values: state.values(), ..self.finish() }, None),
+        }
+    }
+
+    /// What was noted of a file in which everything went well.
+    fn sound_record(&mut self) -> Option<Sound> {
+        let mut record = self.record.take().filter(|record| {
             let is_whole = record.cuts.len() == record.stmts.len() && !record.stmts.is_empty();
             is_whole && self.sink.errors() == 0 && !self.damaged && !self.stopped
-        });
-        let known = record.and_then(|mut record| {
-            let ranges: Vec<_> = record.stmts.iter().map(|stmt| stmt.range.clone()).collect();
-            record.warn(&self.sink, &ranges)?;
-            let set_labels = record.set_labels(&self.labels)?;
-            Some((record, ranges, set_labels))
-        });
-        let Some((record, ranges, set_labels)) = known else { return (self.finish(), None) };
-        let text: Arc<str> = self.sources.shared(SourceId(0));
+        })?;
+        let ranges: Vec<_> = record.stmts.iter().map(|stmt| stmt.range.clone()).collect();
+        record.warn(&self.sink, &ranges)?;
+        let set_labels = record.set_labels(&self.labels)?;
+        Some(Sound { record, ranges, set_labels })
+    }
+
+    /// What is kept of it; `None` once it is over.
+    fn state(
+        &mut self,
+        Sound { record, ranges, set_labels }: Sound,
+        path: &Path,
+        settings: &Settings,
+    ) -> Option<State> {
+        let is_over = self.sink.over();
         let place = |span: Span| in_statement(span, &ranges);
         let mut scene = std::mem::take(&mut self.scene);
         scene.root = std::mem::take(&mut self.open_groups).pop().unwrap_or_default().group;
-        scene.prepare(&place);
-        let mut stmts = record.stmts;
-        for stmt in &mut stmts {
+        let Record { from, names, mut stmts, around, .. } = record;
+        let is_prepared = scene.prepare(&place, &is_over).is_some();
+        for stmt in stmts.iter_mut().take_while(|_| !is_over()) {
             stmt.names.move_together();
+        }
+        if !is_prepared || is_over() {
+            leave((scene, stmts, names));
+            return None;
         }
         let rare = stmts.iter_mut().filter_map(|stmt| stmt.made.rare.as_mut());
         let said = rare.flat_map(|rare| &mut rare.expectations);
         said.for_each(|said| said.span = place(said.span));
-        let (tables, _) = Tables::of(&record.names, stmts.iter().map(|stmt| &stmt.names));
+        let (tables, _) = Tables::of(&names, stmts.iter().map(|stmt| &stmt.names));
         let values = self.noted.take().map(|noted| KeptValues::of(noted, &ranges));
         let mut params = std::mem::take(&mut self.params);
         for param in &mut params {
             param.span = place(param.span);
         }
-        let mut state = State {
+        let text: Arc<str> = self.sources.shared(SourceId(0));
+        Some(State {
             path: path.to_owned(),
             settings: Settings { stop: None, ..settings.clone() },
-            from: record.from,
-            names: record.names,
+            from,
+            names,
             tables,
             n_names: stmts.iter().map(|stmt| stmt.names.defines().len()).sum(),
             n_shadows: stmts.iter().filter(|stmt| stmt.shadows).count(),
             set_labels,
-            spent: stmts.iter().fold(record.around, |sum, stmt| sum.plus(stmt.made.cost)),
+            spent: stmts.iter().fold(around, |sum, stmt| sum.plus(stmt.made.cost)),
             n_ids: stmts.len(),
             n_kept: scene.nodes.len() + scene.groups.len(),
+            n_evaluated: stmts.len(),
             stmts,
             scene,
             sources: self.sources.clone(),
             params,
             asked: Questions::default(),
+            is_broken: false,
             other_bytes: self.bytes_read - text.len(),
             text,
-            n_evaluated: 0,
             values: values.unwrap_or_default(),
-        };
-        state.n_evaluated = state.stmts.len();
-        match state.gathered(&mut self, settings) {
-            Some(loaded) => (loaded, Some(state)),
-            // What it lacks has been told.
-            None => (Loaded { values: state.values(), ..self.finish() }, None),
-        }
+        })
     }
 }
 

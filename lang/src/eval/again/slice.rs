@@ -6,6 +6,7 @@ use std::sync::Arc;
 use luxel_core::diag::Diagnostic;
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
+use luxel_sdk::params::leave;
 
 use super::handed::Fitted;
 use super::made::{Cost, Made};
@@ -54,9 +55,16 @@ impl State {
             return None;
         }
         let text: Arc<str> = str::from_utf8(&bytes).ok()?.into();
-        let plan = self.plan(&text)?;
         let mut evaluator = Evaluator::new(files, registry, settings, usize::MAX);
-        let Evaluated { mut made, found, fitted } = self.evaluate(&plan, &text, &mut evaluator)?;
+        let is_over = evaluator.sink.over();
+        let plan = self.plan(&text, &is_over)?;
+        let evaluated = self.evaluate(&plan, &text, &mut evaluator);
+        let Some(Evaluated { mut made, found, fitted }) = evaluated else {
+            if is_over() {
+                leave((plan, evaluator.scene));
+            }
+            return None;
+        };
         let before = Cost::of(&evaluator);
         if !self.set_again(&plan, &mut evaluator) {
             return None;
@@ -79,7 +87,7 @@ impl State {
         self.warn(&plan, &mut made, found)?;
         let renamed = self.renamed(&plan.tasks, &made, &after, &plan)?;
         (self.n_evaluated, self.spent) = (plan.tasks.len(), spent);
-        self.put(plan, (made, fitted), text, &mut evaluator, renamed);
+        self.put(plan, (made, fitted), text, &mut evaluator, renamed)?;
         self.values = values;
         self.gathered(&mut evaluator, settings)
     }

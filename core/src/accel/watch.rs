@@ -50,8 +50,13 @@ impl Watch {
     }
 
     /// The same, asked for each primitive: tests do not count this.
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Items, until an end is asked for.
+    pub(crate) fn until<I: IntoIterator>(&self, items: I) -> impl Iterator<Item = I::Item> {
+        items.into_iter().take_while(|_| !self.is_over())
     }
 
     /// How far the build has come.

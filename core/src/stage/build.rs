@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use luxel_sdk::kind::{Kind, LightForm};
 use luxel_sdk::num::Transform;
+use luxel_sdk::params::leave;
 
 use super::analytic::Analytic;
+use super::faults::of_stage;
 use super::flatten::{Flat, flatten};
 use super::geometry::mesh_part;
 use super::kept::{Anew, Cache, Shaped};
@@ -15,7 +17,7 @@ use super::motion::{Motion, Splits};
 use super::shining::Lamps;
 use super::world::World;
 use super::{Film, Geometry, Mesh, Place, Placement, Reasons, Skin, Stage};
-use super::{eye, failures, features, import, shining};
+use super::{failures, features, import, shining};
 use crate::accel::{BuildError, Watch};
 use crate::cast::{index, whole};
 use crate::diag::{Diagnostic, Span, tell_once};
@@ -76,12 +78,15 @@ pub fn build_watched(
 ) -> Result<Built, Unbuilt> {
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
-    let (scene, assets, mut diagnostics) =
-        import::expand(scene, (registry, files), &cache.assets, watch);
+    let expanded = import::expand(scene, (registry, files), &cache.assets, watch);
+    let (scene, assets, mut diagnostics) = expanded.ok_or(Unbuilt::Cancelled)?;
     let film = Film::of_scene(&scene);
     let mode = features::color_mode(&scene, film.color);
     let mut setting_reasons = Reasons::default();
     setting_reasons.add_settings(&scene, (mode, &film));
+    if watch.is_cancelled() {
+        return Err(given_up((scene, assets)));
+    }
     let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
     builder.mesh_parts = Some(&mesh_part);
@@ -103,27 +108,25 @@ pub fn build_watched(
     }
     maker.builder.end_world();
     let n_of_world = maker.builder.diagnostics.len();
+    let settings = if watch.is_cancelled() { None } else { maker.settings() };
+    let Maker { mut made, builder, .. } = maker;
+    let (objects, mut told) = (builder.objects, builder.diagnostics);
     if watch.is_cancelled() {
-        return Err(Unbuilt::Cancelled);
+        return Err(given_up((scene, made, objects)));
     }
-    let settings = maker.settings();
-    if watch.is_cancelled() {
-        return Err(Unbuilt::Cancelled);
-    }
-    let warnings = maker.builder.diagnostics[..n_of_world].to_vec();
-    diagnostics.append(&mut maker.builder.diagnostics);
+    let warnings = told[..n_of_world].to_vec();
+    diagnostics.append(&mut told);
     tell_once(&mut diagnostics);
-    let (mut made, objects) = (maker.made, maker.builder.objects);
-    let trees = made.new_trees + objects.trees_made;
-    let anew = Anew { objects: objects.made, shapes: made.new_shapes, trees };
+    let anew = made.anew(&objects);
     let found = match settings {
         Some(settings) if !diagnostics.iter().any(Diagnostic::is_error) => {
             let world = world.or_else(|| made.world((&scene, &film, mode), &warnings, watch));
-            let world = world.ok_or(Unbuilt::Cancelled)?;
+            let Some(world) = world else { return Err(given_up((scene, made, objects))) };
             let stage = made.finish((world, settings), objects, (scene, film, mode), cache);
-            let mut found = stage.failures();
-            found.extend(eye::unseen(&stage));
-            found.extend(features::lacking(&stage));
+            if watch.is_cancelled() {
+                return Err(given_up(stage));
+            }
+            let found = of_stage(&stage);
             if found.is_empty() {
                 return Ok(Built { stage, warnings: diagnostics, anew });
             }
@@ -133,6 +136,12 @@ pub fn build_watched(
     };
     diagnostics.extend(found);
     Err(Unbuilt::Faulty(diagnostics))
+}
+
+/// Leaves what was made so far.
+fn given_up<T: Send + 'static>(made: T) -> Unbuilt {
+    leave(made);
+    Unbuilt::Cancelled
 }
 
 struct Maker<'a> {
@@ -159,7 +168,7 @@ impl Maker<'_> {
     /// There is too much of it.
     fn world(&mut self) -> Result<(), Box<Diagnostic>> {
         let flats = flatten(self.scene, self.watch);
-        for flat in flats.iter().flatten().take_while(|_| !self.watch.is_cancelled()) {
+        for flat in self.watch.until(flats.iter().flatten()) {
             self.place(flat);
         }
         let outside = self.scene.medium.filter(|_| !self.scene.leaves_out(Feature::Media));

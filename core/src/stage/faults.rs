@@ -1,8 +1,9 @@
-//! What is wrong with the objects of a scene that cannot be rendered for other reasons.
+//! What is wrong with a stage as a whole, and with the objects of a scene of which there is none.
 
 use luxel_sdk::kind::Kind;
 
 use super::Stage;
+use super::eye;
 use super::features;
 use super::geometry::mesh_part;
 use super::import;
@@ -28,7 +29,8 @@ pub fn faults(
 ) -> Vec<Diagnostic> {
     let none = Cache::default();
     let cache = before.map_or(&none, |stage| &stage.cache);
-    let (scene, _, mut diagnostics) = import::expand(rest, (registry, files), &cache.assets, watch);
+    let expanded = import::expand(rest, (registry, files), &cache.assets, watch);
+    let Some((scene, _, mut diagnostics)) = expanded else { return vec![] };
     let mode = features::color_mode(&scene, Film::of_scene(&scene).color);
     let mesh_part = |triangles| mesh_part(triangles, watch);
     let mut builder = Builder::new(registry, &scene, files, mode, &cache.objects);
@@ -45,4 +47,12 @@ pub fn faults(
     diagnostics.append(&mut builder.diagnostics);
     tell_once(&mut diagnostics);
     diagnostics
+}
+
+/// What is wrong with a stage as a whole.
+pub(super) fn of_stage(stage: &Stage) -> Vec<Diagnostic> {
+    let mut found = stage.failures();
+    found.extend(eye::unseen(stage));
+    found.extend(features::lacking(stage));
+    found
 }

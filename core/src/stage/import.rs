@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use luxel_sdk::kind::{ImportNode, ImportValue, Imported, Kind};
-use luxel_sdk::params::{Dimension, Param, Type, Unit};
+use luxel_sdk::params::{Dimension, Param, Type, Unit, leave};
 
 use super::kept::{Assets, Brought};
 use crate::accel::Watch;
@@ -20,14 +20,16 @@ use crate::scene::{
 };
 
 /// The scene with every asset replaced by a group, what its assets were found to hold, and what was
-/// found wrong. Files that were read `before` and have not changed are not read again.
+/// found wrong. Files that were read `before` and have not changed are not read again. `None` once the
+/// watch is cancelled.
 pub(super) fn expand(
     scene: &Scene,
     (registry, files): (&Registry, &dyn Files),
     before: &Assets,
     watch: &Watch,
-) -> (Scene, Assets, Vec<Diagnostic>) {
-    let (out, done, cameras) = (scene.clone(), BTreeMap::new(), BTreeMap::new());
+) -> Option<(Scene, Assets, Vec<Diagnostic>)> {
+    let out = scene.copied(&|| watch.is_over())?;
+    let (done, cameras) = (BTreeMap::new(), BTreeMap::new());
     let assets = Assets::default();
     let mut import = Import { registry, files, before, assets, watch, out, done, cameras };
     let mut diagnostics = vec![];
@@ -43,7 +45,11 @@ pub(super) fn expand(
         import.camera(camera, pose);
     }
     import.out.root.items = items;
-    (import.out, import.assets, diagnostics)
+    if watch.is_cancelled() {
+        leave((import.out, import.assets));
+        return None;
+    }
+    Some((import.out, import.assets, diagnostics))
 }
 
 struct Import<'a> {

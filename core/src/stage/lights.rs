@@ -14,6 +14,7 @@ use luxel_sdk::sampling::Alias;
 
 use self::triangle::Lit;
 use super::{Geometry, Mesh, Moment, Place, Placement};
+use crate::accel::Watch;
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
 use crate::scene::Feature;
@@ -83,10 +84,15 @@ pub struct FoundLight {
 }
 
 impl Lights {
-    /// Lights of no group, chosen about in proportion to their power.
-    pub(super) fn new(sources: Vec<LightSource>, stage_radius: f64, mode: ColorMode) -> Self {
-        let power: Vec<f64> =
-            sources.iter().map(|light| f64::from(power(light, stage_radius, mode))).collect();
+    /// Lights of no group, chosen about in proportion to their power; of some of them once the watch is
+    /// cancelled.
+    pub(super) fn new(
+        sources: Vec<LightSource>,
+        (stage_radius, mode): (f64, ColorMode),
+        watch: &Watch,
+    ) -> Self {
+        let power = |light| f64::from(power(light, stage_radius, mode));
+        let power: Vec<f64> = watch.until(&sources).map(power).collect();
         let mean = power.iter().sum::<f64>() / power.len().max(1) as f64;
         // A floor of 1 % of the mean: a texture that was looked up where it is dark, or an estimate
         // that is wrong, must not leave a light without a chance.

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use luxel_sdk::num::Bounds3;
+use luxel_sdk::params::leave;
 
-use super::kept::{Assets, Cache, Shaped};
+use super::kept::{Anew, Assets, Cache, Shaped};
 use super::lights::LightSource;
 use super::nesting;
 use super::world::World;
@@ -70,14 +71,20 @@ impl Made {
             let world = placement.place.bounds(local, during);
             (world.min, world.max)
         };
-        let boxes: Vec<_> = self.placements.iter().map(boxed).collect();
+        let boxes: Vec<_> = watch.until(&self.placements).map(boxed).collect();
+        if watch.is_cancelled() {
+            return None;
+        }
         let sphere = around(&boxes);
         let groups = (std::mem::take(&mut self.group_names), std::mem::take(&mut self.group_of));
-        let lights = Lights::new(std::mem::take(&mut self.lights), sphere.1, mode);
+        let lights = Lights::new(std::mem::take(&mut self.lights), (sphere.1, mode), watch);
         let lights = lights.in_groups(groups.0, groups.1);
-        let needed = self.needed(scene, &boxes, &lights);
+        let needed = self.needed(scene, &boxes, &lights, watch);
         watch.name("the scene");
-        let top = TopBvh::build_watched(&boxes, watch)?;
+        let Some(top) = TopBvh::build_watched(&boxes, watch) else {
+            leave(lights);
+            return None;
+        };
         drop(boxes);
         Some(World {
             lights: lights.into(),
@@ -93,6 +100,12 @@ impl Made {
             reasons: std::mem::take(&mut self.reasons),
             warnings: warnings.into(),
         })
+    }
+
+    /// What had to be made.
+    pub(super) fn anew(&self, objects: &Objects) -> Anew {
+        let trees = self.new_trees + objects.trees_made;
+        Anew { objects: objects.made, shapes: self.new_shapes, trees }
     }
 
     /// The stage of a world.
@@ -148,17 +161,23 @@ impl Made {
         stage
     }
 
-    /// What is to be modelled of the world; who requires it is noted, and what moves and what is filled
-    /// is already.
-    fn needed(&mut self, scene: &Scene, boxes: &[Box64], lights: &Lights) -> Features {
+    /// What is to be modelled of the world, or some of it once the watch is cancelled; who requires it is
+    /// noted, and what moves and what is filled is already.
+    fn needed(
+        &mut self,
+        scene: &Scene,
+        boxes: &[Box64],
+        lights: &Lights,
+        watch: &Watch,
+    ) -> Features {
         let media = !self.media.is_empty();
         let (places, shapes) = (&mut self.placements, &self.geometries);
-        let nested = nesting::settle(places, shapes, boxes, &self.materials, media)
+        let nested = nesting::settle(places, shapes, boxes, &self.materials, media, watch)
             .filter(|_| !scene.leaves_out(Feature::Nested));
         let open = self.placements.iter().filter(|placement| placement.skin == Skin::Open);
         let within = nested.iter().flatten().map(|at| &self.placements[*at]);
         let found = open.map(|it| (Feature::OpenSurfaces, it.node));
-        for (feature, id) in found.chain(within.map(|it| (Feature::Nested, it.node))) {
+        for (feature, id) in watch.until(found.chain(within.map(|it| (Feature::Nested, it.node)))) {
             self.reasons.add(feature, id, scene.node(id).span);
         }
         let light_choice = lights.is_choice();

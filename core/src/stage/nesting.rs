@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Geometry, Placement, Skin};
-use crate::accel::Box64;
+use crate::accel::{Box64, Watch};
 use crate::cast::index;
 use crate::object::Object;
 
@@ -15,25 +15,27 @@ const MOST_PAIRS: usize = 1 << 20;
 /// Finds which placements are closed and which counts where they overlap, as far as that matters:
 /// where there are media, and where refracting shapes lie within each other. Gives two such shapes if
 /// there are any; none of them where they are too many to look at.
+/// Left off once the watch is cancelled.
 pub(super) fn settle(
     placements: &mut [Placement],
     geometries: &[Arc<Geometry>],
     boxes: &[Box64],
     materials: &[Arc<Object>],
     has_media: bool,
+    watch: &Watch,
 ) -> Option<Vec<usize>> {
-    for placement in placements.iter_mut() {
+    for placement in watch.until(placements.iter_mut()) {
         placement.bends = material(placement, materials).is_some_and(Object::bends);
     }
     let is_closed = |placement: &Placement| geometries[placement.geometry as usize].is_closed();
-    let nested = may_be_nested(placements, boxes, materials, is_closed);
-    if !has_media && nested.is_none() {
+    let nested = may_be_nested(placements, boxes, materials, is_closed, watch);
+    if !has_media && nested.is_none() || watch.is_over() {
         return None;
     }
-    for placement in placements.iter_mut() {
+    for placement in watch.until(placements.iter_mut()) {
         placement.closed = (has_media || placement.bends) && is_closed(placement);
     }
-    rank(placements, geometries);
+    rank(placements, geometries, watch);
     nested
 }
 
@@ -49,12 +51,13 @@ fn may_be_nested(
     boxes: &[Box64],
     materials: &[Arc<Object>],
     is_closed: impl Fn(&Placement) -> bool,
+    watch: &Watch,
 ) -> Option<Vec<usize>> {
     let minds = |i: &usize| material(&placements[*i], materials).is_some_and(Object::has_index);
-    let mut order: Vec<usize> = (0..placements.len()).filter(minds).collect();
+    let mut order: Vec<usize> = watch.until(0..placements.len()).filter(minds).collect();
     order.sort_by(|a, b| boxes[*a].0.x.total_cmp(&boxes[*b].0.x));
     let mut pairs = 0;
-    for (at, &a) in order.iter().enumerate() {
+    for (at, &a) in watch.until(order.iter().enumerate()) {
         for &b in order[at + 1..].iter().take_while(|b| boxes[**b].0.x <= boxes[a].1.x) {
             pairs += 1;
             if pairs > MOST_PAIRS {
@@ -75,14 +78,17 @@ fn overlap(a: Box64, b: Box64) -> bool {
 
 /// Ranks placements by priority; among equals the smaller box counts more, so that what lies within
 /// another shape counts there, from whichever side a ray comes; then the one placed later.
-fn rank(placements: &mut [Placement], geometries: &[Arc<Geometry>]) {
+fn rank(placements: &mut [Placement], geometries: &[Arc<Geometry>], watch: &Watch) {
     // Where the shutter opens: what moves fast is no larger.
     let size = |placement: &Placement| {
         let local = geometries[placement.geometry as usize].opening_bounds();
         let bounds = placement.place.first().map_or(local, |it| local.transform(it.affine()));
         bounds.diagonal().max(DVec3::ZERO).element_product()
     };
-    let sizes: Vec<f64> = placements.iter().map(size).collect();
+    let sizes: Vec<f64> = watch.until(&*placements).map(size).collect();
+    if sizes.len() < placements.len() {
+        return;
+    }
     let mut order: Vec<usize> = (0..placements.len()).collect();
     order.sort_by(|&a, &b| {
         let by_priority = placements[a].priority.cmp(&placements[b].priority);

@@ -4,6 +4,7 @@ mod browser;
 mod cancel;
 mod client;
 mod crowd;
+mod large;
 mod latency;
 mod soak;
 mod stages;

@@ -1,48 +1,31 @@
 //! How long reading, decoding and building go on after they were given up: until the load has ended,
 //! and until no thread works on it any more and its memory has been given back.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::any::Any;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use luxel_core::accel::Watch;
-use luxel_core::files::{FileError, Files, MemoryFiles, read_whole};
-use luxel_core::scene::Hash;
+use luxel_core::files::{MemoryFiles, read_whole};
+use luxel_core::registry::Registry;
 use luxel_core::stage::build_watched;
+use luxel_lang::{Kept, Settings, load};
 use luxel_sdk::sampling::Rng;
 
+use super::large::{HEAD, Held, NODES, SIDE, SMALL, ball, lamp};
 use super::subject::LARGE;
 use crate::MEMORY;
-use crate::ply::grid;
-use crate::process::{Luxel, read, scratch, write};
-use crate::scene::{linked, scene_in};
+use crate::process::{Luxel, write};
+use crate::scene::{lines, linked, scene_in};
 use crate::series::Series;
 
 /// Loads of each kind that are given up.
 const TIMES: usize = 60;
-/// Columns and rows of the pictures: as many pixels as 4096 × 2048.
-const SIDE: u32 = 2896;
-/// Nodes of the asset.
-const NODES: usize = 100_000;
-/// Those of the landscape whose tree is built: it takes long enough.
-const SMALL: u32 = 1024;
 
 /// Megabytes of the files that are read.
 const READ: [usize; 2] = [19, 300];
 
-/// What every scene has.
-const HEAD: &str = "scene 1
-camera perspective { look = look_at(from = (0, 2, 3) m, to = (0, 0, 0) m, up = (0, 1, 0)), fov = 40 deg }
-film rgb { resolution = (64, 36) }
-";
-/// What the pictures show: noise, as each pixel has one sample.
-const SEEN: &str = "sampler independent { samples = 1 }
-light area { shape = shape sphere { center = (0, 3, 0) m, radius = 1 m }, radiance = 9 W/m^2/sr }
-light constant { radiance = 0.1 W/m^2/sr }
-shape sphere { center = (0, 0.5, 0) m, radius = 50 cm }
-shape rectangle { u = (9, 0, 0) m, v = (0, 0, -9) m }
-";
 const MESH: &str = "shape mesh { file = \"large.ply\", unit = 1 m }\n";
 const LAND: &str = "shape heightfield { width = 1 m, depth = 1 m, file = \"seen.png\" }\n";
 const PAINTED: &str = "shape rectangle { u = (4, 0, 0) m, v = (0, 0, -4) m, material = material \
@@ -61,49 +44,12 @@ enum Part {
     Tree,
 }
 
-/// Files in memory whose hashes are known: reading and hashing them are measured by themselves.
-struct Held {
-    files: MemoryFiles,
-    hashes: BTreeMap<PathBuf, Hash>,
-}
-
-impl Held {
-    fn with(mut self, name: &str, bytes: Vec<u8>) -> Self {
-        self.files = self.files.with(name, bytes);
-        let hash = self.files.hash(Path::new(name)).expect("it has just been put there");
-        self.hashes.insert(name.into(), hash);
-        self
-    }
-}
-
-impl Files for Held {
-    fn read(&self, path: &Path) -> Result<Arc<[u8]>, FileError> {
-        self.files.read(path)
-    }
-
-    fn hash(&self, path: &Path) -> Option<Hash> {
-        self.hashes.get(&self.canonical(path)).copied()
-    }
-
-    fn canonical(&self, path: &Path) -> PathBuf {
-        self.files.canonical(path)
-    }
-}
-
 /// Gives up loads of large files at moments drawn at random and prints, of each kind, the milliseconds
 /// from there to the end.
 ///
 /// # Errors
 /// The program's words; what is wrong with a scene.
 pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
-    let files = Held { files: MemoryFiles::default(), hashes: BTreeMap::new() };
-    let files = files.with("large.ply", grid(LARGE));
-    let [_, png] = pictures(luxel, SMALL)?;
-    let files = files.with("small.png", png);
-    let [exr, png] = pictures(luxel, SIDE)?;
-    let files = files.with("seen.exr", exr).with("seen.png", png);
-    let painted = |name: &str| PAINTED.replace("FILE", name);
-    let n = 2 * (LARGE - 1) * (LARGE - 1);
     println!("given up while loading, until it ends, p50 / p95 / p99 ms (goal p99 10)");
     println!(
         "then until its last thread ends and its memory is given back; and what the whole takes"
@@ -113,37 +59,78 @@ pub(crate) fn run(luxel: &Luxel) -> Result<(), String> {
     );
     for mb in READ {
         let path = write("read.bin", &vec![7; mb << 20])?;
-        let work = |watch: &Watch| is_read(&path, watch);
+        let work = |watch: &Watch| made(is_read(&path, watch).then_some(()));
         told(&format!("file of {mb} MB, read and hashed"), Part::Any, &work)?;
     }
-    let cases = [
-        (format!("PLY of {n} triangles, read"), MESH.to_owned(), Part::Before),
-        ("its tree, built".to_owned(), MESH.to_owned(), Part::Tree),
-        ("texture of a PNG, decoded".to_owned(), painted("seen.png"), Part::Any),
-        ("texture of an EXR, decoded".to_owned(), painted("seen.exr"), Part::Any),
-        ("environment of an EXR, decoded and weighed".to_owned(), SKY.to_owned(), Part::Any),
-        (format!("asset of {NODES} nodes, read"), ASSET.to_owned(), Part::Any),
-        ("heightfield of a PNG, decoded and laid out".to_owned(), LAND.to_owned(), Part::Before),
-        (
-            format!("tree of one of {SMALL} x {SMALL}, built"),
-            LAND.replace("seen", "small"),
-            Part::Tree,
-        ),
-    ];
-    let files = files.with("seen.gltf", asset());
     let registry = linked();
-    for (name, text, part) in cases {
-        let lit = if text == SKY { "" } else { "light constant { radiance = 1 W/m^2/sr }\n" };
-        let texts = MemoryFiles::default().with("a.scene", format!("{HEAD}{lit}{text}").as_bytes());
-        let scene = scene_in(&registry, &texts)?;
-        let work = |watch: &Watch| build_watched(&scene, &registry, &files, None, watch).is_ok();
+    scenes(&registry, &Held::large(luxel)?)?;
+    texts(&registry)
+}
+
+/// What is made ready, by a name for people, and in which part it is given up.
+fn cases() -> Vec<(String, String, Part)> {
+    let painted = |name: &str| PAINTED.replace("FILE", name);
+    let n = 2 * (LARGE - 1) * (LARGE - 1);
+    let small = LAND.replace("seen", "small");
+    let balls = format!("let r = 50 cm\n{}", lines(NODES, ball));
+    let case = |name: &str, text: String, part| (name.to_owned(), text, part);
+    vec![
+        case(&format!("PLY of {n} triangles, read"), MESH.to_owned(), Part::Before),
+        case("its tree, built", MESH.to_owned(), Part::Tree),
+        case("texture of a PNG, decoded", painted("seen.png"), Part::Any),
+        case("texture of an EXR, decoded", painted("seen.exr"), Part::Any),
+        case("texture of a progressive JPEG, decoded", painted("seen.jpg"), Part::Any),
+        case("environment of an EXR, decoded and weighed", SKY.to_owned(), Part::Any),
+        case(&format!("asset of {NODES} nodes, read"), ASSET.to_owned(), Part::Any),
+        case("heightfield of a PNG, decoded and laid out", LAND.to_owned(), Part::Before),
+        case(&format!("tree of one of {SMALL} x {SMALL}, built"), small, Part::Tree),
+        case(&format!("{NODES} balls of glass, made ready"), balls, Part::Any),
+        case(&format!("{NODES} lamps, made ready"), lines(NODES, lamp), Part::Any),
+    ]
+}
+
+/// Loads that make a scene ready.
+fn scenes(registry: &Registry, files: &Held) -> Result<(), String> {
+    for (name, text, part) in cases() {
+        let is_lit = text.contains("light ");
+        let light = if is_lit { "" } else { "light constant { radiance = 1 W/m^2/sr }\n" };
+        let text = format!("{HEAD}{light}{text}");
+        let scene = scene_in(registry, &MemoryFiles::default().with("a.scene", text.as_bytes()))?;
+        let work = |watch: &Watch| made(build_watched(&scene, registry, files, None, watch).ok());
         told(&name, part, &work)?;
     }
     Ok(())
 }
 
+/// Loads of a large text.
+fn texts(registry: &Registry) -> Result<(), String> {
+    let text = |r: f64| {
+        let named = |i: usize| format!("{}let of_{i} = r + {i} mm\n", ball(i));
+        let many = lines(NODES, |i| if i.is_multiple_of(10) { named(i) } else { ball(i) });
+        let text = format!("{HEAD}let r = {r} m\n{many}");
+        MemoryFiles::default().with("a.scene", text.as_bytes())
+    };
+    let both = [text(0.5), text(0.25)];
+    let settings = |watch: &Watch| Settings { stop: Some(watch.flag()), ..Settings::default() };
+    let (path, name) = (Path::new("a.scene"), format!("text of {NODES} objects, "));
+    let fresh = |watch: &Watch| made(load(path, &both[0], registry, &settings(watch)).scene);
+    told(&format!("{name}evaluated"), Part::Any, &fresh)?;
+    let kept = |watch: &Watch| {
+        made(Kept::default().load(path, &both[0], registry, &settings(watch)).scene)
+    };
+    told(&format!("{name}and kept"), Part::Any, &kept)?;
+    let kept = Mutex::new((Kept::default(), 0));
+    let again = |watch: &Watch| {
+        let (kept, n) = &mut *kept.lock().unwrap_or_else(PoisonError::into_inner);
+        *n += 1;
+        made(kept.load(path, &both[*n % 2], registry, &settings(watch)).scene)
+    };
+    again(&Watch::default());
+    told(&format!("{name}after an edit"), Part::Any, &again)
+}
+
 /// Prints what giving up some work comes to.
-fn told(name: &str, part: Part, work: &(dyn Fn(&Watch) -> bool + Sync)) -> Result<(), String> {
+fn told(name: &str, part: Part, work: &Work<'_>) -> Result<(), String> {
     let load = Load { work };
     let whole = load.whole(part)?;
     let [ended, free] = load.given_up(part, whole).map(|ms| {
@@ -164,36 +151,19 @@ fn is_read(path: &Path, watch: &Watch) -> bool {
     read_whole(file, n, length, &watch.flag()).is_ok()
 }
 
-/// A picture of this program's, as EXR and as PNG, of so many columns and rows.
-fn pictures(luxel: &Luxel, side: u32) -> Result<[Vec<u8>; 2], String> {
-    let scene = write("seen.scene", format!("{HEAD}{SEEN}").as_bytes())?;
-    luxel.render(&scene, side, 1)?;
-    let of = |name: &str| read(&scratch()?.join(name));
-    Ok([of("picture.exr")?, of("picture.png")?])
-}
+/// What a load gives, if it was done before the watch was cancelled.
+type Made = Option<Box<dyn Any + Send>>;
 
-/// A glTF file of many nodes, that refer to one triangle.
-fn asset() -> Vec<u8> {
-    let many = |one: &dyn Fn(usize) -> String| (0..NODES).map(one).collect::<Vec<_>>().join(",");
-    let nodes = many(&|i| format!(r#"{{"mesh":0,"translation":[{i},0,0]}}"#));
-    let roots = many(&|i| i.to_string());
-    // The corners (0, 0, 0), (1, 0, 0) and (0, 1, 0).
-    let buffer =
-        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
-    let json = format!(
-        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":36,"uri":"{buffer}"}}],
-        "bufferViews":[{{"buffer":0,"byteLength":36}}],
-        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}}],
-        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
-        "nodes":[{nodes}],"scenes":[{{"nodes":[{roots}]}}],"scene":0}}"#
-    );
-    json.into_bytes()
+/// A load.
+type Work<'a> = dyn Fn(&Watch) -> Made + Sync + 'a;
+
+fn made<T: Any + Send>(made: Option<T>) -> Made {
+    made.map(|made| Box::new(made) as Box<dyn Any + Send>)
 }
 
 /// What is loaded, again and again.
 struct Load<'a> {
-    /// Whether it was done before the watch was cancelled.
-    work: &'a (dyn Fn(&Watch) -> bool + Sync),
+    work: &'a Work<'a>,
 }
 
 impl Load<'_> {
@@ -203,13 +173,13 @@ impl Load<'_> {
         std::thread::scope(|scope| {
             let (began, load) = (Instant::now(), scope.spawn(|| self.load(&watch)));
             let tree = if part == Part::Any { began } else { begun(&watch, || load.is_finished()) };
-            let (is_made, end) = load.join().expect("loading does not panic");
+            let (made, end) = load.join().expect("loading does not panic");
             let took = match part {
                 Part::Any => end - began,
                 Part::Before => tree - began,
                 Part::Tree => end - tree,
             };
-            is_made.then_some(took).ok_or_else(|| "what cannot be loaded".to_owned())
+            made.map(|_| took).ok_or_else(|| "what cannot be loaded".to_owned())
         })
     }
 
@@ -240,8 +210,8 @@ impl Load<'_> {
         ms.map(Series::from)
     }
 
-    /// Whether it is whole, and when it came to its end.
-    fn load(&self, watch: &Watch) -> (bool, Instant) {
+    /// What it gives, and when it came to its end.
+    fn load(&self, watch: &Watch) -> (Made, Instant) {
         ((self.work)(watch), Instant::now())
     }
 }

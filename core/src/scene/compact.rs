@@ -20,6 +20,9 @@ impl Scene {
     /// use, once it is over.
     pub fn compact(&mut self, is_over: IsOver<'_>) -> Option<()> {
         let Order { nodes, groups, n_nodes, n_groups, .. } = Order::of(self);
+        if is_over() {
+            return None;
+        }
         self.rename(&nodes, &groups);
         if is_over() {
             return None;

@@ -18,6 +18,9 @@ impl Scene {
         is_over: IsOver<'_>,
     ) -> Option<Self> {
         let order = Order::of(self);
+        if is_over() {
+            return None;
+        }
         let nodes = met(&order.nodes, order.n_nodes);
         let groups = met(&order.groups, order.n_groups);
         let put = Put { nodes: &order.nodes, groups: &order.groups, place };

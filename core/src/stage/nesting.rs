@@ -54,11 +54,13 @@ fn may_be_nested(
     watch: &Watch,
 ) -> Option<Vec<usize>> {
     let minds = |i: &usize| material(&placements[*i], materials).is_some_and(Object::has_index);
-    let mut order: Vec<usize> = watch.until(0..placements.len()).filter(minds).collect();
-    order.sort_by(|a, b| boxes[*a].0.x.total_cmp(&boxes[*b].0.x));
+    let minding = watch.until(0..placements.len()).filter(minds);
+    // Each with where it begins: what is sorted refers to nothing far away.
+    let mut order: Vec<(f64, usize)> = minding.map(|i| (boxes[i].0.x, i)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut pairs = 0;
-    for (at, &a) in watch.until(order.iter().enumerate()) {
-        for &b in order[at + 1..].iter().take_while(|b| boxes[**b].0.x <= boxes[a].1.x) {
+    for (at, &(_, a)) in watch.until(order.iter().enumerate()) {
+        for &(_, b) in order[at + 1..].iter().take_while(|(x, _)| *x <= boxes[a].1.x) {
             pairs += 1;
             if pairs > MOST_PAIRS {
                 return Some(vec![]);

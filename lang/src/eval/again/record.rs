@@ -183,14 +183,15 @@ impl Evaluator<'_> {
         for stmt in stmts.iter_mut().take_while(|_| !is_over()) {
             stmt.names.move_together();
         }
-        if !is_prepared || is_over() {
+        let goes_on = is_prepared && !is_over();
+        let tables = goes_on.then(|| Tables::of(&names, stmts.iter().map(|stmt| &stmt.names)).0);
+        let Some(tables) = tables.filter(|_| !is_over()) else {
             leave((scene, stmts, names));
             return None;
-        }
+        };
         let rare = stmts.iter_mut().filter_map(|stmt| stmt.made.rare.as_mut());
         let said = rare.flat_map(|rare| &mut rare.expectations);
         said.for_each(|said| said.span = place(said.span));
-        let (tables, _) = Tables::of(&names, stmts.iter().map(|stmt| &stmt.names));
         let values = self.noted.take().map(|noted| KeptValues::of(noted, &ranges));
         let mut params = std::mem::take(&mut self.params);
         for param in &mut params {

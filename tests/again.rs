@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use luxel_core::diag::{Diagnostic, Sources};
 use luxel_core::files::MemoryFiles;
@@ -307,24 +307,31 @@ fn a_load_that_was_given_up_at_any_moment_leaves_what_can_be_gone_on_from() {
     }));
     let mut edited = Edited::new(Settings::default());
     assert!(is_good(&edited.load(&text_of(&now), "from nothing")));
-    let (mut rng, mut n_given_up) = (Rng::new(7), 0);
+    let (mut rng, mut n_given_up, mut whole) = (Rng::new(7), 0, Duration::ZERO);
     for round in 0..40 {
-        let stop = Arc::new(AtomicBool::new(round == 0));
-        let settings = Settings { stop: Some(stop.clone()), ..Settings::default() };
-        let pause = Duration::from_micros(u64::from(rng.u32() % 8000));
         now[round % 2] = format!("let {} = {round}.5 cm", ["r", "q"][round % 2]);
         let text = text_of(&now);
         let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+        let stop = Arc::new(AtomicBool::new(false));
+        let settings = Settings { stop: Some(stop.clone()), ..Settings::default() };
+        // The first two take as long as they take.
+        let pause = if round < 2 { Duration::from_secs(1) } else { whole.mul_f64(rng.f64()) };
         let later = thread::spawn(move || {
-            thread::sleep(pause);
+            thread::park_timeout(pause);
             stop.store(true, Ordering::Relaxed);
         });
+        let began = Instant::now();
         let loaded = edited.kept.load(Path::new("a.scene"), &files, &edited.registry, &settings);
+        if round < 2 {
+            assert!(is_good(&loaded));
+            whole = began.elapsed();
+        }
+        later.thread().unpark();
         n_given_up += usize::from(loaded.scene.is_none());
         later.join().unwrap();
         edited.load(&text, &format!("after {pause:?} in round {round}"));
     }
-    assert!(n_given_up > 0);
+    assert!(n_given_up > 0, "none of them in {whole:?}");
 }
 
 #[test]

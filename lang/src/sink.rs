@@ -51,12 +51,12 @@ impl Sink {
     /// Whether it was told to stop, for others to ask.
     pub(crate) fn over(&self) -> impl Fn() -> bool + Sync + 'static {
         let stop = self.stop();
-        move || stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+        move || is_set(stop.as_deref())
     }
 
     /// Whether it was told to stop.
     pub(crate) fn is_stopped(&self) -> bool {
-        self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+        is_set(self.stop.as_deref())
     }
 
     /// Keeps a diagnostic, unless the same code was told of the same place: a loop makes each
@@ -153,4 +153,7 @@ impl Sink {
         }
         self.list
     }
+}
+fn is_set(stop: Option<&AtomicBool>) -> bool {
+    stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
 }

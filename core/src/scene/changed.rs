@@ -118,13 +118,12 @@ mod tests {
         let change = |node, value| Changed { node, argument: 0, value };
         let values = [7.0, 8.0].map(number);
         // What refers to the first is behind it in its run, what refers to the fourth too.
-        scene
-            .change(&[0..3, 3..5], (&[change(0, 0), change(2, 1), change(3, 0)], &values), &|| {
-                false
-            })
-            .unwrap();
+        let put = |scene: &mut Scene, changes: &[Changed]| {
+            scene.change(&[0..3, 3..5], (changes, &values), &|| false).unwrap();
+        };
+        put(&mut scene, &[change(0, 0), change(2, 1), change(3, 0)]);
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 4.0]));
-        scene.change(&[0..3, 3..5], (&[change(4, 1)], &values), &|| false).unwrap();
+        put(&mut scene, &[change(4, 1)]);
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 8.0]));
     }
 

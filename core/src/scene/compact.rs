@@ -8,8 +8,13 @@ pub(super) const UNMET: u32 = u32::MAX;
 /// Says whether what is made of a scene is not wanted any more; asked every few thousand nodes.
 pub type IsOver<'a> = &'a (dyn Fn() -> bool + Sync);
 
-/// Nodes between two looks at that: a millisecond's work to hash.
+/// Nodes between two looks at that: some three milliseconds' work to hash, which is what takes longest.
 pub(super) const STRIDE: usize = 1 << 12;
+
+/// `None` once it is over.
+pub(super) fn look(is_over: IsOver<'_>) -> Option<()> {
+    (!is_over()).then_some(())
+}
 
 impl Scene {
     /// Leaves out nodes and groups that nothing refers to, brings children before those that refer to
@@ -20,13 +25,9 @@ impl Scene {
     /// use, once it is over.
     pub fn compact(&mut self, is_over: IsOver<'_>) -> Option<()> {
         let Order { nodes, groups, n_nodes, n_groups, .. } = Order::of(self);
-        if is_over() {
-            return None;
-        }
+        look(is_over)?;
         self.rename(&nodes, &groups);
-        if is_over() {
-            return None;
-        }
+        look(is_over)?;
         arrange(&mut self.nodes, nodes, n_nodes);
         arrange(&mut self.groups, groups, n_groups);
         self.own.clear();
@@ -37,14 +38,14 @@ impl Scene {
     /// only some of them, once it is over.
     pub(super) fn hash_more(&mut self, is_over: IsOver<'_>) -> Option<()> {
         let first = self.own.len();
-        let goes_on = |i: usize| !(i.is_multiple_of(STRIDE) && is_over());
+        let look_at = |i: usize| if i.is_multiple_of(STRIDE) { look(is_over) } else { Some(()) };
         let mut is_hashed = vec![false; self.nodes.len() - first];
         for i in first..self.nodes.len() {
-            goes_on(i).then_some(())?;
+            look_at(i)?;
             self.hash_from(i, first, &mut is_hashed);
         }
         for i in first..self.nodes.len() {
-            goes_on(i).then_some(())?;
+            look_at(i)?;
             let own = self.new_own_hash(&self.nodes[i]);
             self.own.push(own);
         }

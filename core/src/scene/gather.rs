@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::compact::{IsOver, Order, STRIDE, UNMET};
+use super::compact::{IsOver, Order, STRIDE, UNMET, look};
 use super::{
     Argument, Arguments, Expectation, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value,
 };
@@ -18,9 +18,7 @@ impl Scene {
         is_over: IsOver<'_>,
     ) -> Option<Self> {
         let order = Order::of(self);
-        if is_over() {
-            return None;
-        }
+        look(is_over)?;
         let nodes = met(&order.nodes, order.n_nodes);
         let groups = met(&order.groups, order.n_groups);
         let put = Put { nodes: &order.nodes, groups: &order.groups, place };
@@ -141,9 +139,10 @@ pub(super) fn in_parts<T: Sync, R: Send>(
         }
         all
     });
-    (!is_over()).then_some(all)
+    look(is_over).map(|()| all)
 }
 
+/// Adds what stands in a part as it is.
 fn add<T: Clone>(part: &[T], out: &mut Vec<T>) {
     out.extend_from_slice(part);
 }
@@ -223,6 +222,8 @@ impl Put<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
     use crate::diag::SourceId;
     use crate::scene::Pose;
@@ -243,13 +244,49 @@ mod tests {
         let mut kept = scene.clone();
         kept.prepare(&|span| span, &|| false).unwrap();
         scene.compact(&|| false).unwrap();
-        let wanted = || false;
-        assert_eq!(kept.gathered(&|span| span, &wanted).unwrap(), scene);
-        let further =
-            kept.gathered(&|span| Span { start: span.start + 3, ..span }, &wanted).unwrap();
+        assert_eq!(kept.gathered(&|span| span, &|| false).unwrap(), scene);
+        assert_eq!(scene.copied(&|| false).unwrap(), scene);
+        let later = |span: Span| Span { start: span.start + 3, ..span };
+        let further = kept.gathered(&later, &|| false).unwrap();
         assert_eq!(further.nodes[1].span.start, scene.nodes[1].span.start + 3);
         assert_eq!(further.nodes[1].params[0].span.start, scene.nodes[1].span.start + 3);
         assert_eq!(further.root.items[0].span.start, 10);
+    }
+
+    /// Work that may be over before it ends.
+    type Way<'a> = &'a dyn Fn(IsOver<'_>) -> Option<()>;
+
+    #[test]
+    fn nothing_comes_of_what_is_over_at_any_look() {
+        // Enough for four looks of each pass over the nodes.
+        let n = 4 * u32::try_from(STRIDE).unwrap();
+        let placed = |id| placed(Target::Node(NodeId(id)), 0);
+        let made = || {
+            let nodes = (0..n).map(|i| node(i as usize, None)).collect();
+            let root = Group { label: None, items: (0..n).map(placed).collect() };
+            Scene { nodes, root, ..Scene::default() }
+        };
+        let mut kept = made();
+        kept.prepare(&|span| span, &|| false).unwrap();
+        let ways: [Way<'_>; 4] = [
+            &|is_over| made().compact(is_over),
+            &|is_over| made().prepare(&|span| span, is_over),
+            &|is_over| kept.gathered(&|span| span, is_over).map(drop),
+            &|is_over| kept.copied(is_over).map(drop),
+        ];
+        for way in ways {
+            let looks = AtomicUsize::new(0);
+            let n_looks = |last: usize| {
+                looks.store(0, Ordering::Relaxed);
+                way(&|| looks.fetch_add(1, Ordering::Relaxed) >= last)
+            };
+            n_looks(usize::MAX).unwrap();
+            let all = looks.load(Ordering::Relaxed);
+            assert!(all > 4, "{all}");
+            for last in 0..all {
+                assert_eq!(n_looks(last), None, "of {all} looks {last} were before the end");
+            }
+        }
     }
 
     #[test]

@@ -84,8 +84,7 @@ pub struct FoundLight {
 }
 
 impl Lights {
-    /// Lights of no group, chosen about in proportion to their power; of some of them once the watch is
-    /// cancelled.
+    /// Lights of no group, chosen about in proportion to their power; of no use once the watch is cancelled.
     pub(super) fn new(
         sources: Vec<LightSource>,
         (stage_radius, mode): (f64, ColorMode),

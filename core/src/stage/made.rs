@@ -161,8 +161,8 @@ impl Made {
         stage
     }
 
-    /// What is to be modelled of the world, or some of it once the watch is cancelled; who requires it is
-    /// noted, and what moves and what is filled is already.
+    /// What is to be modelled of the world; who requires it is noted, and what moves and what is filled
+    /// is already. Of no use once the watch is cancelled.
     fn needed(
         &mut self,
         scene: &Scene,

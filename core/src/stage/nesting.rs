@@ -14,8 +14,7 @@ const MOST_PAIRS: usize = 1 << 20;
 
 /// Finds which placements are closed and which counts where they overlap, as far as that matters:
 /// where there are media, and where refracting shapes lie within each other. Gives two such shapes if
-/// there are any; none of them where they are too many to look at.
-/// Left off once the watch is cancelled.
+/// there are any; none of them where they are too many to look at. Left off once the watch is cancelled.
 pub(super) fn settle(
     placements: &mut [Placement],
     geometries: &[Arc<Geometry>],

@@ -1,7 +1,7 @@
 //! The end of a load: what the scene lacks.
 
 use luxel_core::diag::Diagnostic;
-use luxel_core::scene::{NodeId, Placed, Pose, Scene, Target};
+use luxel_core::scene::{IsOver, NodeId, Placed, Pose, Scene, Target};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::leave;
 
@@ -20,13 +20,7 @@ impl Evaluator<'_> {
         let is_good = errors == 0 && !self.damaged && !self.stopped;
         let is_small = !self.stopped && self.scene.nodes.len() <= LOOKED_AT;
         let is_over = self.sink.over();
-        let mut made = (is_good || is_small).then_some(()).and_then(|()| {
-            self.scene.root = self.open_groups.pop().unwrap_or_default().group;
-            let orphans: Vec<_> = self.orphans.iter().map(|id| placed(&self.scene, *id)).collect();
-            self.scene.root.items.extend(orphans);
-            self.scene.compact(&is_over)?;
-            Some(std::mem::take(&mut self.scene))
-        });
+        let mut made = if is_good || is_small { self.compacted(&is_over) } else { None };
         if is_over() {
             leave((self.scene, self.open_groups, made.take()));
         }
@@ -38,6 +32,15 @@ impl Evaluator<'_> {
         }
         let values = self.noted.map(Noted::values).unwrap_or_default();
         Loaded { scene, rest, diagnostics, sources: self.sources, params: self.params, values }
+    }
+
+    /// The scene with all that stands in it; `None` once it is over.
+    fn compacted(&mut self, is_over: IsOver<'_>) -> Option<Scene> {
+        self.scene.root = self.open_groups.pop().unwrap_or_default().group;
+        let orphans: Vec<_> = self.orphans.iter().map(|id| placed(&self.scene, *id)).collect();
+        self.scene.root.items.extend(orphans);
+        self.scene.compact(is_over)?;
+        Some(std::mem::take(&mut self.scene))
     }
 
     /// Tells what the scene lacks as a whole.

@@ -107,7 +107,6 @@ impl Evaluator<'_> {
         }
         self.end_record(told.kept().len());
         self.stopped |= told.is_full();
-
         told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;
     }

@@ -138,12 +138,11 @@ fn load_in_turns(
         leave(broken);
     }
     let plain = files;
-    let evaluator = Evaluator::new(files, registry, settings, turn);
+    let files = Remembering::new(files);
+    let mut evaluator = Evaluator::new(&files, registry, settings, turn);
     if evaluator.sink.is_stopped() {
         return evaluator.finish();
     }
-    let files = Remembering::new(files);
-    let mut evaluator = Evaluator::new(&files, registry, settings, turn);
     evaluator.record = Some(Record::default());
     evaluator.root(path, &settings.set);
     // How much is told where a budget is spent depends on how much was read by then.

@@ -179,12 +179,12 @@ impl Evaluator<'_> {
         let mut scene = std::mem::take(&mut self.scene);
         scene.root = std::mem::take(&mut self.open_groups).pop().unwrap_or_default().group;
         let Record { from, names, mut stmts, around, .. } = record;
-        let is_prepared = scene.prepare(&place, &is_over).is_some();
-        for stmt in stmts.iter_mut().take_while(|_| !is_over()) {
-            stmt.names.move_together();
-        }
-        let goes_on = is_prepared && !is_over();
-        let tables = goes_on.then(|| Tables::of(&names, stmts.iter().map(|stmt| &stmt.names)).0);
+        let tables = scene.prepare(&place, &is_over).map(|()| {
+            let moved = stmts.iter_mut().take_while(|_| !is_over());
+            moved.for_each(|stmt| stmt.names.move_together());
+            let all = stmts.iter().take_while(|_| !is_over());
+            Tables::of(&names, all.map(|stmt| &stmt.names)).0
+        });
         let Some(tables) = tables.filter(|_| !is_over()) else {
             leave((scene, stmts, names));
             return None;

@@ -116,7 +116,9 @@ fn texts(registry: &Registry) -> Result<(), String> {
     let fresh = |watch: &Watch| made(load(path, &both[0], registry, &settings(watch)).scene);
     told(&format!("{name}evaluated"), Part::Any, &fresh)?;
     let kept = |watch: &Watch| {
-        made(Kept::default().load(path, &both[0], registry, &settings(watch)).scene)
+        let mut kept = Kept::default();
+        let scene = kept.load(path, &both[0], registry, &settings(watch)).scene;
+        made(scene.map(|scene| (kept, scene)))
     };
     told(&format!("{name}and kept"), Part::Any, &kept)?;
     let kept = Mutex::new((Kept::default(), 0));

@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use luxel_sdk::params::leave;
+
 use super::compact::{IsOver, Order, STRIDE, UNMET, look};
 use super::{
     Argument, Arguments, Expectation, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value,
@@ -27,10 +29,7 @@ impl Scene {
         let of_nodes = |part: &[u32], out: &mut Vec<Node>| {
             put.nodes(part.iter().map(|old| self.node(NodeId(*old))), out);
         };
-        let of_items = |part: &[Placed], out: &mut Vec<Placed>| {
-            out.extend(part.iter().map(|item| put.item(item)));
-        };
-        let root = Group { label: None, items: in_parts(&self.root.items, is_over, &of_items)? };
+        let root = put.large_group(&self.root, is_over)?;
         Some(Self {
             nodes: in_parts(&nodes, is_over, &of_nodes)?,
             groups: groups.iter().map(|old| put.group(self.group(GroupId(*old)))).collect(),
@@ -74,16 +73,18 @@ impl Scene {
         is_over: IsOver<'_>,
     ) -> Option<()> {
         let numbers = |n: usize| (0..).take(n).collect::<Vec<u32>>();
-        let (nodes, groups) = (numbers(self.nodes.len()), numbers(self.groups.len()));
-        let put = Put { nodes: &nodes, groups: &groups, place };
+        let (same, groups) = (numbers(self.nodes.len()), numbers(self.groups.len()));
+        let put = Put { nodes: &same, groups: &groups, place };
         let of_nodes = |part: &[Node], out: &mut Vec<Node>| put.nodes(part.iter(), out);
-        self.nodes = in_parts(&self.nodes, is_over, &of_nodes)?;
+        let nodes = in_parts(&self.nodes, is_over, &of_nodes)?;
+        // Those before are as many small pieces of memory as there are nodes.
+        leave(std::mem::replace(&mut self.nodes, nodes));
         // Next to one another, so that copying finds them soon.
         for label in self.nodes.iter_mut().filter_map(|node| node.label.as_mut()) {
             *label = Arc::from(&**label);
         }
         self.groups = self.groups.iter().map(|group| put.group(group)).collect();
-        self.root = put.group(&self.root);
+        self.root = put.large_group(&self.root, is_over)?;
         self.hash_more(is_over)
     }
 
@@ -115,7 +116,7 @@ impl Scene {
 
 /// What `f` adds for each few neighbours of a list, on as many threads as there are cores, in order;
 /// `None` once it is over.
-pub(super) fn in_parts<T: Sync, R: Send>(
+pub(super) fn in_parts<T: Sync, R: Send + 'static>(
     list: &[T],
     is_over: IsOver<'_>,
     f: &(dyn Fn(&[T], &mut Vec<R>) + Sync),
@@ -139,7 +140,11 @@ pub(super) fn in_parts<T: Sync, R: Send>(
         }
         all
     });
-    look(is_over).map(|()| all)
+    if is_over() {
+        leave(all);
+        return None;
+    }
+    Some(all)
 }
 
 /// Adds what stands in a part as it is.
@@ -212,6 +217,15 @@ impl Put<'_> {
             material: item.material.map(|id| self.id(id)),
             span: (self.place)(item.span),
         }
+    }
+
+    /// A group of many; `None` once it is over.
+    fn large_group(&self, group: &Group, is_over: IsOver<'_>) -> Option<Group> {
+        let of_items = |part: &[Placed], out: &mut Vec<Placed>| {
+            out.extend(part.iter().map(|item| self.item(item)));
+        };
+        let items = in_parts(&group.items, is_over, &of_items)?;
+        Some(Group { label: group.label.clone(), items })
     }
 
     fn group(&self, group: &Group) -> Group {

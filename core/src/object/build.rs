@@ -9,7 +9,7 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Emission, Fault, Param, Quantity, Role, Type};
 
 use super::Object;
-use super::colour::{self, Amount};
+use super::colour::{self, Amount, Brightness};
 use super::context::{Embedded, Reader, Reads};
 use super::draft::Draft;
 use super::part::{MeshParts, PartTree};
@@ -102,6 +102,7 @@ pub struct Builder<'a> {
     files: &'a dyn Files,
     mode: ColorMode,
     embedded: Embedded,
+    brightness: Brightness,
     pub(super) before: &'a Objects,
     /// How triangles become a part of another shape; without it they cannot.
     pub mesh_parts: Option<MeshParts<'a>>,
@@ -132,6 +133,7 @@ impl<'a> Builder<'a> {
             files,
             mode,
             embedded,
+            brightness: Brightness::default(),
             before,
             mesh_parts: None,
             watch: None,
@@ -408,16 +410,21 @@ impl<'a> Builder<'a> {
         match value {
             Some(Value::Node(id)) => {
                 if let Some(texture) = self.part_of(draft, *id) {
-                    draft.texture(param, texture, colour::texture_factor(amount))?;
+                    draft.texture(
+                        param,
+                        texture,
+                        colour::texture_factor(amount, &mut self.brightness),
+                    )?;
                 }
             }
             Some(Value::Color(color, _)) => {
-                let lanes = colour::emission(color, amount, draft.mode())?;
+                let lanes = colour::emission(color, amount, draft.mode(), &mut self.brightness)?;
                 draft.lanes(param.offset, lanes)?;
             }
             Some(other) => return Err(format!("a spectrum cannot be made of {other:?}")),
             None => {
-                let lanes = colour::emission(&colour::white(), amount, draft.mode())?;
+                let lanes =
+                    colour::emission(&colour::white(), amount, draft.mode(), &mut self.brightness)?;
                 draft.lanes(param.offset, lanes)?;
             }
         }

@@ -1,5 +1,6 @@
 //! Colours as described into what a field needs, by role and colour mode.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -135,38 +136,58 @@ impl Amount {
     }
 }
 
+/// Mean and luminous Y of light by its RGB: each is reckoned from the whole band, and lamps are often alike.
+#[derive(Debug, Default)]
+pub(super) struct Brightness {
+    known: HashMap<[u32; 3], [f64; 2]>,
+}
+
+impl Brightness {
+    fn of(&mut self, rgb: Vec3) -> [f64; 2] {
+        *self.known.entry(rgb.to_array().map(f32::to_bits)).or_insert_with(|| {
+            let curve = rgb_curve(rgb);
+            [curve.mean(), curve.y()]
+        })
+    }
+}
+
 /// Lanes of a source of light: its spectrum times the amount.
 ///
 /// # Errors
 /// A spectrum without any light, which no amount can scale.
-pub(super) fn emission(color: &Color, amount: Amount, mode: ColorMode) -> Result<Lanes, String> {
-    let curve = match rgb_of(color) {
-        Some(rgb) => rgb_curve(rgb32(rgb)),
-        None => curve_of(color, Outside::Zero)?.expect("only RGB has no curve"),
+pub(super) fn emission(
+    color: &Color,
+    amount: Amount,
+    mode: ColorMode,
+    brightness: &mut Brightness,
+) -> Result<Lanes, String> {
+    let finite = |factor: f64| {
+        let dark = "a spectrum without light cannot be scaled to an amount";
+        Some(factor).filter(|factor| factor.is_finite()).ok_or(dark)
     };
-    let (mean, y) = (curve.mean(), curve.y());
-    let factor = amount.factor(mean, y);
-    if !factor.is_finite() {
-        return Err("a spectrum without light cannot be scaled to an amount".to_owned());
+    if let Some(rgb) = rgb_of(color) {
+        let [mean, y] = brightness.of(rgb32(rgb));
+        let factor = finite(amount.factor(mean, y))?;
+        let rgb = rgb32(rgb.map(|x| x * factor));
+        return Ok(match mode {
+            ColorMode::Rgb => Lanes::Constant(Spectrum::from_rgb(rgb)),
+            ColorMode::Spectral => Lanes::Rgb(rgb, Uplift::Illuminant),
+        });
     }
-    Ok(match (mode, rgb_of(color)) {
-        (ColorMode::Rgb, Some(rgb)) => {
-            Lanes::Constant(Spectrum::from_rgb(rgb32(rgb.map(|x| x * factor))))
-        }
-        (ColorMode::Spectral, Some(rgb)) => {
-            Lanes::Rgb(rgb32(rgb.map(|x| x * factor)), Uplift::Illuminant)
-        }
-        (ColorMode::Spectral, None) => Lanes::Curve(curve.map(|_, x| x * factor)),
-        (ColorMode::Rgb, None) => {
+    let curve = curve_of(color, Outside::Zero)?.expect("only RGB has no curve");
+    let factor = finite(amount.factor(curve.mean(), curve.y()))?;
+    Ok(match mode {
+        ColorMode::Spectral => Lanes::Curve(curve.map(|_, x| x * factor)),
+        ColorMode::Rgb => {
             Lanes::Constant(Spectrum::from_rgb(emission_rgb(&curve) * narrow(factor)))
         }
     })
 }
 
 /// The factor on a texture's colours that gives the amount for white.
-pub(super) fn texture_factor(amount: Amount) -> f32 {
-    let curve = rgb_curve(Vec3::ONE);
-    narrow(amount.factor(curve.mean(), curve.y()))
+pub(super) fn texture_factor(amount: Amount, brightness: &mut Brightness) -> f32 {
+    let [mean, y] = brightness.of(Vec3::ONE);
+    narrow(amount.factor(mean, y))
 }
 
 /// RGB light as a curve.
@@ -192,6 +213,30 @@ pub(super) fn dimension(unit: &str) -> Dimension {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lamps_are_as_bright_whatever_was_made_before_them() {
+        let radiance = |value| Amount {
+            quantity: Quantity::Radiance,
+            value,
+            dimension: dimension("W/m^2/sr"),
+        };
+        let rgb = |color: [f64; 3], value, brightness: &mut Brightness| {
+            let lanes = emission(&Color::Rgb(color), radiance(value), ColorMode::Rgb, brightness);
+            let Ok(Lanes::Constant(rgb)) = lanes else { panic!("RGB is the same for every path") };
+            rgb.to_array().map(f32::to_bits)
+        };
+        let mut brightness = Brightness::default();
+        let all = [[1.0; 3], [1.0, 0.2, 0.1], [0.1, 0.2, 1.0]];
+        for (color, value) in all.into_iter().chain(all).zip([3.0, 2.0, 5.0, 7.0, 11.0, 1.0]) {
+            let fresh = rgb(color, value, &mut Brightness::default());
+            assert_eq!(rgb(color, value, &mut brightness), fresh, "{color:?}");
+        }
+        let red = rgb([1.0, 0.2, 0.1], 2.0, &mut brightness);
+        assert_ne!(red, rgb([0.1, 0.2, 1.0], 2.0, &mut brightness), "another colour");
+        let dark = emission(&Color::Rgb([0.0; 3]), radiance(1.0), ColorMode::Rgb, &mut brightness);
+        assert!(dark.is_err(), "no amount scales it");
+    }
 
     #[test]
     fn a_length_is_told_in_waves_of_each_wavelength() {

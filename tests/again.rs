@@ -18,7 +18,7 @@ const CAMERA: &str = "camera perspective { fov = 40 deg, look = look_at(from = (
                       to = (0, 0, 0) m, up = (0, 1, 0)) }";
 
 /// Statements that depend on others, emit, share, declare, read other files, or are wrong.
-const LINES: [&str; 58] = [
+const LINES: [&str; 63] = [
     "let r = 5 cm",
     "let r = 25 cm",
     "let grey = material diffuse { reflectance = 0.5 }",
@@ -75,6 +75,11 @@ const LINES: [&str; 58] = [
     "shape sphere \"three\" { radius= r, material = material mix { a = grey, b = shiny, weight = size } }",
     "shape disk { radius /* how far */ = r, center = (r, r, 0), material = grey }",
     "light area { shape = shape sphere { radius = r, center = (0, 3, 0) m }, radiance = bright }",
+    "shape sphere { radius = 2 * r, material = grey, center = (1, 2, 3) m }",
+    "shape sphere { radius = (r + far * (r / far)) / 2 + r, material = grey }",
+    "shape disk { radius = -(-r) * size % far, material = material mix { a = grey, b = shiny, weight = size / 2 } }",
+    "let far = 3 m",
+    "let far = 70 cm / size",
     "let bright = 3 W/m^2/sr",
     "let bright = rgb.linear_srgb(1, 2, 3) W/m^2/sr",
 ];
@@ -184,15 +189,16 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
         let set = if seed % 4 == 0 { vec![("size".to_owned(), "0.6".to_owned())] } else { vec![] };
         // Some are spent by one statement more.
         let budgets = Budgets {
-            nodes: if seed % 3 == 0 { 1_000_000 } else { 35 },
-            names: if seed % 2 == 0 { 500_000 } else { 9 },
+            nodes: if seed % 3 == 0 { 1_000_000 } else { 41 },
+            names: if seed % 2 == 0 { 500_000 } else { 10 },
             ..Budgets::default()
         };
         let noting = seed % 5 != 1;
         let without_scene = seed % 7 == 1;
         let settings = Settings { set, budgets, noting, without_scene, ..Settings::default() };
         let mut edited = Edited::new(settings);
-        let good = [0, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24, 52, 53, 54];
+        let good =
+            [0, 2, 59, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24, 52, 53, 54, 56, 57, 58];
         let more: &[usize] = [&[][..], &[33, 34], &[42, 43], &[44, 48]][pick(&mut rng, 4)];
         let mut lines: Vec<String> =
             good.iter().chain(more).map(|i| LINES[*i].to_owned()).collect();
@@ -288,7 +294,7 @@ fn what_only_hands_a_value_on_is_not_evaluated() {
         lines[1] = "let grey = material conductor { eta = metal(\"Au\") }".to_owned();
         assert_eq!(n(&lines), (1, true));
         // One that does more than that is evaluated, with what it uses.
-        lines[9] = lines[9].replace("radius = r", "radius = 2 * r");
+        lines[9] = lines[9].replace("(1, 2, 3) m", "(r, 2 * r, r)");
         assert_eq!(n(&lines), (3, true));
         lines[0] = "let r = 8 cm".to_owned();
         assert_eq!(n(&lines), (3, true));
@@ -299,10 +305,48 @@ fn what_only_hands_a_value_on_is_not_evaluated() {
 }
 
 #[test]
+fn what_only_reckons_with_a_value_is_not_evaluated() {
+    let mut now: Vec<String> = ["let r = 5 cm", "let k = 2", CAMERA, "fn half(x: length) = x / 2"]
+        .map(str::to_owned)
+        .to_vec();
+    now.extend((0..60).map(|i| match i % 3 {
+        0 => "shape sphere { radius = (r + 1 cm) / k }".to_owned(),
+        1 => format!("shape disk {{ radius = r * {i}, inner_radius = r * {i} / 2 }}"),
+        _ => "shape disk { radius = 2 m }".to_owned(),
+    }));
+    let settings = Settings { noting: true, ..Settings::default() };
+    let mut edited = Edited::new(settings);
+    let mut n = |lines: &[String]| {
+        let loaded = edited.load(&text_of(lines), "an edit");
+        (edited.kept.n_evaluated().unwrap_or_default(), is_good(&loaded))
+    };
+    now[5] = now[5].replace("r * 1,", "r * 7,");
+    assert_eq!(n(&now), (66, true));
+    // The length, and what else is reckoned with.
+    now[0] = "let r = 7 cm".to_owned();
+    assert_eq!(n(&now), (2, true));
+    now[1] = "let k = 3".to_owned();
+    assert_eq!(n(&now), (2, true));
+    // Where a number is no longer one, or is divided by nothing, it is a mistake of each.
+    for wrong in ["0", "\"two\"", "(1, 2)", "1 s"] {
+        now[1] = format!("let k = {wrong}");
+        assert!(!n(&now).1, "{wrong}");
+    }
+    now[1] = "let k = 4".to_owned();
+    assert!(n(&now).1);
+    // A call takes steps of its own, and its statement is evaluated, with what it uses.
+    now[4] = now[4].replace("(r + 1 cm) / k", "half(r) / k");
+    assert_eq!(n(&now), (4, true));
+    now[0] = "let r = 9 cm".to_owned();
+    assert_eq!(n(&now), (4, true));
+}
+
+#[test]
 fn a_load_that_was_given_up_at_any_moment_leaves_what_can_be_gone_on_from() {
     let mut now = vec!["let r = 5 cm".to_owned(), "let q = 1 cm".to_owned(), CAMERA.to_owned()];
     now.extend((0..1500).map(|i| match i % 8 {
-        0 => format!("shape sphere {{ radius = 2 * q, center = ({i}, 0, 0) m }}"),
+        0 => format!("shape sphere {{ radius = 1 m, center = (2 * q, {i} m, q) }}"),
+        1 => format!("shape sphere {{ radius = 2 * q, center = ({i}, 0, 0) m }}"),
         _ => format!("shape sphere {{ radius = r, center = ({i}, 0, 0) m }}"),
     }));
     let mut edited = Edited::new(Settings::default());

@@ -41,6 +41,11 @@ impl Known {
         number
     }
 
+    /// The number of a name that has one.
+    pub(super) fn of(&self, name: &str) -> Option<u32> {
+        self.numbers.get(name).copied()
+    }
+
     /// The name of a number.
     pub(super) fn name(&self, number: u32) -> &str {
         &self.names[number as usize]
@@ -162,7 +167,7 @@ impl<'k> Firsts<'k> {
     }
 
     fn place(&self, places: &[u32], name: &str) -> Option<usize> {
-        place_of(places, *self.known.numbers.get(name)?)
+        place_of(places, self.known.of(name)?)
     }
 
     /// The names that are defined before a statement.

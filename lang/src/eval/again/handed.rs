@@ -1,7 +1,7 @@
-//! Statements that only hand a value on, as `radius = r` does: where that has changed, the parameters that
-//! it became get the new value, and nothing of the statement is evaluated.
+//! Statements that only hand a value on, as `radius = r` and `radius = r / 2` do: where that has changed,
+//! the parameters that it became get the new value, and nothing of the statement is evaluated.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -10,6 +10,7 @@ use luxel_core::registry::Registry;
 use luxel_core::scene::{self, Changed, IsOver, Node, NodeId};
 use luxel_sdk::kind::Kind;
 
+use super::formula::Formula;
 use super::values::KeptValues;
 use super::{State, Statement, source_of};
 use crate::eval::Evaluator;
@@ -20,6 +21,9 @@ use crate::shares;
 use crate::syntax::{Expr, ExprNode, Name, Object, Stmt, StmtNode, children};
 use crate::values::Layer;
 
+/// Expressions that are looked at, at most, by each thread: what is reckoned with others is evaluated.
+const FORMULAS: usize = 1 << 10;
+
 /// What hands on changed values.
 #[derive(Debug, Default)]
 pub(super) struct Handed {
@@ -27,9 +31,12 @@ pub(super) struct Handed {
     runs: Vec<Range<usize>>,
     /// By statement.
     places: Vec<Place>,
+    formulas: Vec<Formula>,
+    /// Which of those a text is, if it is one.
+    of_texts: HashMap<Arc<str>, Option<u32>>,
     wanted: Vec<Wanted>,
-    /// Which of those each name is.
-    of_names: BTreeMap<u32, Vec<u32>>,
+    /// Which of those each formula is.
+    of_formulas: Vec<Vec<u32>>,
 }
 
 /// A parameter that a value is handed on to.
@@ -45,10 +52,10 @@ struct Place {
     wanted: u32,
 }
 
-/// What a name's value is for a parameter of a class.
+/// What the value of a formula is for a parameter of a class.
 #[derive(Debug, PartialEq)]
 struct Wanted {
-    name: u32,
+    formula: u32,
     kind: Kind,
     class: Arc<str>,
     param: &'static str,
@@ -106,9 +113,14 @@ impl Handed {
         self.runs.is_empty()
     }
 
+    /// The names that values are reckoned from.
+    pub(super) fn names(&self) -> impl Iterator<Item = u32> {
+        self.formulas.iter().flat_map(Formula::names).map(|(name, _)| name)
+    }
+
     /// Which of those that are wanted this is.
     fn number(&mut self, wanted: Wanted) -> u32 {
-        let known = self.of_names.entry(wanted.name).or_default();
+        let known = &mut self.of_formulas[wanted.formula as usize];
         if let Some(i) = known.iter().find(|i| self.wanted[**i as usize] == wanted) {
             return *i;
         }
@@ -118,9 +130,39 @@ impl Handed {
         i
     }
 
+    /// Which of the formulas a text is, if it is one.
+    fn formula(&mut self, text: &str, state: &State) -> Option<u32> {
+        if let Some(known) = self.of_texts.get(text) {
+            return *known;
+        }
+        if self.of_texts.len() >= FORMULAS {
+            return None;
+        }
+        let found = Formula::of(text, state).map(|formula| self.put(formula));
+        self.of_texts.insert(text.into(), found);
+        found
+    }
+
+    fn put(&mut self, formula: Formula) -> u32 {
+        self.formulas.push(formula);
+        self.of_formulas.push(vec![]);
+        narrow(self.formulas.len() - 1)
+    }
+
     /// With those of later statements.
     fn with(mut self, other: Self) -> Self {
-        let numbers: Vec<u32> = other.wanted.into_iter().map(|it| self.number(it)).collect();
+        let mut formulas = vec![];
+        for formula in other.formulas {
+            let text = formula.text.clone();
+            let known = self.of_texts.get(&text).copied().flatten();
+            let i = known.unwrap_or_else(|| self.put(formula));
+            self.of_texts.insert(text, Some(i));
+            formulas.push(i);
+        }
+        let renamed =
+            |wanted: Wanted| Wanted { formula: formulas[wanted.formula as usize], ..wanted };
+        let numbers: Vec<u32> =
+            other.wanted.into_iter().map(|it| self.number(renamed(it))).collect();
         let renamed = |place: Place| Place { wanted: numbers[place.wanted as usize], ..place };
         self.places.extend(other.places.into_iter().map(renamed));
         self.runs.extend(other.runs);
@@ -131,11 +173,11 @@ impl Handed {
     fn add(&mut self, stmt: &Statement, state: &State, is_changed: &[bool]) -> bool {
         let first = self.places.len();
         for (name, times) in stmt.names.uses().filter(|(name, _)| is_changed[*name as usize]) {
-            let before = self.places.len();
+            let mut n = 0;
             for node in stmt.made.nodes.clone() {
-                self.add_places((stmt, node), state, name);
+                n += self.add_places((stmt, node), state, (name, is_changed));
             }
-            if self.places.len() - before != times as usize {
+            if n != times {
                 self.places.truncate(first);
                 return false;
             }
@@ -144,29 +186,48 @@ impl Handed {
         true
     }
 
-    /// Adds the parameters of a node whose value is written as that name alone.
-    fn add_places(&mut self, (stmt, node): (&Statement, usize), state: &State, name: u32) {
+    /// Adds the parameters of a node whose value is reckoned from a name, the first there that has changed;
+    /// how often it stands in what the parameters are reckoned from.
+    fn add_places(
+        &mut self,
+        (stmt, node): (&Statement, usize),
+        state: &State,
+        (name, is_changed): (u32, &[bool]),
+    ) -> u32 {
         let (text, word) = (&state.text[stmt.range.clone()], state.names.name(name));
         let (nodes, number) = (&state.scene.nodes, narrow(node));
+        let mut n = 0;
         for (argument, k) in nodes[node].params.iter().zip(0..) {
             let range = argument.span.range();
+            let Some(written) = text.get(range.clone()).filter(|it| it.contains(word)) else {
+                continue;
+            };
+            // Names that every scene has may stand for others further down.
+            let may_reckon =
+                matches!(argument.value, scene::Value::Number(..)) && state.n_shadows == 0;
             let is_written = argument.span.source == source_of(stmt.id)
-                && text.get(range.clone()) == Some(word)
+                && (written == word || may_reckon)
                 && is_simple(&argument.value, nodes);
             if !is_written {
                 continue;
             }
             let before = text[..range.start].trim_end().strip_suffix('=');
             let before = before.and_then(|before| before.trim_end().strip_suffix(argument.name));
-            if let Some(before) = before {
-                let is_node = matches!(argument.value, scene::Value::Node(_));
-                let (kind, class) = (nodes[node].kind, nodes[node].class.clone());
-                let wanted =
-                    self.number(Wanted { name, kind, class, param: argument.name, is_node });
-                let (id, field) = (stmt.id, narrow(before.len()));
-                self.places.push(Place { id, field, node: number, argument: k, wanted });
+            let Some(before) = before else { continue };
+            let Some(formula) = self.formula(written, state) else { continue };
+            let names = || self.formulas[formula as usize].names();
+            n += names().find(|(it, _)| *it == name).map_or(0, |(_, times)| times);
+            if names().find(|(it, _)| is_changed[*it as usize]).is_none_or(|(it, _)| it != name) {
+                continue;
             }
+            let is_node = matches!(argument.value, scene::Value::Node(_));
+            let (kind, class) = (nodes[node].kind, nodes[node].class.clone());
+            let wanted = Wanted { formula, kind, class, param: argument.name, is_node };
+            let wanted = self.number(wanted);
+            let (id, field) = (stmt.id, narrow(before.len()));
+            self.places.push(Place { id, field, node: number, argument: k, wanted });
         }
+        n
     }
 }
 
@@ -211,9 +272,22 @@ impl State {
         // What it stands in stands in what the statement makes, each in the next one at most.
         let is_deep =
             |object: &ObjectValue| object.depth + n_nodes >= self.settings.budgets.nesting;
+        let is_over = evaluator.sink.over();
+        let n_told = evaluator.sink.kept().len();
+        let mut values = vec![];
+        for formula in &handed.formulas {
+            let value = evaluator.eval(&formula.expr, env);
+            if !(formula.is_name() || matches!(value, Value::Number(..))) || is_over() {
+                return None;
+            }
+            values.push(value);
+        }
+        if evaluator.sink.kept().len() > n_told {
+            return None;
+        }
         let mut out = Fitted::default();
         for wanted in &handed.wanted {
-            let value = env.get(self.names.name(wanted.name))?;
+            let value = values[wanted.formula as usize].clone();
             let fits = match &value {
                 Value::Object(object) => wanted.is_node && !is_deep(object),
                 _ => !wanted.is_node,

@@ -13,6 +13,7 @@
 
 mod asked;
 mod edit;
+mod formula;
 mod handed;
 mod made;
 mod plan;

@@ -149,7 +149,10 @@ impl State {
         }
         let firsts = Firsts::new(&self.names, tables.as_ref().unwrap_or(&self.tables));
         let (new, handed, sets) = self.concerned_with_sets(&gone, &after, &firsts)?;
-        let tasks = self.tasks((text, &edit), &after, &firsts, (&new, &sets), (trees, is_over))?;
+        let known = handed.names().filter_map(|name| firsts.definer_of(name));
+        let wanted: BTreeSet<usize> =
+            new.iter().chain(&sets.setters).copied().chain(known).collect();
+        let tasks = self.tasks((text, &edit), &after, &firsts, (&new, wanted), (trees, is_over))?;
         Some(Plan { edit, gone, fresh, tasks, tables, n_names, read: said, names, sets, handed })
     }
 
@@ -223,16 +226,16 @@ impl State {
         (new.len() <= most + fresh.len()).then_some((new, handed))
     }
 
-    /// The statements that are new or set something of them, and those that define what they use.
+    /// The statements that are wanted, some of which are new, and those that define what they use.
     fn tasks(
         &self,
         (text, edit): (&str, &Edit),
         after: &After<'_>,
         firsts: &Firsts<'_>,
-        (new, sets): (&[usize], &Sets),
+        (new, wanted): (&[usize], BTreeSet<usize>),
         (mut trees, is_over): (Vec<Option<Stmt>>, IsOver<'_>),
     ) -> Option<Vec<Task>> {
-        let mut met: BTreeSet<usize> = new.iter().chain(&sets.setters).copied().collect();
+        let mut met = wanted;
         let mut open: VecDeque<usize> = met.iter().copied().collect();
         let mut tasks = vec![];
         while let Some(i) = open.pop_front() {

@@ -173,11 +173,11 @@ impl Handed {
     fn add(&mut self, stmt: &Statement, state: &State, is_changed: &[bool]) -> bool {
         let first = self.places.len();
         for (name, times) in stmt.names.uses().filter(|(name, _)| is_changed[*name as usize]) {
-            let mut n = 0;
+            let mut n_written = 0;
             for node in stmt.made.nodes.clone() {
-                n += self.add_places((stmt, node), state, (name, is_changed));
+                n_written += self.add_places((stmt, node), state, (name, is_changed));
             }
-            if n != times {
+            if n_written != times {
                 self.places.truncate(first);
                 return false;
             }
@@ -196,7 +196,7 @@ impl Handed {
     ) -> u32 {
         let (text, word) = (&state.text[stmt.range.clone()], state.names.name(name));
         let (nodes, number) = (&state.scene.nodes, narrow(node));
-        let mut n = 0;
+        let mut n_written = 0;
         for (argument, k) in nodes[node].params.iter().zip(0..) {
             let range = argument.span.range();
             let Some(written) = text.get(range.clone()).filter(|it| it.contains(word)) else {
@@ -216,7 +216,7 @@ impl Handed {
             let Some(before) = before else { continue };
             let Some(formula) = self.formula(written, state) else { continue };
             let names = || self.formulas[formula as usize].names();
-            n += names().find(|(it, _)| *it == name).map_or(0, |(_, times)| times);
+            n_written += names().find(|(it, _)| *it == name).map_or(0, |(_, times)| times);
             if names().find(|(it, _)| is_changed[*it as usize]).is_none_or(|(it, _)| it != name) {
                 continue;
             }
@@ -227,7 +227,7 @@ impl Handed {
             let (id, field) = (stmt.id, narrow(before.len()));
             self.places.push(Place { id, field, node: number, argument: k, wanted });
         }
-        n
+        n_written
     }
 }
 

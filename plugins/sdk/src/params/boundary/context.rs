@@ -170,3 +170,54 @@ pub struct Built {
     /// What frees it: `ClassTable::free` takes it.
     pub owner: *mut u8,
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// Notes what it is asked.
+    #[derive(Default)]
+    struct Noting(Mutex<Vec<String>>);
+
+    impl Noting {
+        fn note(&self, what: String) {
+            self.0.lock().unwrap().push(what);
+        }
+    }
+
+    impl BuildContext for Noting {
+        fn read(&self, path: &str) -> Result<Arc<[u8]>, String> {
+            Ok(path.as_bytes().into())
+        }
+        fn read_beside(&self, base: &str, path: &str) -> Result<Arc<[u8]>, String> {
+            Err(format!("no {path} beside {base}"))
+        }
+        fn warn(&self, message: &str) {
+            self.note(format!("warned: {message}"));
+        }
+        fn cancelled(&self) -> bool {
+            self.0.lock().unwrap().len() > 1
+        }
+        fn holds(&self, bytes: usize) {
+            self.note(format!("holds {bytes}"));
+        }
+    }
+
+    #[test]
+    fn what_a_library_asks_and_tells_comes_to_the_host() {
+        let host = Noting::default();
+        let lent: &dyn BuildContext = &host;
+        let library = ContextRef::new(&lent);
+        assert_eq!(library.read("a.ply").as_deref(), Ok(&b"a.ply"[..]));
+        let missing = library.read_beside("a.gltf", "a.bin");
+        assert_eq!(missing.unwrap_err(), "no a.bin beside a.gltf");
+        library.holds(usize::MAX);
+        assert!(!library.cancelled());
+        library.warn("odd");
+        assert!(library.cancelled());
+        let noted = host.0.lock().unwrap();
+        assert_eq!(*noted, [format!("holds {}", usize::MAX), "warned: odd".to_owned()]);
+    }
+}

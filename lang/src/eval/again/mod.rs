@@ -155,7 +155,7 @@ fn load_in_turns(
     }
     let (loaded, state) = evaluator.finish_recorded(path, settings);
     if let Some(state) = state {
-        *kept = Some(Box::new(State { asked: files.beside(path), ..state }));
+        leave(kept.replace(Box::new(State { asked: files.beside(path), ..state })));
     } else if let Some(state) = kept {
         state.n_evaluated = 0;
     }

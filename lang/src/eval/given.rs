@@ -34,10 +34,7 @@ impl Evaluator<'_> {
         if !misfit.help.is_empty() {
             diagnostic = diagnostic.help(misfit.help.clone());
         }
-        let end = Span { start: span.end, ..span };
-        for unit in &misfit.units {
-            diagnostic = diagnostic.guess(end, format!(" {unit}"));
-        }
+        let diagnostic = self.with_units(diagnostic, span, &misfit.units);
         self.tell(diagnostic);
     }
 

@@ -29,6 +29,7 @@ pub(crate) mod readable;
 mod require;
 mod resolve;
 mod turns;
+mod unitless;
 mod unknown;
 mod unseen;
 pub(crate) mod types;

@@ -125,13 +125,9 @@ impl Evaluator<'_> {
             return self.poison("E0202", span, message);
         }
         let message = format!("{} is wanted, the number has no unit", wanted.name());
-        let end = Span { start: span.end, ..span };
-        let mut diagnostic =
-            Diagnostic::error("E0201", span, message).help(scene::bare_help(wanted));
-        for unit in likely_units(wanted) {
-            diagnostic = diagnostic.guess(end, format!(" {unit}"));
-        }
-        self.tell(diagnostic);
+        let found = Diagnostic::error("E0201", span, message).help(scene::bare_help(wanted));
+        let found = self.with_units(found, span, likely_units(wanted));
+        self.tell(found);
         Value::Poison
     }
 }

@@ -302,12 +302,9 @@ impl Evaluator<'_> {
         if found.is_none() {
             let message =
                 format!("`{}` wants {}, the number has no unit", call.name, wanted.name());
-            let end = Span { start: span.end, ..span };
-            let mut diagnostic = Diagnostic::error("E0201", span, message);
-            for unit in super::types::likely_units(wanted) {
-                diagnostic = diagnostic.guess(end, format!(" {unit}"));
-            }
-            self.tell(diagnostic);
+            let found = Diagnostic::error("E0201", span, message);
+            let found = self.with_units(found, span, super::types::likely_units(wanted));
+            self.tell(found);
         } else {
             let trigonometric = matches!(call.name, "sin" | "cos" | "tan");
             let code = if trigonometric { "E0205" } else { "E0202" };

@@ -1,0 +1,116 @@
+//! How a number without a unit is given one.
+
+use luxel_core::diag::{Diagnostic, Span};
+
+use super::Evaluator;
+
+/// What is written in brackets again to be given a unit; longer texts are not shown a second time.
+const SHORT: usize = 60;
+
+/// What is written where a unit is missing.
+#[derive(Debug, PartialEq, Eq)]
+enum Written {
+    /// Numbers: a unit stands behind them.
+    Numbers,
+    /// A name or a call, which is multiplied by a unit.
+    Whole,
+    /// Several things with something between them: they are put in brackets first.
+    Parts,
+    /// What no unit behind it or before it would mend.
+    Other,
+}
+
+impl Evaluator<'_> {
+    /// Offers each of some units for a value that has none.
+    pub(super) fn with_units(
+        &self,
+        mut diagnostic: Diagnostic,
+        span: Span,
+        units: &[&str],
+    ) -> Diagnostic {
+        let (written, end) = (self.written(span), Span { start: span.end, ..span });
+        let form = Written::of(written);
+        for unit in units {
+            diagnostic = match form {
+                Written::Numbers => diagnostic.guess(end, format!(" {unit}")),
+                Written::Whole => diagnostic.guess(end, format!(" * 1 {unit}")),
+                Written::Parts => diagnostic.guess(span, format!("({written}) * 1 {unit}")),
+                Written::Other => diagnostic,
+            };
+        }
+        diagnostic
+    }
+}
+
+impl Written {
+    fn of(text: &str) -> Self {
+        let is_number = |text: &str| text.replace('_', "").parse::<f64>().is_ok();
+        let is_call = |pair: &[u8]| pair[1] == b'(' && is_of_name(pair[0]);
+        let has_calls = text.as_bytes().windows(2).any(is_call);
+        match text.as_bytes() {
+            [b'-' | b'+' | b'.' | b'0'..=b'9', ..] if is_number(text) => Self::Numbers,
+            [b'(' | b'[', .., b')' | b']'] if is_one(text) && !has_calls => Self::Numbers,
+            [b'[', ..] | [] => Self::Other,
+            [first, ..] if is_of_name(*first) && is_one(text) => Self::Whole,
+            _ if text.len() <= SHORT && is_plain(text) => Self::Parts,
+            _ => Self::Other,
+        }
+    }
+}
+
+fn is_of_name(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || byte == b'_'
+}
+
+/// Neither lines nor text nor comments, in which brackets need not be what they are elsewhere.
+fn is_plain(text: &str) -> bool {
+    !text.contains(['\n', '"']) && !text.contains("//") && !text.contains("/*")
+}
+
+/// Whether nothing stands between two things outside of brackets, nor behind a bracket that closes.
+fn is_one(text: &str) -> bool {
+    let (mut depth, mut is_closed) = (0_usize, false);
+    is_plain(text)
+        && text.bytes().all(|byte| {
+            let is_outside = depth == 0;
+            match byte {
+                b'(' | b'[' => depth += 1,
+                b')' | b']' => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            let is_first = !is_closed;
+            is_closed |= depth == 0 && matches!(byte, b')' | b']');
+            let may_stand = is_of_name(byte) || matches!(byte, b'.' | b'(' | b'[');
+            !is_outside || is_first && may_stand
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_decides_how_it_is_given_a_unit() {
+        for (text, form) in [
+            ("5", Written::Numbers),
+            ("-1.5e3", Written::Numbers),
+            ("1_000", Written::Numbers),
+            ("(0, r, -2)", Written::Numbers),
+            ("[(0, 1, 2), (r + 1, 0, 0)]", Written::Numbers),
+            ("r", Written::Whole),
+            ("abs(-r)", Written::Whole),
+            ("box.sizes[i + 1]", Written::Whole),
+            ("r + h", Written::Parts),
+            ("r / 2", Written::Parts),
+            ("-r", Written::Parts),
+            ("(a + b) / (c)", Written::Parts),
+            ("f(a) + f(b)", Written::Parts),
+            ("if a > 1 { 1 } else { 2 }", Written::Parts),
+            ("[(0, move(x)), (1, move(y))]", Written::Other),
+            ("r + // half\n h", Written::Other),
+            ("", Written::Other),
+        ] {
+            assert_eq!(Written::of(text), form, "{text}");
+        }
+    }
+}

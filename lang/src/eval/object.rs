@@ -43,7 +43,14 @@ impl Evaluator<'_> {
     /// The object that an expression or statement describes.
     pub(super) fn object(&mut self, object: &Object, env: &Env) -> Value {
         let span = object.category.span.to(object.body.span);
-        if &*object.category.text == "group" && object.kind.is_none() {
+        if &*object.category.text == "group" {
+            if let Some(name) = &object.kind {
+                let message = "a group is of no kind: its label is a text";
+                let found = Diagnostic::error("E0401", name.span, message);
+                let label =
+                    object.label.as_ref().map_or(format!("\"{}\"", name.text), |_| String::new());
+                self.tell(found.guess(name.span, label));
+            }
             return self.group(object, span, env);
         }
         let head = self.head(object, span);

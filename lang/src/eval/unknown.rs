@@ -72,8 +72,8 @@ impl Resolver<'_> {
             let message = format!("`{text}` is a label, and labels name nothing but for `set`");
             return Diagnostic::error("E0101", name.span, message).label(*label, "the label").help(
                 format!(
-                    "give the object a name, `let {text} = …`, and put it where it stood, and \
-                     anywhere else, with `place {text}`"
+                    "give the object a name, `let {text} = …`; what stands somewhere is put where it \
+                     stood, and anywhere else, by `place {text}`"
                 ),
             );
         }

@@ -380,6 +380,14 @@ impl Builder<'_> {
             Err(bad) => bad,
         };
         let span = self.span(pair);
+        // `(a > 1) and (b > 1)`
+        if let Some((_, sign)) =
+            [("and", "&&"), ("or", "||")].iter().find(|(word, _)| *word == text)
+        {
+            let message = format!("`{text}` is written `{sign}`");
+            self.sink.push(Diagnostic::error("E0023", span, message).fix(span, *sign));
+            return None;
+        }
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
         if let Some((all, size)) = self.size(pair) {
             self.sink.push(diagnostic.help("a size is a vector").guess(all, size));

@@ -91,7 +91,7 @@ fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
 }
 
 /// The bracket that closes token `open`.
-fn closing(around: &Around<'_>, open: usize) -> Option<usize> {
+pub(super) fn closing(around: &Around<'_>, open: usize) -> Option<usize> {
     let mut depth = 0_usize;
     (open..around.tokens.len()).find(|i| {
         match around.word(*i) {

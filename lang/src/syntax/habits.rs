@@ -4,8 +4,9 @@ use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, is_category};
 use super::defined::stem;
-use super::foreign::foreign;
+use super::foreign::{closing, foreign};
 use super::lex::{Token, TokenKind};
+use super::listed::listed;
 use super::type_names;
 
 /// Signs that editors and other notations write, and what stands here for them.
@@ -28,6 +29,9 @@ const SIGNS: [(&str, &str, &str); 16] = [
     ("π", "pi", "this number is called `pi`"),
 ];
 
+/// What is said of `#` where a comment is meant.
+pub(super) const COMMENTS: &str = "a comment begins with `//`";
+
 /// Quotes beside the keyboard's two.
 const QUOTES: [&str; 9] = ["“", "”", "„", "‟", "«", "»", "‘", "’", "'"];
 
@@ -38,6 +42,7 @@ pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| lettered(around))
         .or_else(|| hash(around))
         .or_else(|| foreign(around))
+        .or_else(|| listed(around))
         .or_else(|| operator(around))
         .or_else(|| word_operator(around))
         .or_else(|| word(around))
@@ -94,8 +99,14 @@ fn lettered(around: &Around<'_>) -> Option<Diagnostic> {
         if letter.kind != TokenKind::Word || text.kind != TokenKind::Text || !touch {
             return None;
         }
-        let span = around.span(letter);
-        Some(told(span, "no letter stands before a string").fix(span, ""))
+        let (span, found) = (around.span(letter), "no letter stands before a string");
+        let found = told(span, found);
+        // What would be put in stays as it is written.
+        Some(if text.text.contains(['{', '\\']) {
+            found.help("a string stands for itself: nothing is put in for `{…}`").guess(span, "")
+        } else {
+            found.fix(span, "")
+        })
     })
 }
 
@@ -108,7 +119,7 @@ fn hash(around: &Around<'_>) -> Option<Diagnostic> {
         return Some(found);
     }
     if mark.first_on_line || !matches!(digits, 3 | 6) {
-        let found = told(around.span(mark), "a comment begins with `//`");
+        let found = told(around.span(mark), COMMENTS);
         return Some(found.guess(around.span(mark), "//"));
     }
     let width = digits / 3;
@@ -126,6 +137,11 @@ fn hash(around: &Around<'_>) -> Option<Diagnostic> {
 /// `#declare x = 3`
 fn directive(around: &Around<'_>, mark: &Token<'_>) -> Option<Diagnostic> {
     let word = around.tokens.get(around.at + 1).filter(|word| word.start == mark.end())?;
+    let next = around.tokens.get(around.at + 2);
+    if word.text == "include" && next.is_some_and(|next| next.kind == TokenKind::Text) {
+        let found = told(around.span(mark), "another file is read by `include`, without `#`");
+        return Some(found.fix(around.span(mark), ""));
+    }
     if !around.is_word(around.at + 2) || around.word(around.at + 3) != "=" {
         return None;
     }
@@ -191,11 +207,51 @@ fn word_operator(around: &Around<'_>) -> Option<Diagnostic> {
             "or" if before.ends_operand() => Some(told(span, message("||")).fix(span, "||")),
             "not" if !before.ends_operand() || before.text == "if" => {
                 let all = Span::new(around.source, word.start, next.start);
-                Some(told(span, message("!")).fix(all, "!"))
+                let found = told(span, message("!"));
+                let (one, end) = (operand(around, i + 1), negated(around, i + 1));
+                if one == end {
+                    return Some(found.fix(all, "!"));
+                }
+                let what = &around.text[next.start..around.tokens[end - 1].end()];
+                let all = Span::new(around.source, word.start, around.tokens[end - 1].end());
+                Some(found.guess(all, format!("!({what})")))
             }
             _ => None,
         }
     })
+}
+
+/// The token behind the name, number, call or brackets that begin with token `at`.
+fn operand(around: &Around<'_>, at: usize) -> usize {
+    let mut next = match around.word(at) {
+        "(" | "[" => closing(around, at).map_or(at, |end| end + 1),
+        _ => at + 1,
+    };
+    loop {
+        let touches =
+            around.tokens.get(next).is_some_and(|t| t.start == around.tokens[next - 1].end());
+        next = match around.word(next) {
+            "." => next + 2,
+            "(" | "[" if touches => closing(around, next).map_or(next + 1, |end| end + 1),
+            _ => return next.min(around.tokens.len()),
+        };
+    }
+}
+
+/// The token behind all that a `not` before token `at` is about: up to another condition, or where the
+/// whole one ends.
+fn negated(around: &Around<'_>, at: usize) -> usize {
+    let mut next = operand(around, at);
+    while let Some(token) = around.tokens.get(next).filter(|t| t.is_operator() && !t.first_on_line)
+    {
+        let is_over = matches!(token.text, "&&" | "||" | "?" | "=>");
+        let follows = around.tokens.get(next + 1).is_some_and(Token::begins_operand);
+        if is_over || !follows {
+            break;
+        }
+        next = operand(around, next + 1);
+    }
+    next
 }
 
 /// `elif`, `return`, `lambda`, `mut`
@@ -327,7 +383,9 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
         (TokenKind::Word, TokenKind::Word) => {
             let both = around.span(kind).to(around.span(label));
             let found = told(both, "an object has one kind, and its label is a text");
-            Some(found.guess(both, format!("{} \"{}\"", label.text, kind.text)))
+            let (kind, label) = (kind.text, label.text);
+            let help = format!("or `{kind} \"{label}\"`, if `{kind}` is the kind");
+            Some(found.help(help).guess(both, format!("{label} \"{kind}\"")))
         }
         _ => None,
     }

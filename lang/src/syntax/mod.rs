@@ -17,6 +17,7 @@ mod gaps;
 mod habits;
 mod head;
 mod lex;
+mod listed;
 mod make;
 mod number;
 mod operators;

@@ -13,6 +13,7 @@ use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
 use super::direct::{self, Words};
 use super::fault;
 use super::gaps::Gaps;
+use super::habits::COMMENTS;
 use super::lex::{Token, TokenKind, tokens};
 use super::tree::{Expr, ExprNode, Stmt};
 use super::unopened::unopened;
@@ -257,7 +258,15 @@ impl Reader<'_> {
 
     /// Reads `scene 1`; gives where it ends, or `None` if reading on is of no use.
     fn header(&mut self) -> Option<usize> {
-        let mut tokens = tokens(self.text, 0..self.text.len());
+        let marks = marks(self.text);
+        let from =
+            marks.last().map_or(0, |at| self.text[*at..].find('\n').map_or(*at, |end| at + end));
+        for at in marks {
+            let span = self.span(at..at + 1);
+            let found = Diagnostic::error("E0023", span, COMMENTS);
+            self.sink.push(found.guess(span, "//"));
+        }
+        let mut tokens = tokens(self.text, from..self.text.len());
         let Some(first) = tokens.next() else {
             let message = "the file is empty: a scene begins with `scene 1`";
             let span = self.span(0..0);
@@ -437,4 +446,22 @@ impl Reader<'_> {
         }
         is_found
     }
+}
+
+/// Lines before `scene` that are looked at for comments as other languages write them.
+const COMMENTED: usize = 100;
+
+/// Where `#` begins the lines that stand before `scene`, if only such do.
+fn marks(text: &str) -> Vec<usize> {
+    let (mut at, mut marks) = (0, vec![]);
+    for line in text.split_inclusive('\n').take(COMMENTED) {
+        let written = line.trim_start();
+        if written.starts_with('#') {
+            marks.push(at + line.len() - written.len());
+        } else if !written.is_empty() && !written.starts_with("//") {
+            return if written.starts_with("scene") { marks } else { vec![] };
+        }
+        at += line.len();
+    }
+    vec![]
 }

@@ -1,0 +1,55 @@
+//! Lists as other languages write them: what they are made of first, and blanks for commas.
+
+use luxel_core::diag::{Diagnostic, Span};
+
+use super::around::Around;
+use super::foreign::closing;
+use super::lex::{Token, TokenKind};
+
+/// Why the place cannot be read, if it is in such a list.
+pub(super) fn listed(around: &Around<'_>) -> Option<Diagnostic> {
+    comprehension(around).or_else(|| signs(around))
+}
+
+/// `[x * 2 for x in 0..4]`
+fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
+    let word = around.current().filter(|word| word.text == "for")?;
+    let open = *around.open.last().filter(|open| around.word(**open) == "[")?;
+    let last = around.before(1).filter(|last| last.ends_operand())?;
+    let message = "what a list is made of stands behind its `for`";
+    let found = Diagnostic::error("E0023", around.span(word), message);
+    let Some(end) = closing(around, open) else {
+        return Some(found.help("it is written `[for x in 0..4 => x * 2]`"));
+    };
+    let inside = around.tokens[open].end()..around.tokens[end].start;
+    let value = &around.text[inside.start..last.end()];
+    let over = around.text[word.start..inside.end].trim_end();
+    let all = Span::new(around.source, inside.start, inside.end);
+    Some(found.guess(all, format!("{over} => {}", value.trim_start())))
+}
+
+/// `[1 -2 3]`: with commas where they are missing it would be read as `[1 - 2, 3]`.
+fn signs(around: &Around<'_>) -> Option<Diagnostic> {
+    let current = around.current().filter(|token| token.kind == TokenKind::Number)?;
+    let open = *around.open.last().filter(|open| matches!(around.word(**open), "[" | "("))?;
+    let inside = &around.tokens[open + 1..closing(around, open)?];
+    let is_minus = |token: &Token<'_>| token.text == "-";
+    let are_numbers = inside.iter().all(|t| t.kind == TokenKind::Number || is_minus(t));
+    let has_signs = inside.windows(3).any(|of| {
+        let [before, minus, number] = of else { return false };
+        let is_apart = before.end() < minus.start && minus.end() == number.start;
+        before.kind == TokenKind::Number && is_minus(minus) && is_apart
+    });
+    if !are_numbers || !has_signs {
+        return None;
+    }
+    let mut numbers = String::new();
+    for (i, token) in inside.iter().enumerate() {
+        let is_signed = i > 0 && is_minus(&inside[i - 1]);
+        numbers += if i == 0 || is_signed { "" } else { ", " };
+        numbers += token.text;
+    }
+    let all = Span::new(around.source, inside.first()?.start, inside.last()?.end());
+    let message = format!("a comma is missing before `{}`", current.text);
+    Some(around.error("E0014", current, message).guess(all, numbers))
+}

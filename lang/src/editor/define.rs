@@ -48,8 +48,8 @@ pub(super) struct Found<'d> {
 
 /// The name at a byte, or directly before it.
 pub(super) fn symbol_at(document: &Document, at: usize) -> Option<Found<'_>> {
-    let find = |at: usize| {
-        let piece = document.piece_at(at)?;
+    let find = |near: usize| {
+        let piece = document.piece_at(near)?;
         let holds = |symbol: &&Symbol| {
             let range = symbol.range(piece.start);
             range.start <= at && at <= range.end

@@ -24,6 +24,18 @@ fn a_name_is_defined_in_the_innermost_block_around_it() {
 }
 
 #[test]
+fn behind_a_name_is_directly_behind_it() {
+    let one =
+        |rest: &str, expected| defined(&[("a", &format!("scene 1\nlet a = 1{rest}"))], expected);
+    one("\nlet b = a|\nfn f(x: int) = x", "a:2:a");
+    one("\nlet b = a\n|fn f(x: int) = x", "nowhere");
+    one("\nlet b = a\nf|n f(x: int) = x", "nowhere");
+    one("\nlet b = a |+ 1", "nowhere");
+    one("\nshape sphere \"one\" { radius = a m }\nset one|.radius = a", "a:3:\"one\"");
+    one("\nshape sphere \"one\" { radius = a m }\nset one.|radius = a", "nowhere");
+}
+
+#[test]
 fn what_is_off_defines_nothing_and_has_no_label() {
     let text =
         "scene 1\nlet x = 1 m\ngroup \"g\" {\n @off let x = 2 m\n shape sphere { radius = |x }\n}";

@@ -65,7 +65,7 @@ impl Document {
         &self.text
     }
 
-    /// How many lines it has: one more than it has newlines.
+    /// How many lines it has: one more than it has line ends, of which a lone carriage return is one too.
     pub fn n_lines(&self) -> usize {
         self.lines.count()
     }
@@ -101,7 +101,7 @@ impl Document {
         let start = floor(&self.text, range.start);
         let range = start..floor(&self.text, range.end).max(start);
         self.text.replace_range(range.clone(), with);
-        self.lines.edit(&range, with);
+        self.lines.edit(&range, with.len(), &self.text);
         let before = self.from;
         (self.from, self.head) = read_head(&self.text, &self.budgets);
         self.tops = OnceLock::new();

@@ -1,4 +1,5 @@
-//! Where the lines of a text begin, kept while it is edited.
+//! Where the lines of a text begin, kept while it is edited. A carriage return alone ends a line too:
+//! editors count so (Language Server Protocol 3.17, "Text Documents").
 
 use std::ops::Range;
 
@@ -9,20 +10,22 @@ pub(super) struct Lines(Vec<u32>);
 impl Lines {
     pub(super) fn of(text: &str) -> Self {
         let mut starts = vec![0];
-        starts.extend(after_newlines(text, 0));
+        starts.extend(begun(text, 0..text.len()));
         Self(starts)
     }
 
-    /// `range` has become `with`.
-    pub(super) fn edit(&mut self, range: &Range<usize>, with: &str) {
-        let first = self.0.partition_point(|start| *start as usize <= range.start);
+    /// `range` has become so many bytes of what is `text` now.
+    pub(super) fn edit(&mut self, range: &Range<usize>, length: usize, text: &str) {
+        // What ends a line depends on the byte behind it, so that one before the range may have changed.
+        let from = range.start.saturating_sub(1);
+        let first = self.0.partition_point(|start| *start as usize <= from);
         let last = self.0.partition_point(|start| *start as usize <= range.end);
         let old = narrow(range.end);
-        let new = narrow(range.start + with.len());
+        let new = narrow(range.start + length);
         for start in &mut self.0[last..] {
             *start = *start - old + new;
         }
-        self.0.splice(first..last, after_newlines(with, range.start));
+        self.0.splice(first..last, begun(text, from..range.start + length));
     }
 
     /// How many there are.
@@ -39,14 +42,20 @@ impl Lines {
     pub(super) fn range(&self, line: usize, text: &str) -> Range<usize> {
         let line = line.min(self.0.len() - 1);
         let start = self.0[line] as usize;
-        let end = self.0.get(line + 1).map_or(text.len(), |next| *next as usize - 1);
-        let end = if end > start && text.as_bytes()[end - 1] == b'\r' { end - 1 } else { end };
-        start..end
+        let Some(next) = self.0.get(line + 1) else { return start..text.len() };
+        let bytes = &text.as_bytes()[start..*next as usize];
+        start..start + bytes.strip_suffix(b"\r\n").unwrap_or(&bytes[..bytes.len() - 1]).len()
     }
 }
 
-fn after_newlines(text: &str, base: usize) -> impl Iterator<Item = u32> + '_ {
-    memchr::memchr_iter(b'\n', text.as_bytes()).map(move |at| narrow(base + at + 1))
+/// Where lines begin that end with one of these bytes.
+fn begun(text: &str, ends: Range<usize>) -> impl Iterator<Item = u32> + '_ {
+    let bytes = text.as_bytes();
+    let found = memchr::memchr2_iter(b'\n', b'\r', &bytes[ends.clone()]);
+    found
+        .map(move |at| ends.start + at)
+        .filter(|at| bytes[*at] == b'\n' || bytes.get(at + 1) != Some(&b'\n'))
+        .map(|at| narrow(at + 1))
 }
 
 fn narrow(at: usize) -> u32 {
@@ -56,17 +65,43 @@ fn narrow(at: usize) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chance::next;
 
     #[test]
     fn edited_lines_are_those_of_the_new_text() {
         let mut text = "a\nbb\r\n\nc".to_owned();
         let mut lines = Lines::of(&text);
-        for (range, with) in [(0..0, "x\n"), (1..3, ""), (3..6, "\n\n\n"), (2..2, "é"), (0..1, "")]
-        {
-            lines.edit(&range, with);
-            text.replace_range(range, with);
+        for (range, with) in [
+            (0..0, "x\n"),
+            (1..3, ""),
+            (3..6, "\n\n\n"),
+            (2..2, "é"),
+            (0..1, ""),
+            (0..0, "\r"),
+            (1..1, "\n"),
+            (1..1, "a\r"),
+            (1..3, "\r\r"),
+            (0..1, ""),
+        ] {
+            text.replace_range(range.clone(), with);
+            lines.edit(&range, with.len(), &text);
             assert_eq!(lines, Lines::of(&text), "{text:?}");
         }
+        let mut state = 7;
+        for _ in 0..2000 {
+            let start = next(&mut state, text.len() + 1);
+            let range = start..(start + next(&mut state, 3)).min(text.len());
+            if !text.is_char_boundary(range.start) || !text.is_char_boundary(range.end) {
+                continue;
+            }
+            let with = ["", "\r", "\n", "\r\n", "a", "\n\r"][next(&mut state, 6)];
+            text.replace_range(range.clone(), with);
+            lines.edit(&range, with.len(), &text);
+            assert_eq!(lines, Lines::of(&text), "{text:?}");
+        }
+        let lone = "a\rb\r\n\rc\r";
+        let all = (0..5).map(|line| &lone[Lines::of(lone).range(line, lone)]);
+        assert_eq!(all.collect::<Vec<_>>(), ["a", "b", "", "c", ""]);
         assert_eq!(Lines::of("a\r\nb").range(0, "a\r\nb"), 0..1);
         assert_eq!(Lines::of("a\r\nb").range(9, "a\r\nb"), 3..4);
     }

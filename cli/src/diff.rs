@@ -1,9 +1,9 @@
 //! `luxel diff`: what objects and parameters differ between two scenes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use luxel_core::diag::{Diagnostic, Span};
-use luxel_core::scene::{Change, Difference, How, Scene, diff};
+use luxel_core::scene::{Change, Difference, How, Scene, diff_in};
 use serde_json::{Value, json};
 
 use crate::args::{LoadArgs, PluginArgs};
@@ -15,8 +15,9 @@ use crate::report::{self, Form, Stream};
 /// Tell which objects and parameters differ between two scenes
 ///
 /// What two scenes come to is compared, not how they are written: names, order, comments and units do
-/// not count, nor do meshes and textures in files of their own. Objects are taken for the same by what
-/// they are, then by label, then by class. What is told is what `luxel watch` tells of a save.
+/// not count, nor does what is in meshes and textures in files of their own: of these the paths are
+/// compared, from the scene's folder on. Objects are taken for the same by what they are, then by label,
+/// then by class. What is told is what `luxel watch` tells of a save.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "\
 Exit codes: 0 same, 1 different (or a scene is at fault), 2 usage.
@@ -44,7 +45,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     plugins.notes.tell(Form::Text, Stream::Error)?;
     let (a, b) = (read(&args.a, args, &plugins)?, read(&args.b, args, &plugins)?);
     let (Some((a, first)), Some((b, second))) = (a, b) else { return Ok(Exit::Input) };
-    let (found, texts) = (diff(&first, &second), [a, b]);
+    let folders = [&args.a, &args.b].map(|file| file.parent().unwrap_or(Path::new("")));
+    let (found, texts) = (diff_in([&first, &second], folders), [a, b]);
     if args.json {
         let differences: Vec<_> = found.iter().map(|it| told(it, &texts)).collect();
         let all = json!({ "same": found.is_empty(), "differences": differences });
@@ -58,7 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// A scene with its texts; none if it has a mistake, which is told.
 fn read(
-    path: &std::path::Path,
+    path: &Path,
     args: &Args,
     plugins: &Plugins,
 ) -> Result<Option<(Text, Scene)>, Failure> {

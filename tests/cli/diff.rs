@@ -67,3 +67,20 @@ fn params_are_set_in_both_and_mistakes_are_told() {
     let done = folder.luxel(&["diff", "a.scene", "wrong.scene"]);
     assert!(done.code == 1 && done.out.is_empty() && done.err.contains("E0015"), "{done:?}");
 }
+
+#[test]
+fn files_count_by_their_place_beside_the_scene() {
+    let scene = |file: &str| {
+        let texture = format!("texture image {{ file = \"{file}\" }}");
+        SCENE.replace("reflectance = 0.5", &format!("reflectance = {texture}"))
+    };
+    let folder = Folder::new("diff-folders")
+        .with("a/a.scene", &scene("one.png"))
+        .with("b/a.scene", &scene("one.png"))
+        .with("c/a.scene", &scene("two.png"));
+    let done = folder.luxel(&["diff", "a/a.scene", "b/a.scene"]);
+    assert_eq!((done.code, &*done.out, &*done.err), (0, "same\n", ""));
+    let done = folder.luxel(&["diff", "a/a.scene", "c/a.scene"]);
+    let told = "  file: \"one.png\" → \"two.png\"\n";
+    assert!(done.code == 1 && done.out.ends_with(told), "{done:?}");
+}

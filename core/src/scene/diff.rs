@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
+use std::path::Path;
 
 use super::value::{Hash, group_hashes, hash_item};
 use super::{Group, Node, NodeId, Placed, Scene, Target, Value};
@@ -61,8 +62,16 @@ impl fmt::Display for Difference {
 /// Everything in which the second scene differs from the first. What is the same in another order or
 /// under another name is the same; what is shared is told once.
 pub fn diff(first: &Scene, second: &Scene) -> Vec<Difference> {
+    diff_in([first, second], [Path::new(""); 2])
+}
+
+/// The same of scenes that lie in these folders: a file in one has the same name as one in the other if
+/// it has that from there on.
+pub fn diff_in(scenes: [&Scene; 2], folders: [&Path; 2]) -> Vec<Difference> {
+    let [first, second] = scenes;
     let mut differ = Differ {
-        scenes: [first, second],
+        scenes,
+        folders,
         groups: [group_hashes(first), group_hashes(second)],
         met: BTreeSet::new(),
         found: vec![],
@@ -74,6 +83,7 @@ pub fn diff(first: &Scene, second: &Scene) -> Vec<Difference> {
 
 struct Differ<'a> {
     scenes: [&'a Scene; 2],
+    folders: [&'a Path; 2],
     groups: [Vec<Hash>; 2],
     /// Pairs that have been compared.
     met: BTreeSet<(Target, Target)>,
@@ -195,6 +205,7 @@ impl Differ<'_> {
                     self.nodes(*a, *b);
                     changed.extend((from != to).then(change));
                 }
+                (Some(Value::Path(a)), Some(Value::Path(b))) if self.is_same_file(a, b) => {}
                 (a, b) if a == b => {}
                 _ => changed.push(change()),
             }
@@ -211,6 +222,12 @@ impl Differ<'_> {
         if !changed.is_empty() {
             self.changed([x, y], changed);
         }
+    }
+
+    fn is_same_file(&self, a: &Path, b: &Path) -> bool {
+        let [first, second] = self.folders;
+        let inside = (a.strip_prefix(first), b.strip_prefix(second));
+        matches!(inside, (Ok(a), Ok(b)) if a == b)
     }
 
     fn changed(&mut self, nodes: [&Node; 2], changes: Vec<Change>) {

@@ -194,7 +194,7 @@ impl Summary {
             "wrote {exr} and {png}{done}\n\
              {size}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
              mean radiance ({:.4}, {:.4}, {:.4}) W/m²/sr\n\
-             {reached}{bad}{dropped}",
+             {dark}{reached}{bad}{dropped}",
             mean.x,
             mean.y,
             mean.z,
@@ -205,6 +205,7 @@ impl Summary {
             mode = self.mode,
             time = self.took.words(),
             rate = self.took.rate() / 1e6,
+            dark = self.dark_words(),
             reached = self.reached.words(),
             bad = self.bad_places.words(),
             dropped = self.dropped_words(),
@@ -216,6 +217,11 @@ impl Summary {
         let [least, most] = self.counts;
         let is_even = least == most || !self.goal.is_some();
         if is_even { self.spp.to_string() } else { format!("{least} to {most}") }
+    }
+
+    fn dark_words(&self) -> &'static str {
+        let is_dark = self.samples_in_all > 0 && self.mean.abs().max_element() <= 0.0;
+        if is_dark { "the picture is black: nothing that shines is seen in it\n" } else { "" }
     }
 
     fn dropped_words(&self) -> String {

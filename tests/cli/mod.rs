@@ -51,6 +51,20 @@ fn a_scene_becomes_two_pictures_named_after_it_in_the_current_folder() {
 }
 
 #[test]
+fn a_picture_in_which_nothing_shines_is_told_to_be_black() {
+    let dark = SCENE.replace("light constant { scale = 1 }\n", "");
+    let folder = Folder::new("dark").with("a.scene", SCENE).with("dark.scene", &dark);
+    for (scene, is_told) in [("a.scene", false), ("dark.scene", true)] {
+        let done = folder.luxel(&["render", scene]);
+        assert_eq!(
+            (done.code, done.out.contains("the picture is black")),
+            (0, is_told),
+            "{done:?}"
+        );
+    }
+}
+
+#[test]
 fn the_same_scene_gives_the_same_bytes_for_any_number_of_threads() {
     let folder = Folder::new("same-bytes").with("a.scene", SCENE);
     for (name, threads) in [("one", "1"), ("three", "3")] {

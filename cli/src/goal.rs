@@ -37,8 +37,9 @@ impl GoalArgs {
 
 /// `1%` or `0.01`.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
-    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
-    let found = number.trim().parse().ok().map(|x: f64| x / unit);
+    // By the text, for 99.9 / 100 is a little more than 0.999.
+    let number = text.strip_suffix('%').map(|number| format!("{}e-2", number.trim()));
+    let found = number.as_deref().unwrap_or(text).trim().parse().ok();
     let found = found.filter(|x| (1e-6..=1.0).contains(x));
     found.ok_or_else(|| "expected a share from 0.0001% to 100%, as in 1% or 0.01".into())
 }
@@ -77,6 +78,9 @@ mod tests {
             assert!(share(bad).is_err(), "{bad}");
         }
         assert_eq!(confidence("95%"), Ok(Confidence::USUAL));
+        for most in ["99.9%", "0.999"] {
+            assert!(confidence(most).is_ok(), "{most}");
+        }
         assert!(confidence("100%").is_err() && confidence("5%").is_err());
         assert_eq!(duration("30s"), Ok(Duration::from_secs(30)));
         assert_eq!(duration("1.5h"), Ok(Duration::from_secs(5400)));

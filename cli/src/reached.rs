@@ -128,7 +128,13 @@ fn place(rect: Rect) -> [u32; 4] {
 }
 
 fn percent(share: f64) -> String {
-    format!("{:.2} %", share * 100.0)
+    let percent = share * 100.0;
+    // What rounding would take away altogether is told by its first digits.
+    if percent > 0.0 && percent < 0.005 {
+        format!("{percent:.1e} %")
+    } else {
+        format!("{percent:.2} %")
+    }
 }
 
 /// `95 %`
@@ -165,6 +171,12 @@ mod tests {
             intervals: Some(intervals),
             above: Some(above),
         }
+    }
+
+    #[test]
+    fn small_shares_are_not_told_as_none() {
+        let shares = [0.0, 1e-6, 4e-5, 6e-5, 0.015].map(percent);
+        assert_eq!(shares, ["0.00 %", "1.0e-4 %", "4.0e-3 %", "0.01 %", "1.50 %"]);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::report::{self, Form, Stream};
 
 /// Lay scenes out: the same tree, every comment, one way to write them
 ///
-/// Writes each file anew if its layout is another; a file with a mistake is not touched, and told.
+/// Writes each file anew if its layout is another; a file that cannot be read is not touched, and told.
 /// docs/language.md has the rules. Exit code 1 if a file has a mistake or, with --check, if one would
 /// change.
 #[derive(clap::Args, Debug)]

@@ -59,11 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 /// A scene with its texts; none if it has a mistake, which is told.
-fn read(
-    path: &Path,
-    args: &Args,
-    plugins: &Plugins,
-) -> Result<Option<(Text, Scene)>, Failure> {
+fn read(path: &Path, args: &Args, plugins: &Plugins) -> Result<Option<(Text, Scene)>, Failure> {
     let mut text = load::read(path, &args.load, None, plugins, &Course::default())?;
     let form = if args.json { Form::Json } else { Form::Text };
     report::diagnostics(&text.diagnostics, &text.sources, form, Stream::Error)?;

@@ -6,6 +6,9 @@ use super::around::Around;
 use super::foreign::closing;
 use super::lex::{Token, TokenKind};
 
+/// Bytes of a list that are written once more for a mend.
+const SHORT: usize = 200;
+
 /// Why the place cannot be read, if it is in such a list.
 pub(super) fn listed(around: &Around<'_>) -> Option<Diagnostic> {
     comprehension(around).or_else(|| signs(around))
@@ -18,10 +21,11 @@ fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     let last = around.before(1).filter(|last| last.ends_operand())?;
     let message = "what a list is made of stands behind its `for`";
     let found = Diagnostic::error("E0023", around.span(word), message);
-    let Some(end) = closing(around, open) else {
+    let inside =
+        closing(around, open).map(|end| around.tokens[open].end()..around.tokens[end].start);
+    let Some(inside) = inside.filter(|inside| inside.len() <= SHORT) else {
         return Some(found.help("it is written `[for x in 0..4 => x * 2]`"));
     };
-    let inside = around.tokens[open].end()..around.tokens[end].start;
     let value = &around.text[inside.start..last.end()];
     let over = around.text[word.start..inside.end].trim_end();
     let all = Span::new(around.source, inside.start, inside.end);
@@ -34,14 +38,24 @@ fn signs(around: &Around<'_>) -> Option<Diagnostic> {
     let open = *around.open.last().filter(|open| matches!(around.word(**open), "[" | "("))?;
     let inside = &around.tokens[open + 1..closing(around, open)?];
     let is_minus = |token: &Token<'_>| token.text == "-";
-    let are_numbers = inside.iter().all(|t| t.kind == TokenKind::Number || is_minus(t));
+    let is_number = |token: &Token<'_>| token.kind == TokenKind::Number;
+    let are_numbers = inside.iter().enumerate().all(|(i, token)| {
+        let next = inside.get(i + 1).filter(|next| is_number(next) && next.start == token.end());
+        is_number(token) || is_minus(token) && next.is_some()
+    });
     let has_signs = inside.windows(3).any(|of| {
         let [before, minus, number] = of else { return false };
         let is_apart = before.end() < minus.start && minus.end() == number.start;
-        before.kind == TokenKind::Number && is_minus(minus) && is_apart
+        is_number(before) && is_minus(minus) && is_apart
     });
     if !are_numbers || !has_signs {
         return None;
+    }
+    let message = format!("a comma is missing before `{}`", current.text);
+    let found = around.error("E0014", current, message);
+    let all = Span::new(around.source, inside.first()?.start, inside.last()?.end());
+    if all.range().len() > SHORT {
+        return Some(found);
     }
     let mut numbers = String::new();
     for (i, token) in inside.iter().enumerate() {
@@ -49,7 +63,5 @@ fn signs(around: &Around<'_>) -> Option<Diagnostic> {
         numbers += if i == 0 || is_signed { "" } else { ", " };
         numbers += token.text;
     }
-    let all = Span::new(around.source, inside.first()?.start, inside.last()?.end());
-    let message = format!("a comma is missing before `{}`", current.text);
-    Some(around.error("E0014", current, message).guess(all, numbers))
+    Some(found.guess(all, numbers))
 }

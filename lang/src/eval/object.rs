@@ -47,8 +47,8 @@ impl Evaluator<'_> {
             if let Some(name) = &object.kind {
                 let message = "a group is of no kind: its label is a text";
                 let found = Diagnostic::error("E0401", name.span, message);
-                let label =
-                    object.label.as_ref().map_or(format!("\"{}\"", name.text), |_| String::new());
+                let is_labelled = object.label.is_some();
+                let label = if is_labelled { String::new() } else { format!("\"{}\"", name.text) };
                 self.tell(found.guess(name.span, label));
             }
             return self.group(object, span, env);

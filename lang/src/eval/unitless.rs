@@ -3,6 +3,7 @@
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::Evaluator;
+use crate::syntax::parse_number;
 
 /// What is written in brackets again to be given a unit; longer texts are not shown a second time.
 const SHORT: usize = 60;
@@ -10,7 +11,7 @@ const SHORT: usize = 60;
 /// What is written where a unit is missing.
 #[derive(Debug, PartialEq, Eq)]
 enum Written {
-    /// Numbers: a unit stands behind them.
+    /// A number, or brackets around some: a unit stands behind.
     Numbers,
     /// A name or a call, which is multiplied by a unit.
     Whole,
@@ -44,15 +45,14 @@ impl Evaluator<'_> {
 
 impl Written {
     fn of(text: &str) -> Self {
-        let is_number = |text: &str| text.replace('_', "").parse::<f64>().is_ok();
         let is_call = |pair: &[u8]| pair[1] == b'(' && is_of_name(pair[0]);
         let has_calls = text.as_bytes().windows(2).any(is_call);
         match text.as_bytes() {
-            [b'-' | b'+' | b'.' | b'0'..=b'9', ..] if is_number(text) => Self::Numbers,
+            number if parse_number(number).is_some() => Self::Numbers,
             [b'(' | b'[', .., b')' | b']'] if is_one(text) && !has_calls => Self::Numbers,
             [b'[', ..] | [] => Self::Other,
             [first, ..] if is_of_name(*first) && is_one(text) => Self::Whole,
-            _ if text.len() <= SHORT && is_plain(text) => Self::Parts,
+            _ if text.len() <= SHORT && is_plain(text) && !text.contains('\n') => Self::Parts,
             _ => Self::Other,
         }
     }
@@ -62,9 +62,9 @@ fn is_of_name(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
-/// Neither lines nor text nor comments, in which brackets need not be what they are elsewhere.
+/// Neither text nor comments, in which brackets need not be what they are elsewhere.
 fn is_plain(text: &str) -> bool {
-    !text.contains(['\n', '"']) && !text.contains("//") && !text.contains("/*")
+    !text.contains('"') && !text.contains("//") && !text.contains("/*")
 }
 
 /// Whether nothing stands between two things outside of brackets, nor behind a bracket that closes.
@@ -97,6 +97,7 @@ mod tests {
             ("1_000", Written::Numbers),
             ("(0, r, -2)", Written::Numbers),
             ("[(0, 1, 2), (r + 1, 0, 0)]", Written::Numbers),
+            ("(0,\n  1)", Written::Numbers),
             ("r", Written::Whole),
             ("abs(-r)", Written::Whole),
             ("box.sizes[i + 1]", Written::Whole),
@@ -108,6 +109,7 @@ mod tests {
             ("if a > 1 { 1 } else { 2 }", Written::Parts),
             ("[(0, move(x)), (1, move(y))]", Written::Other),
             ("r + // half\n h", Written::Other),
+            ("r +\n h", Written::Other),
             ("", Written::Other),
         ] {
             assert_eq!(Written::of(text), form, "{text}");

@@ -61,6 +61,19 @@ impl<'a> Around<'a> {
         Diagnostic::error(code, self.span(token), message)
     }
 
+    /// The bracket that closes token `open`.
+    pub(super) fn closing(&self, open: usize) -> Option<usize> {
+        let mut depth = 0_usize;
+        (open..self.tokens.len()).find(|i| {
+            match self.word(*i) {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            depth == 0
+        })
+    }
+
     /// Whether a statement or a field may begin with token `i`.
     pub(super) fn begins(&self, i: usize) -> bool {
         let Some(before) = i.checked_sub(1) else { return true };

@@ -8,6 +8,7 @@ use pest::iterators::Pair;
 
 use super::Rule;
 use super::gaps::Gaps;
+use super::habits::condition;
 use super::make::{self, RESERVED};
 use super::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
@@ -381,11 +382,8 @@ impl Builder<'_> {
         };
         let span = self.span(pair);
         // `(a > 1) and (b > 1)`
-        if let Some((_, sign)) =
-            [("and", "&&"), ("or", "||")].iter().find(|(word, _)| *word == text)
-        {
-            let message = format!("`{text}` is written `{sign}`");
-            self.sink.push(Diagnostic::error("E0023", span, message).fix(span, *sign));
+        if let Some(found) = condition(span, text) {
+            self.sink.push(found);
             return None;
         }
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));

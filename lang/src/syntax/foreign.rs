@@ -90,26 +90,13 @@ fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
     Some(found.fix(both, format!("{}: {}", name.text, ty.text)))
 }
 
-/// The bracket that closes token `open`.
-pub(super) fn closing(around: &Around<'_>, open: usize) -> Option<usize> {
-    let mut depth = 0_usize;
-    (open..around.tokens.len()).find(|i| {
-        match around.word(*i) {
-            "(" | "[" | "{" => depth += 1,
-            ")" | "]" | "}" => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        depth == 0
-    })
-}
-
 /// `let x = if a { 3 }`
 fn lone_if(around: &Around<'_>) -> Option<Diagnostic> {
     let word = (0..around.at).rev().find(|i| around.word(*i) == "if")?;
     let before = around.tokens.get(word.checked_sub(1)?)?;
     let is_value = before.is_operator() || matches!(before.text, "(" | "," | "[" | "=>");
     let brace = (word..around.at).find(|i| around.word(*i) == "{").filter(|_| is_value)?;
-    let end = closing(around, brace)?;
+    let end = around.closing(brace)?;
     // Reading stopped right behind it, or at it.
     if around.word(end + 1) == "else" || !(end..=end + 1).contains(&around.at) {
         return None;
@@ -192,7 +179,7 @@ fn bare_vector(around: &Around<'_>) -> Option<Diagnostic> {
 /// `center = {0, 1, 0}`
 fn braced_vector(around: &Around<'_>) -> Option<Diagnostic> {
     let brace = around.at.checked_sub(1).filter(|i| around.word(*i) == "{")?;
-    let end = closing(around, brace)?;
+    let end = around.closing(brace)?;
     let before = around.before(2)?;
     let is_value = before.is_operator() || matches!(before.text, "(" | "," | "[");
     let inside = &around.tokens[brace + 1..end];
@@ -211,9 +198,8 @@ fn called_parameter(around: &Around<'_>) -> Option<Diagnostic> {
         let is_unit = around.is_word(*i) && Unit::named(around.word(*i)).is_some();
         is_unit && *i > 0 && around.word(i - 1) == ")" && !around.tokens[*i].first_on_line
     })?;
-    let open = (0..unit)
-        .rev()
-        .find(|i| around.word(*i) == "(" && closing(around, *i) == Some(unit - 1))?;
+    let open =
+        (0..unit).rev().find(|i| around.word(*i) == "(" && around.closing(*i) == Some(unit - 1))?;
     let at = open.checked_sub(1).filter(|i| around.is_word(*i))?;
     let name = &around.tokens[at];
     if around.inner() != Place::Fields || is_category(name.text) {

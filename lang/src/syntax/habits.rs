@@ -4,7 +4,7 @@ use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, is_category};
 use super::defined::stem;
-use super::foreign::{closing, foreign};
+use super::foreign::foreign;
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
 use super::type_names;
@@ -99,13 +99,15 @@ fn lettered(around: &Around<'_>) -> Option<Diagnostic> {
         if letter.kind != TokenKind::Word || text.kind != TokenKind::Text || !touch {
             return None;
         }
-        let (span, found) = (around.span(letter), "no letter stands before a string");
-        let found = told(span, found);
-        // What would be put in stays as it is written.
-        Some(if text.text.contains(['{', '\\']) {
-            found.help("a string stands for itself: nothing is put in for `{…}`").guess(span, "")
-        } else {
-            found.fix(span, "")
+        let span = around.span(letter);
+        let found = told(span, "no letter stands before a string");
+        // With the letter, `{k}` is another text elsewhere, and `\n` may be.
+        Some(match text.text {
+            text if text.contains('{') => found
+                .help("a string stands for itself: nothing is put in for `{…}`")
+                .guess(span, ""),
+            text if text.contains('\\') => found.guess(span, ""),
+            _ => found.fix(span, ""),
         })
     })
 }
@@ -200,16 +202,14 @@ fn word_operator(around: &Around<'_>) -> Option<Diagnostic> {
         if !next.begins_operand() || around.begins(i) {
             return None;
         }
-        let (span, message) =
-            (around.span(word), |op| format!("`{}` is written `{op}`", word.text));
+        let span = around.span(word);
         match word.text {
-            "and" if before.ends_operand() => Some(told(span, message("&&")).fix(span, "&&")),
-            "or" if before.ends_operand() => Some(told(span, message("||")).fix(span, "||")),
+            "and" | "or" if before.ends_operand() => condition(span, word.text),
             "not" if !before.ends_operand() || before.text == "if" => {
                 let all = Span::new(around.source, word.start, next.start);
-                let found = told(span, message("!"));
-                let (one, end) = (operand(around, i + 1), negated(around, i + 1));
-                if one == end {
+                let found = told(span, "`not` is written `!`");
+                let (first, end) = (operand(around, i + 1), negated(around, i + 1));
+                if first == end {
                     return Some(found.fix(all, "!"));
                 }
                 let what = &around.text[next.start..around.tokens[end - 1].end()];
@@ -221,10 +221,16 @@ fn word_operator(around: &Around<'_>) -> Option<Diagnostic> {
     })
 }
 
+/// What is said of a word that joins conditions elsewhere, if it is one.
+pub(super) fn condition(span: Span, word: &str) -> Option<Diagnostic> {
+    let (_, sign) = [("and", "&&"), ("or", "||")].into_iter().find(|(known, _)| *known == word)?;
+    Some(told(span, format!("`{word}` is written `{sign}`")).fix(span, sign))
+}
+
 /// The token behind the name, number, call or brackets that begin with token `at`.
 fn operand(around: &Around<'_>, at: usize) -> usize {
     let mut next = match around.word(at) {
-        "(" | "[" => closing(around, at).map_or(at, |end| end + 1),
+        "(" | "[" => around.closing(at).map_or(at, |end| end + 1),
         _ => at + 1,
     };
     loop {
@@ -232,7 +238,7 @@ fn operand(around: &Around<'_>, at: usize) -> usize {
             around.tokens.get(next).is_some_and(|t| t.start == around.tokens[next - 1].end());
         next = match around.word(next) {
             "." => next + 2,
-            "(" | "[" if touches => closing(around, next).map_or(next + 1, |end| end + 1),
+            "(" | "[" if touches => around.closing(next).map_or(next + 1, |end| end + 1),
             _ => return next.min(around.tokens.len()),
         };
     }

@@ -3,7 +3,6 @@
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::Around;
-use super::foreign::closing;
 use super::lex::{Token, TokenKind};
 
 /// Bytes of a list that are written once more for a mend.
@@ -22,7 +21,7 @@ fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     let message = "what a list is made of stands behind its `for`";
     let found = Diagnostic::error("E0023", around.span(word), message);
     let inside =
-        closing(around, open).map(|end| around.tokens[open].end()..around.tokens[end].start);
+        around.closing(open).map(|end| around.tokens[open].end()..around.tokens[end].start);
     let Some(inside) = inside.filter(|inside| inside.len() <= SHORT) else {
         return Some(found.help("it is written `[for x in 0..4 => x * 2]`"));
     };
@@ -36,7 +35,7 @@ fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
 fn signs(around: &Around<'_>) -> Option<Diagnostic> {
     let current = around.current().filter(|token| token.kind == TokenKind::Number)?;
     let open = *around.open.last().filter(|open| matches!(around.word(**open), "[" | "("))?;
-    let inside = &around.tokens[open + 1..closing(around, open)?];
+    let inside = &around.tokens[open + 1..around.closing(open)?];
     let is_minus = |token: &Token<'_>| token.text == "-";
     let is_number = |token: &Token<'_>| token.kind == TokenKind::Number;
     let are_numbers = inside.iter().enumerate().all(|(i, token)| {

@@ -258,9 +258,7 @@ impl Reader<'_> {
 
     /// Reads `scene 1`; gives where it ends, or `None` if reading on is of no use.
     fn header(&mut self) -> Option<usize> {
-        let marks = marks(self.text);
-        let from =
-            marks.last().map_or(0, |at| self.text[*at..].find('\n').map_or(*at, |end| at + end));
+        let (marks, from) = marks(self.text);
         for at in marks {
             let span = self.span(at..at + 1);
             let found = Diagnostic::error("E0023", span, COMMENTS);
@@ -451,17 +449,18 @@ impl Reader<'_> {
 /// Lines before `scene` that are looked at for comments as other languages write them.
 const COMMENTED: usize = 100;
 
-/// Where `#` begins the lines that stand before `scene`, if only such do.
-fn marks(text: &str) -> Vec<usize> {
+/// Where `#` begins lines that stand before `scene`, if there only comments do, and where what is to be read
+/// begins.
+fn marks(text: &str) -> (Vec<usize>, usize) {
     let (mut at, mut marks) = (0, vec![]);
     for line in text.split_inclusive('\n').take(COMMENTED) {
         let written = line.trim_start();
         if written.starts_with('#') {
             marks.push(at + line.len() - written.len());
         } else if !written.is_empty() && !written.starts_with("//") {
-            return if written.starts_with("scene") { marks } else { vec![] };
+            return if written.starts_with("scene") { (marks, at) } else { (vec![], 0) };
         }
         at += line.len();
     }
-    vec![]
+    (vec![], 0)
 }

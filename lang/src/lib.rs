@@ -23,6 +23,7 @@ mod values;
 
 pub use budgets::Budgets;
 pub use catalogue::{CATALOGUE, Example, Page, Setup, page, setup};
+pub use eval::unreadable;
 pub use fmt::format;
 #[doc(hidden)]
 pub use syntax::{Agreement, agree};

@@ -203,6 +203,9 @@ fn unit_of(
     let code = if light { "E0213" } else { "E0202" };
     let what = found.name();
     let message = match param.unit {
+        "" if matches!(param.ty, Type::Spectrum | Type::Emission) => {
+            format!("`{}` wants {}, not {what}", param.name, wanted(param))
+        }
         "" => format!("`{}` wants a plain number, not {what}", param.name),
         unit => {
             let named = dimensions(param).next().unwrap_or_default().name();

@@ -3,7 +3,6 @@
 use std::rc::Rc;
 
 use luxel_core::diag::{Diagnostic, Span};
-use luxel_core::registry::Registry;
 use luxel_sdk::abi::Class;
 
 use super::Evaluator;
@@ -31,13 +30,20 @@ pub(super) struct Body {
     pub(super) broken: bool,
     /// Statements of it that cannot be read.
     pub(super) unread: Vec<Span>,
+    /// Parameters that objects without a name are meant for; `None` may be any.
+    pub(super) meant: Vec<Option<&'static str>>,
     /// The class whose parameters the fields are, if it is known.
     pub(super) class: Option<Class>,
 }
 
 impl Body {
     pub(super) fn new(place: Place) -> Self {
-        Self { place, fields: vec![], broken: false, unread: vec![], class: None }
+        Self { place, fields: vec![], broken: false, unread: vec![], meant: vec![], class: None }
+    }
+
+    /// Whether all of it is known, and is where it belongs.
+    pub(super) fn is_whole(&self) -> bool {
+        !self.broken && self.unread.is_empty() && self.meant.is_empty()
     }
 }
 
@@ -140,7 +146,7 @@ impl Evaluator<'_> {
                 body.fields.push(value);
             }
             StmtNode::Object(object) => {
-                let value = self.object(object, env);
+                let value = self.object(object, env, body.class.as_ref());
                 if body.place == Place::Object {
                     self.stray_object(object, body);
                 } else {
@@ -176,19 +182,6 @@ impl Evaluator<'_> {
         for name in names {
             env.define(&name.text, Value::Poison);
         }
-    }
-
-    fn stray_object(&mut self, object: &crate::syntax::Object, body: &Body) {
-        let word = &object.category.text;
-        let message = format!("a {word} cannot stand in this object without a name");
-        let found = Diagnostic::error("E0026", object.head(), message)
-            .help(format!("give it to a parameter: `{word} = {word} …`"));
-        let start = Span { end: object.category.span.start, ..object.category.span };
-        let takes = body
-            .class
-            .is_some_and(|class| Registry::params(&class).any(|param| param.name == &**word));
-        let given = body.fields.iter().any(|field| field.name.text == *word);
-        self.tell(if takes && !given { found.fix(start, format!("{word} = ")) } else { found });
     }
 
     /// Whether things may be emitted here; told if not.

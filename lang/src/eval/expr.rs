@@ -73,7 +73,7 @@ impl Evaluator<'_> {
                 }
                 self.eval(otherwise, env)
             }
-            ExprNode::Object(object) => self.object(object, env),
+            ExprNode::Object(object) => self.object(object, env, None),
             ExprNode::With { of, fields } => {
                 let value = self.eval(of, env);
                 let fields = self.fields(fields, env);

@@ -18,24 +18,31 @@ impl Evaluator<'_> {
     /// Fits a field to its parameter; `None` after a mistake.
     pub(super) fn conform(&mut self, param: &Param, field: &FieldValue) -> Option<scene::Value> {
         let given = self.given(param, field)?;
+        let is_heat =
+            is_spectrum(param) && matches!(given, Given::Number(_, Dimension::TEMPERATURE));
         let units = |dimension: Dimension| field.file.units.get(&dimension).copied();
         match scene::conform(param, given, &units) {
             Ok(value) => Some(value),
             Err(misfit) => {
-                self.misfit(&misfit, field.span);
+                let mut found = self.misfit(&misfit, field.span);
+                if is_heat {
+                    let body = format!("blackbody({})", self.written(field.span));
+                    found = found.help("light of a temperature is that of a black body");
+                    found = found.guess(field.span, body);
+                }
+                self.tell(found);
                 None
             }
         }
     }
 
-    fn misfit(&mut self, misfit: &Misfit, span: Span) {
+    fn misfit(&self, misfit: &Misfit, span: Span) -> Diagnostic {
         let mut diagnostic = Diagnostic::error(misfit.code, span, misfit.message.clone());
         diagnostic = diagnostic.meant_text(span, misfit.word);
         if !misfit.help.is_empty() {
             diagnostic = diagnostic.help(misfit.help.clone());
         }
-        let diagnostic = self.with_units(diagnostic, span, &misfit.units);
-        self.tell(diagnostic);
+        self.with_units(diagnostic, span, &misfit.units)
     }
 
     fn given(&mut self, param: &Param, field: &FieldValue) -> Option<Given> {
@@ -153,6 +160,11 @@ impl Evaluator<'_> {
             }
         }
     }
+}
+
+/// Whether a parameter says of which colour light is, and nothing of how much.
+fn is_spectrum(param: &Param) -> bool {
+    param.ty == Type::Emission && param.group.is_empty()
 }
 
 /// A vector in which bare numbers stand beside numbers of one dimension, in the file's units.

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span, near};
 use luxel_core::files::FileError;
+use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Unit};
 
 use super::emit::Labels;
@@ -32,14 +33,14 @@ impl Evaluator<'_> {
         let text = match self.bytes(path) {
             Ok(bytes) => self.text(path, &bytes, None),
             Err(error) => {
-                let code = if error == FileError::Outside { "E0108" } else { "E0107" };
-                let code = if matches!(error, FileError::TooLarge(_)) { "E0504" } else { code };
-                let message = format!("{}: {error}", path.display());
-                self.tell(Diagnostic::unplaced(code, message));
+                self.tell(unreadable(path, &error));
                 None
             }
         };
         let Some((text, source)) = text else {
+            if self.sources.first().is_none() {
+                self.sources.add(path.to_string_lossy(), "");
+            }
             self.damaged = true;
             self.unseen.thing = true;
             return;
@@ -185,8 +186,31 @@ impl Evaluator<'_> {
         Env::new(Rc::new(File { folder, units, overrides, is_root }))
     }
 
+    /// Tells of a file that is no scene by its name, and how it is read; whether it is one.
+    fn is_other(&mut self, name: &Name) -> bool {
+        let (file, path) = (&name.text, Path::new(&*name.text));
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let importer = if ending == "glb" { "gltf" } else { &ending };
+        let how = match &*ending {
+            "ply" => format!("shape mesh {{ file = \"{file}\", unit = 1 m }}"),
+            "png" | "jpg" | "jpeg" | "exr" | "hdr" => {
+                format!("texture image {{ file = \"{file}\" }}")
+            }
+            _ if self.registry.class(Kind::Importer, importer).is_some() => {
+                format!("asset {importer} {{ file = \"{file}\", unit = 1 m }}")
+            }
+            _ => return false,
+        };
+        let found = Diagnostic::error("E0001", name.span, format!("\"{file}\" is no scene"));
+        self.tell(found.help(format!("it is read by `{how}`")));
+        true
+    }
+
     /// The file that a statement names: its path and text. `None` after a mistake.
     fn open(&mut self, name: &Name, env: &Env) -> Option<(PathBuf, PathBuf, Rc<ReadFile>)> {
+        if self.is_other(name) {
+            return None;
+        }
         let path = env.file.folder.join(&*name.text);
         let canonical = self.files.canonical(&path);
         if let Some(at) = self.chain.iter().position(|(open, _)| *open == canonical) {
@@ -224,13 +248,8 @@ impl Evaluator<'_> {
 
     /// Tells that a scene's file cannot be read.
     pub(super) fn unreadable(&mut self, name: &Name, path: &Path, error: &FileError) {
-        let code = match error {
-            FileError::Outside => "E0108",
-            FileError::TooLarge(_) => "E0504",
-            _ => "E0107",
-        };
         let message = format!("\"{}\": {error}", name.text);
-        let found = Diagnostic::error(code, name.span, message);
+        let found = Diagnostic::error(code(error), name.span, message);
         self.tell(found.help(format!("looked for {}", path.display())));
     }
 
@@ -313,6 +332,19 @@ impl Evaluator<'_> {
         let module = Rc::new(Module { names, path: name.text.to_string() });
         self.imported.insert(canonical, module.clone());
         Value::Module(module)
+    }
+}
+
+/// What is said of a scene that cannot be read.
+pub fn unreadable(path: &Path, error: &FileError) -> Diagnostic {
+    Diagnostic::unplaced(code(error), format!("{}: {error}", path.display()))
+}
+
+fn code(error: &FileError) -> &'static str {
+    match error {
+        FileError::Outside => "E0108",
+        FileError::TooLarge(_) => "E0504",
+        _ => "E0107",
     }
 }
 

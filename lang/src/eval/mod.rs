@@ -28,6 +28,7 @@ mod params;
 pub(crate) mod readable;
 mod require;
 mod resolve;
+mod stray;
 mod turns;
 mod unitless;
 mod unknown;
@@ -47,6 +48,7 @@ use luxel_core::registry::Registry;
 use luxel_core::scene::{Color, Group, NodeId, Scene};
 use luxel_sdk::kind::Kind;
 
+pub use self::include::unreadable;
 #[cfg(test)]
 pub(crate) use self::resolve::resolve;
 

@@ -13,6 +13,7 @@ use luxel_sdk::params::{Param, Type};
 use super::elsewhere::meant;
 use super::env::Env;
 use super::exec::{Body, Place};
+use super::stray::takers;
 use super::unseen::is_slip;
 use super::value::{FieldValue, Head, ObjectValue, Value, What};
 use super::{Evaluator, OpenGroup};
@@ -40,8 +41,9 @@ struct Taken {
 }
 
 impl Evaluator<'_> {
-    /// The object that an expression or statement describes.
-    pub(super) fn object(&mut self, object: &Object, env: &Env) -> Value {
+    /// The object that an expression or statement describes; `within` is the class of the object in which
+    /// it stands without a name.
+    pub(super) fn object(&mut self, object: &Object, env: &Env, within: Option<&Class>) -> Value {
         let span = object.category.span.to(object.body.span);
         if &*object.category.text == "group" {
             if let Some(name) = &object.kind {
@@ -53,13 +55,13 @@ impl Evaluator<'_> {
             }
             return self.group(object, span, env);
         }
-        let head = self.head(object, span);
+        let head = self.head(object, span, within);
         let mut body = Body::new(Place::Object);
         let class = |head: &Head| self.registry.class(head.kind?, &head.class.text);
         body.class = head.as_ref().and_then(class).copied();
         self.block(&object.body, env, &mut body);
         match head {
-            Some(head) if !body.broken && body.unread.is_empty() => self.build(&head, body.fields),
+            Some(head) if body.is_whole() => self.build(&head, body.fields),
             head => {
                 self.damaged = true;
                 if let (Some(head), Some(class), false) = (head, body.class, body.broken) {
@@ -73,6 +75,7 @@ impl Evaluator<'_> {
     /// Tells what is wrong with an object beside fields of it that cannot be read.
     fn look_over(&mut self, head: &Head, class: &Class, body: &Body) {
         let mut meant = self.taken(class, &body.fields).meant;
+        meant.extend(&body.meant);
         for span in &body.unread {
             let text = self.written(*span);
             let word = text.trim_start().split(|c: char| !c.is_alphanumeric() && c != '_').next();
@@ -84,7 +87,7 @@ impl Evaluator<'_> {
         self.complete(class, head, &body.fields, &meant);
     }
 
-    fn head(&mut self, object: &Object, span: Span) -> Option<Head> {
+    fn head(&mut self, object: &Object, span: Span, within: Option<&Class>) -> Option<Head> {
         let category = &object.category;
         let Some(kind) = Kind::of_word(&category.text) else {
             let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
@@ -99,12 +102,14 @@ impl Evaluator<'_> {
                 self.registry.class(*kind, &name).is_some() && object.kind.is_none()
             });
             let start = Span { end: category.span.start, ..category.span };
-            let found = kinds.fold(found, |found, (_, word)| {
+            let found = kinds.fold(found, |found, (kind, word)| {
                 let name = category.text.to_lowercase();
+                let param = within.and_then(|class| takers(class, *kind).next());
+                let given = param.map_or(String::new(), |param| format!("{} = ", param.name));
                 if name == *category.text {
-                    return found.guess(start, format!("{word} "));
+                    return found.guess(start, format!("{given}{word} "));
                 }
-                found.guess(category.span, format!("{word} {name}"))
+                found.guess(category.span, format!("{given}{word} {name}"))
             });
             let known: Vec<_> = words().collect();
             self.tell(found.help(format!("known are {}", known.join(", "))));

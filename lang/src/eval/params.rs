@@ -13,6 +13,7 @@ use super::emit::Set;
 use super::env::{Env, File, Override};
 use super::include;
 use super::object::merged;
+use super::ops::with_zeros;
 use super::value::{FieldValue, ObjectValue, Range, Value, What, show_number};
 use crate::syntax::{self, Expr, ExprNode, Form, Name, ParamDef, StmtNode, Tree};
 use crate::{ParamInfo, ParamLimits, ParamValue};
@@ -39,7 +40,7 @@ impl Evaluator<'_> {
         let Some(given) = env.file.overrides.get(&def.name.text).cloned() else { return own };
         let before = self.mistakes();
         let code = if env.file.is_root { Some("E0112") } else { None };
-        let value = self.fit_setting(def, &given, env, code);
+        let value = self.fit_setting(def, &own, &given, env, code);
         self.in_range(def, &value, range.as_ref(), given.span, code.unwrap_or("E0405"));
         if self.mistakes() > before {
             return Value::Poison;
@@ -54,16 +55,17 @@ impl Evaluator<'_> {
     fn fit_setting(
         &mut self,
         def: &ParamDef,
+        own: &Value,
         given: &Override,
         env: &Env,
         code: Option<&'static str>,
     ) -> Value {
         let Some(code) = code else {
-            return self.fit(&def.ty, given.value.clone(), given.span, env);
+            return self.fit_given(def, own, given, env);
         };
         let mut trial = crate::sink::Sink::new(usize::MAX);
         std::mem::swap(&mut self.sink, &mut trial);
-        let value = self.fit(&def.ty, given.value.clone(), given.span, env);
+        let value = self.fit_given(def, own, given, env);
         std::mem::swap(&mut self.sink, &mut trial);
         for mut diagnostic in trial.finish() {
             diagnostic.code = code;
@@ -72,6 +74,23 @@ impl Evaluator<'_> {
             self.tell(diagnostic.label(def.name.span, "declared here").help(help));
         }
         value
+    }
+
+    /// Fits a value from outside. Of a vector the type does not say what it measures, but the default does.
+    fn fit_given(&mut self, def: &ParamDef, own: &Value, given: &Override, env: &Env) -> Value {
+        let value = self.fit(&def.ty, given.value.clone(), given.span, env);
+        match (of_vector(own), of_vector(&value)) {
+            (Some(wanted), Some(found)) if wanted != found => {
+                let message = format!(
+                    "`{}` is {}, {} is given",
+                    def.name.text,
+                    numbers_of(wanted),
+                    numbers_of(found)
+                );
+                self.poison("E0202", given.span, message)
+            }
+            _ => value,
+        }
     }
 
     fn in_range(
@@ -312,6 +331,25 @@ impl Evaluator<'_> {
         let found = Diagnostic::error("E0109", label.span, message)
             .meant(label.span, near(&label.text, self.labels.objects.keys().map(|l| &**l)));
         self.tell(found.help("a label is the text after the kind: `shape sphere \"ball\" { … }`"));
+    }
+}
+
+/// What the numbers of a vector measure; of a null vector without a unit, anything.
+fn of_vector(value: &Value) -> Option<Dimension> {
+    match value {
+        Value::Numbers(n) if n.form == Form::Tuple => {
+            let is_null = n.dimension.is_none() && n.data.iter().all(|x| x.abs() <= 0.0);
+            (!is_null).then_some(n.dimension)
+        }
+        Value::Items(items) if items.form == Form::Tuple => Some(with_zeros(&items.items)?.1),
+        _ => None,
+    }
+}
+
+fn numbers_of(dimension: Dimension) -> String {
+    match dimension {
+        Dimension::NONE => "a vector of plain numbers".to_owned(),
+        of => format!("a vector in {of}"),
     }
 }
 

@@ -109,8 +109,8 @@ impl Resolver<'_> {
             found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
         } else {
             found = found.help(
-                "names come from `let`, `param`, `fn`, `for` and `import`; text is written in \
-                 quotes: \"…\"",
+                "names come from `let`, `param`, `fn`, `for` and `import`, not from `include`; text is \
+                 written in quotes: \"…\"",
             );
         }
         found

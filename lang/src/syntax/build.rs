@@ -10,6 +10,7 @@ use super::Rule;
 use super::gaps::Gaps;
 use super::habits::condition;
 use super::make::{self, RESERVED};
+use super::statement::{is_single, of_single};
 use super::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
     Quoted, Stmt, StmtNode,
@@ -384,6 +385,10 @@ impl Builder<'_> {
         // `(a > 1) and (b > 1)`
         if let Some(found) = condition(span, text) {
             self.sink.push(found);
+            return None;
+        }
+        if is_single(text) {
+            self.sink.push(of_single(span));
             return None;
         }
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));

@@ -316,7 +316,8 @@ impl<'a> Around<'a> {
                 Some(last) => self.span(last),
                 None => Span::new(self.source, end, end),
             };
-            return Diagnostic::error("E0023", span, "the statement ends too soon");
+            let found = Diagnostic::error("E0023", span, "the statement ends too soon");
+            return self.with_pattern(found);
         };
         if let Some(found) = head::second(self) {
             return found;
@@ -327,7 +328,11 @@ impl<'a> Around<'a> {
             return head::begins_nothing(self, first, near);
         }
         let message = format!("`{}` is not expected here", short(current.text));
-        let found = self.error("E0023", current, message);
+        self.with_pattern(self.error("E0023", current, message))
+    }
+
+    /// Says how the statement is written that cannot be read.
+    fn with_pattern(&self, found: Diagnostic) -> Diagnostic {
         match head::pattern(self) {
             Some(pattern) => found.help(pattern),
             None => found,

@@ -7,6 +7,7 @@ use super::defined::stem;
 use super::foreign::foreign;
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
+use super::statement::statement;
 use super::type_names;
 
 /// Signs that editors and other notations write, and what stands here for them.
@@ -43,6 +44,7 @@ pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| hash(around))
         .or_else(|| foreign(around))
         .or_else(|| listed(around))
+        .or_else(|| statement(around))
         .or_else(|| operator(around))
         .or_else(|| word_operator(around))
         .or_else(|| word(around))

@@ -5,6 +5,7 @@ use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use super::around::{Around, Place, is_category};
 use super::lex::TokenKind;
 use super::make::RESERVED;
+use super::statement;
 
 /// What is said of an object whose parameters do not stand in braces.
 const BRACES: &str = "an object has its parameters between `{` and `}`";
@@ -64,11 +65,7 @@ pub(super) fn pattern(around: &Around<'_>) -> Option<&'static str> {
     if around.tokens[start..around.at].iter().any(|t| t.text == "{") {
         return None;
     }
-    match around.word(start) {
-        "for" => Some("a loop is written `for i in 0..9 { … }`"),
-        "if" => Some("a choice is written `if x > 1 { … } else { … }`, and `==` compares"),
-        _ => None,
-    }
+    statement::pattern(around.word(start))
 }
 
 /// Whether a block follows what the word begins.

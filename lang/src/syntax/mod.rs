@@ -23,6 +23,7 @@ mod number;
 mod operators;
 mod parse;
 mod recover;
+mod statement;
 #[cfg(test)]
 mod tests;
 mod tree;

@@ -1,0 +1,138 @@
+//! Statements and fields that have a word too many or too few.
+
+use luxel_core::diag::{Diagnostic, Span};
+
+use super::around::{Around, Place, is_category};
+use super::lex::{Token, TokenKind};
+use super::make::RESERVED;
+
+/// Why the place cannot be read, if such a statement stands there.
+pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
+    placed_call(around)
+        .or_else(|| lone_name(around))
+        .or_else(|| assertion(around))
+        .or_else(|| stepped(around))
+        .or_else(|| quoted_name(around))
+        .or_else(|| single(around))
+}
+
+/// How a statement is written of which the place is a part.
+pub(super) fn pattern(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "for" => "a loop is written `for i in 0..9 { … }`",
+        "if" => "a choice is written `if x > 1 { … } else { … }`, and `==` compares",
+        "assert" => "an assertion is written `assert x > 1, \"what must hold\"`",
+        "expect" => "an expectation is written `expect mean = 0.5 ± 0.01`",
+        "param" => "a parameter is written `param size: length = 2 m in 1 m..=3 m`",
+        "import" => "an import is written `import \"tools.scene\" as tools`",
+        "set" => "a setting is written `set label.radius = 2 m`",
+        _ => return None,
+    })
+}
+
+fn told(span: Span, message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error("E0023", span, message)
+}
+
+/// `place tree(1 m)`
+fn placed_call(around: &Around<'_>) -> Option<Diagnostic> {
+    let (name, word) = (around.before(1)?, around.before(2)?);
+    let is_call = around.word(around.at) == "(" && name.kind == TokenKind::Word;
+    if !is_call || word.text != "place" || !around.begins(around.at - 2) {
+        return None;
+    }
+    let end = around.closing(around.at)?;
+    let found = told(around.span(around.current()?), "`place` takes a name, not a call");
+    // Labels and transforms behind it belong to what is placed.
+    if matches!(around.tokens.get(end + 1), Some(next) if !next.first_on_line && next.text != "}") {
+        let name = name.text;
+        return Some(
+            found.help(format!("give it a name, `let it = {name}(…)`, and write `place it`")),
+        );
+    }
+    let both = Span::new(around.source, word.start, name.start);
+    Some(found.help("what a function makes stands where it is called").guess(both, ""))
+}
+
+/// `ball`, and nothing beside it.
+fn lone_name(around: &Around<'_>) -> Option<Diagnostic> {
+    let ends = |token: &Token<'_>| token.first_on_line || matches!(token.text, "}" | ";");
+    let mut first = around.at.checked_sub(1).filter(|_| around.current().is_none_or(ends))?;
+    let last = &around.tokens[first];
+    while first > 1 && around.word(first - 1) == "." {
+        first -= 2;
+    }
+    let name = &around.tokens[first];
+    let is_name = around.is_word(first) && last.kind == TokenKind::Word;
+    let is_ours = RESERVED.contains(&name.text) || is_category(name.text);
+    if !is_name || is_ours || !around.begins(first) || around.inner() == Place::Fields {
+        return None;
+    }
+    let all = around.span(name).to(around.span(last));
+    let start = Span::new(around.source, name.start, name.start);
+    let found = told(all, "a name by itself says nothing");
+    Some(found.help("`place` puts what it names into the scene").guess(start, "place "))
+}
+
+/// `assert x > 3 "x is small"`
+fn assertion(around: &Around<'_>) -> Option<Diagnostic> {
+    let text = around.current().filter(|t| t.kind == TokenKind::Text)?;
+    let before = around.before(1).filter(|t| t.ends_operand())?;
+    let start = (0..around.at).rev().find(|i| around.begins(*i))?;
+    if around.word(start) != "assert" || start + 1 >= around.at {
+        return None;
+    }
+    let gap = Span::new(around.source, before.end(), before.end());
+    let message = "a comma is missing before the message";
+    Some(Diagnostic::error("E0014", around.span(text), message).fix(gap, ","))
+}
+
+/// `0..10 step 2`
+fn stepped(around: &Around<'_>) -> Option<Diagnostic> {
+    // The word was read as the unit of the number before it, or was not.
+    let back = around.at.saturating_sub(1);
+    let at = [back, around.at].into_iter().find(|i| matches!(around.word(*i), "step" | "by"))?;
+    let word = &around.tokens[at];
+    let next = around.tokens.get(at + 1).filter(|t| t.kind == TokenKind::Number)?;
+    let start = (0..at).rev().find(|i| around.begins(*i)).unwrap_or(0);
+    let is_range = (start..at).any(|i| matches!(around.word(i), ".." | "..="));
+    if word.first_on_line || !is_range {
+        return None;
+    }
+    let found = told(around.span(word).to(around.span(next)), "a range goes on by one");
+    Some(found.help("other steps are computed: `for i in 0..5 { let x = i * 2 … }`"))
+}
+
+/// `"radius": 1 m`
+fn quoted_name(around: &Around<'_>) -> Option<Diagnostic> {
+    let text = around.current().filter(|t| t.kind == TokenKind::Text)?;
+    let sign = around.tokens.get(around.at + 1).filter(|t| matches!(t.text, ":" | "="))?;
+    let name = text.text.trim_matches('"');
+    let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    let is_field = around.begins(around.at) && !around.open.is_empty();
+    if !is_name || !is_field || around.word(around.at + 2) == "=" {
+        return None;
+    }
+    let both = around.span(text).to(around.span(sign));
+    let found = told(around.span(text), "the name of a parameter has no quotes");
+    Some(found.fix(both, format!("{name} =")))
+}
+
+/// `2.5f m`
+fn single(around: &Around<'_>) -> Option<Diagnostic> {
+    let (letter, number) = (around.before(1)?, around.before(2)?);
+    let touch = number.kind == TokenKind::Number && number.end() == letter.start;
+    (touch && is_single(letter.text)).then(|| of_single(around.span(letter)))
+}
+
+/// Whether a letter behind a number says elsewhere of which precision it is.
+pub(super) fn is_single(letter: &str) -> bool {
+    matches!(letter, "f" | "F")
+}
+
+/// What is said of such a letter.
+pub(super) fn of_single(letter: Span) -> Diagnostic {
+    let found = Diagnostic::error("E0204", letter, "no letter stands behind a number");
+    found.help("what is calculated with is precise enough").guess(letter, "")
+}

@@ -75,7 +75,8 @@ fn words(difference: &Difference, texts: &[Text; 2]) -> String {
         How::Changed(_) => "",
     };
     let places = both(difference.spans, texts, place).into_iter().flatten();
-    let mut out = format!("{}{how}  {}\n", difference.what, places.collect::<Vec<_>>().join(" "));
+    let (what, places) = (difference.counted(), places.collect::<Vec<_>>().join(" "));
+    let mut out = format!("{what}{how}  {places}\n");
     for change in changes(difference) {
         let [a, b] = both(change.spans, texts, written);
         let values = match (a, b) {
@@ -103,7 +104,8 @@ fn told(difference: &Difference, texts: &[Text; 2]) -> Value {
     };
     let [a, b] = both(difference.spans, texts, place);
     let parameters: Vec<_> = changes(difference).iter().map(parameter).collect();
-    json!({ "what": difference.what, "how": how, "a": a, "b": b, "parameters": parameters })
+    let Difference { what, n, .. } = difference;
+    json!({ "what": what, "n": n, "how": how, "a": a, "b": b, "parameters": parameters })
 }
 
 fn changes(difference: &Difference) -> &[Change] {

@@ -47,11 +47,26 @@ disk \"floor\" added  b.scene:7
     assert_eq!((done.code, &*done.out, &*done.err), (1, told, ""));
     let done = folder.luxel(&["diff", "a.scene", "b.scene", "--json"]);
     let part = concat!(
-        r#"{"a":"a.scene:2","b":"b.scene:2","how":"changed","#,
+        r#"{"a":"a.scene:2","b":"b.scene:2","how":"changed","n":1,"#,
         r#""parameters":[{"a":"40 deg","b":"41 deg","name":"fov"}],"what":"camera perspective"}"#,
     );
     assert!(done.code == 1 && done.out.contains(part), "{done:?}");
     assert!(done.out.contains(r#""same":false"#), "{done:?}");
+}
+
+#[test]
+fn what_a_loop_makes_is_told_once() {
+    let scene = |radius: &str| {
+        let each = "center = (2 * i, 0, 0) * 1 m, radius = ";
+        let both = format!("shape sphere {{ {each}{radius} }} shape box {{ size = (1, 1, 1) m }}");
+        format!("{SCENE}for i in 0..3 {{ {both} }}\n")
+    };
+    let folder =
+        Folder::new("diff-loop").with("a.scene", &scene("1 m")).with("b.scene", &scene("2 m"));
+    let done = folder.luxel(&["diff", "a.scene", "b.scene"]);
+    let line = SCENE.lines().count() + 1;
+    let told = format!("3 × shape sphere  a.scene:{line} b.scene:{line}\n  radius: 1 m → 2 m\n");
+    assert_eq!((done.code, &*done.out), (1, &*told), "{done:?}");
 }
 
 #[test]

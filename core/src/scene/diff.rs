@@ -17,6 +17,19 @@ pub struct Difference {
     pub how: How,
     /// Where it is written in the first scene and in the second; none where it is not.
     pub spans: [Option<Span>; 2],
+    /// Of how many things this is so: of a loop, or of a function that is called often, of many.
+    pub n: usize,
+}
+
+impl Difference {
+    fn new(what: String, how: How, spans: [Option<Span>; 2]) -> Self {
+        Self { what, how, spans, n: 1 }
+    }
+
+    /// What differs, and how often: `3 × shape sphere`.
+    pub fn counted(&self) -> String {
+        if self.n > 1 { format!("{} × {}", self.n, self.what) } else { self.what.clone() }
+    }
 }
 
 /// A parameter that differs.
@@ -48,19 +61,20 @@ pub enum How {
 
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = self.counted();
         match &self.how {
-            How::Added => write!(f, "{} added", self.what),
-            How::Removed => write!(f, "{} removed", self.what),
+            How::Added => write!(f, "{what} added"),
+            How::Removed => write!(f, "{what} removed"),
             How::Changed(changes) => {
                 let names: Vec<_> = changes.iter().map(|change| &*change.name).collect();
-                write!(f, "{}: {}", self.what, names.join(", "))
+                write!(f, "{what}: {}", names.join(", "))
             }
         }
     }
 }
 
 /// Everything in which the second scene differs from the first. What is the same in another order or
-/// under another name is the same; what is shared is told once.
+/// under another name is the same; what is shared is told once, and what is written once for many is too.
 pub fn diff(first: &Scene, second: &Scene) -> Vec<Difference> {
     diff_in([first, second], [Path::new(""); 2])
 }
@@ -78,7 +92,24 @@ pub fn diff_in(scenes: [&Scene; 2], folders: [&Path; 2]) -> Vec<Difference> {
     };
     differ.settings();
     differ.items([&first.root, &second.root]);
-    differ.found
+    together(differ.found)
+}
+
+/// What is written in the same place and differs in the same way, once.
+fn together(found: Vec<Difference>) -> Vec<Difference> {
+    let mut out: Vec<Difference> = vec![];
+    let mut last: BTreeMap<[Option<Span>; 2], usize> = BTreeMap::new();
+    for difference in found {
+        let before = last.get(&difference.spans).map(|at| &mut out[*at]);
+        let is_same = |it: &&mut Difference| it.what == difference.what && it.how == difference.how;
+        if let Some(same) = before.filter(is_same) {
+            same.n += 1;
+        } else {
+            last.insert(difference.spans, out.len());
+            out.push(difference);
+        }
+    }
+    out
 }
 
 struct Differ<'a> {
@@ -129,7 +160,7 @@ impl Differ<'_> {
                 let what = self.called(i, item.target);
                 let mut spans = [None; 2];
                 spans[i] = Some(item.span);
-                self.found.push(Difference { what, how: how.clone(), spans });
+                self.found.push(Difference::new(what, how.clone(), spans));
             }
         }
     }
@@ -161,10 +192,9 @@ impl Differ<'_> {
 
     /// Two placements of what is taken for the same.
     fn placed(&mut self, a: &Placed, b: &Placed) {
-        let changed = |name: &str| Difference {
-            what: self.called(1, b.target),
-            how: How::Changed(vec![Change::named(name)]),
-            spans: [Some(a.span), Some(b.span)],
+        let changed = |name: &str| {
+            let how = How::Changed(vec![Change::named(name)]);
+            Difference::new(self.called(1, b.target), how, [Some(a.span), Some(b.span)])
         };
         let place = (a.pose != b.pose).then(|| changed("place"));
         let paint = (a.material.is_some() != b.material.is_some()).then(|| changed("material"));
@@ -232,17 +262,17 @@ impl Differ<'_> {
 
     fn changed(&mut self, nodes: [&Node; 2], changes: Vec<Change>) {
         let spans = nodes.map(|node| Some(node.span));
-        self.found.push(Difference { what: told(nodes[1]), how: How::Changed(changes), spans });
+        self.found.push(Difference::new(told(nodes[1]), How::Changed(changes), spans));
     }
 
     fn removed(&mut self, node: &Node) {
         let spans = [Some(node.span), None];
-        self.found.push(Difference { what: told(node), how: How::Removed, spans });
+        self.found.push(Difference::new(told(node), How::Removed, spans));
     }
 
     fn added(&mut self, node: &Node) {
         let spans = [None, Some(node.span)];
-        self.found.push(Difference { what: told(node), how: How::Added, spans });
+        self.found.push(Difference::new(told(node), How::Added, spans));
     }
 
     /// What people call something; empty where they gave no name.

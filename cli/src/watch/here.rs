@@ -262,7 +262,7 @@ impl<'scope> Watching<'scope, '_> {
             let Subject { warnings, read, .. } = &*subject;
             let told = [(&text.diagnostics, &text.sources), (warnings, &read.sources)];
             self.audience.page().inspect(|page| page.problems(&told));
-            self.taken_back(begun)?;
+            self.as_before(begun)?;
             return Ok(Next::Wait);
         }
         let (texts, n_told) = (text.files.asked().into_keys().collect(), text.diagnostics.len());
@@ -303,8 +303,20 @@ impl<'scope> Watching<'scope, '_> {
         Ok(Next::Wait)
     }
 
+    /// What stood in the way of the picture may stand there no more.
+    fn try_again(&mut self) {
+        let Some(Shown { subject, sitting, .. }) = &self.shown else { return };
+        if sitting.wants_again() {
+            self.press.tray().put(sitting.clone(), self.guard.saving());
+        } else if sitting.is_lost() {
+            let (subject, edit) = (subject.clone(), Edit::new(vec![], Anew::default(), 0.0));
+            self.show(subject, edit);
+        }
+    }
+
     /// The scene is as before: a mistake that was told since is gone, which is told too.
-    fn taken_back(&mut self, begun: Instant) -> Result<(), Failure> {
+    fn as_before(&mut self, begun: Instant) -> Result<(), Failure> {
+        self.try_again();
         if !std::mem::take(&mut self.has_told) {
             return Ok(());
         }

@@ -257,6 +257,16 @@ impl Sitting {
         Some(Print { stage: shown.stage.clone(), read: shown.read.clone(), edit, done })
     }
 
+    /// Wants a picture once more that could not be written; returns whether there is one.
+    pub(super) fn wants_again(&self) -> bool {
+        let mut shown = self.lock();
+        let is_unwritten = shown.done.is_some() && shown.ink == Ink::None;
+        if is_unwritten {
+            shown.ink = Ink::Due;
+        }
+        is_unwritten
+    }
+
     /// What was to be written is on the disk, or cannot be.
     pub(super) fn printed(&self, well: bool) {
         let mut shown = self.lock();

@@ -92,12 +92,9 @@ fn one(file: &Path, args: &Args, guard: &Guard) -> Result<Exit, Failure> {
 /// A file's text before and after; none if it has a mistake, which is told.
 fn laid_out(file: &Path, args: &Args) -> Result<Option<Pair>, Failure> {
     let budgets = args.budgets.budgets();
-    let bytes = read(file, budgets.file_bytes as u64).map_err(|error| {
-        Failure::new(Exit::Input, format!("cannot read `{}`: {error}", name(file)))
-    })?;
     let mut sources = Sources::default();
-    let found = match String::from_utf8(bytes) {
-        Ok(before) => match luxel_lang::format(&before, &budgets) {
+    let found = match read(file, budgets.file_bytes as u64).map(String::from_utf8) {
+        Ok(Ok(before)) => match luxel_lang::format(&before, &budgets) {
             Ok(after) => return Ok(Some(Pair { before, after })),
             Err(found) => {
                 sources.add(name(file), before);
@@ -105,6 +102,10 @@ fn laid_out(file: &Path, args: &Args) -> Result<Option<Pair>, Failure> {
             }
         },
         Err(error) => {
+            sources.add(name(file), "");
+            vec![luxel_lang::unreadable(file, &error)]
+        }
+        Ok(Err(error)) => {
             let at = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(&error.as_bytes()[..at]).into_owned();
             let span = Span::new(sources.add(name(file), text), at, at);

@@ -46,10 +46,11 @@ mod written;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use luxel_core::memory::Memory;
 
 use crate::exit::{Exit, Failure};
+use crate::report::Form;
 
 /// What large scenes take is given back sooner.
 #[global_allocator]
@@ -98,8 +99,14 @@ enum Command {
 
 fn main() -> ExitCode {
     MEMORY.begin();
-    let cli = match Cli::try_parse_from(watch::with_address(std::env::args_os())) {
-        Ok(cli) => cli,
+    let words = watch::with_address(std::env::args_os());
+    let matches = Cli::command().try_get_matches_from(words);
+    let parsed = matches.and_then(|all| Ok((Cli::from_arg_matches(&all)?, wants_json(&all))));
+    let cli = match parsed {
+        Ok((cli, wants_json)) => {
+            report::speak(if wants_json { Form::Json } else { Form::Text });
+            cli
+        }
         Err(error) => {
             // Help and version are errors to clap; they go to stdout with code 0.
             let told = if error.use_stderr() { Exit::Usage } else { Exit::Fine };
@@ -130,6 +137,12 @@ fn main() -> ExitCode {
     done.unwrap_or_else(|failure| failed(&failure)).into()
 }
 
+/// Whether a program reads what is told.
+fn wants_json(matches: &ArgMatches) -> bool {
+    matches!(matches.try_get_one("json"), Ok(Some(true)))
+        || matches.subcommand().is_some_and(|(_, of)| wants_json(of))
+}
+
 fn failed(failure: &Failure) -> Exit {
     report::failure(failure);
     failure.exit
@@ -137,8 +150,6 @@ fn failed(failure: &Failure) -> Exit {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
-
     use super::*;
 
     #[test]

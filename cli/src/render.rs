@@ -62,7 +62,8 @@ pub(crate) struct Args {
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
-    /// The summary as one JSON object on standard output, diagnostics as JSON lines on standard error
+    /// The summary as one JSON object on standard output, diagnostics and failures as JSON lines on
+    /// standard error
     #[arg(long)]
     json: bool,
     /// Exit with 4 if a sample is not finite

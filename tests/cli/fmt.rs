@@ -42,11 +42,14 @@ fn files_with_mistakes_stay_and_the_others_are_laid_out() {
     for part in ["E0015", "wrong.scene:2", "E0003", "byte 11 of the file is not UTF-8"] {
         assert!(done.err.contains(part), "{part} in {}", done.err);
     }
-    assert!(done.err.contains("cannot read `none.scene`: "), "{done:?}");
+    assert!(done.err.contains("error[E0107]: none.scene: "), "{done:?}");
     assert_eq!(folder.read("wrong.scene"), WRONG.as_bytes());
     assert_eq!(folder.read("a.scene"), STRAIGHT.as_bytes());
     let done = folder.luxel(&["fmt", "--json", "wrong.scene"]);
     assert!(done.code == 1 && done.out.contains(r#""code":"E0015""#), "{done:?}");
+    let done = folder.luxel(&["fmt", "--json", "none.scene"]);
+    let parts = [r#""code":"E0107""#, r#""file":"none.scene""#];
+    assert!(done.code == 1 && parts.iter().all(|part| done.out.contains(part)), "{done:?}");
 }
 
 #[cfg(unix)]

@@ -71,6 +71,31 @@ fn comments_and_mistakes_leave_a_render_in_hand_alone() {
 }
 
 #[test]
+fn a_picture_that_could_not_be_written_is_tried_again_at_the_next_save() {
+    let folder = Folder::new("watch-tried-again").with("a.scene", SCENE).with("out/kept", "");
+    let mut watching = folder.start(&["watch", "a.scene", "-o", "out/a", "--json"]);
+    let is_written = || folder.path("out/a.exr").exists();
+    until("the first picture", is_written);
+    std::fs::rename(folder.path("out"), folder.path("away")).unwrap();
+    folder.write("a.scene", &SCENE.replace("samples = 4", "samples = 5"));
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    std::fs::create_dir(folder.path("out")).unwrap();
+    folder.write("a.scene", &format!("{}// again\n", SCENE.replace("samples = 4", "samples = 5")));
+    until("the picture again", is_written);
+    watching.interrupt();
+    let done = watching.end();
+    assert_eq!(done.code, 0, "{done:?}");
+    // Everything that went wrong is JSON too.
+    let told = done.err.lines().filter(|line| line.starts_with('{'));
+    let told: Vec<serde_json::Value> =
+        told.map(|line| serde_json::from_str(line).unwrap()).collect();
+    let is_lost = |it: &serde_json::Value| {
+        it["severity"] == "error" && it["message"].as_str().unwrap().contains("out")
+    };
+    assert!(told.iter().any(is_lost), "{done:?}");
+}
+
+#[test]
 fn a_mistake_that_is_taken_back_is_told_to_be_gone() {
     let folder = Folder::new("watch-taken-back").with("a.scene", SCENE);
     let mut watching = folder.start(&["watch", "a.scene"]);

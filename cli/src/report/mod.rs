@@ -6,8 +6,9 @@ mod snippet;
 mod window;
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
 
-use luxel_core::diag::{Diagnostic, Sources};
+use luxel_core::diag::{Diagnostic, Severity, Sources};
 
 use crate::exit::{Exit, Failure};
 
@@ -50,15 +51,32 @@ pub(crate) fn aside(text: &str) {
     }
 }
 
+/// How warnings and failures that belong to no place in a file are told from now on: as text, unless
+/// something else is said before anything is told.
+static FORM: OnceLock<Form> = OnceLock::new();
+
+/// Tells warnings and failures in this form.
+pub(crate) fn speak(form: Form) {
+    FORM.get_or_init(|| form);
+}
+
 /// Prints a warning that belongs to no place in a file.
 pub(crate) fn warning(message: &str) {
-    tell(&format!("warning: {}\n", plain::clean(message)));
+    remark(Severity::Warning, message, None);
 }
 
 /// Prints why a command stopped.
 pub(crate) fn failure(failure: &Failure) {
-    let mut text = format!("error: {}\n", plain::clean(&failure.message));
-    if let Some(help) = &failure.help {
+    remark(Severity::Error, &failure.message, failure.help.as_deref());
+}
+
+fn remark(severity: Severity, message: &str, help: Option<&str>) {
+    if FORM.get() == Some(&Form::Json) {
+        tell(&format!("{}\n", plain::remark(severity, message, help)));
+        return;
+    }
+    let mut text = format!("{}: {}\n", plain::word(severity), plain::clean(message));
+    if let Some(help) = help {
         text.extend(["  help: ", &plain::clean(help), "\n"]);
     }
     tell(&text);

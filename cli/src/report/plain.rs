@@ -29,14 +29,12 @@ pub(super) fn closing(found: &[Diagnostic]) -> String {
 }
 
 /// One object: `code, severity, message, file, line, column, end_line, end_column, labels, help,
-/// fixes`. Lines and columns count from 1, columns in characters; `null` where no place is at fault.
+/// fixes`. Lines and columns count from 1, columns in characters; `null` where no place is at fault, for
+/// which the file is the scene.
 pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     let Diagnostic { code, severity, message, labels, help, fixes } = diagnostic;
-    let severity = match severity {
-        Severity::Warning => "warning",
-        Severity::Error => "error",
-    };
-    let mut object = diagnostic.span().map_or_else(place_of_nothing, |span| place(span, sources));
+    let nowhere = || place_of_nothing(sources);
+    let mut object = diagnostic.span().map_or_else(nowhere, |span| place(span, sources));
     let labels = labels.iter().skip(1).map(|label| {
         let mut object = place(label.span, sources);
         object["text"] = json!(label.text);
@@ -52,7 +50,7 @@ pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     object["labels"] = labels.collect();
     object["fixes"] = fixes.collect();
     object["code"] = json!(code);
-    object["severity"] = json!(severity);
+    object["severity"] = json!(word(*severity));
     object["message"] = json!(message);
     object["help"] = json!(help);
     object
@@ -72,8 +70,25 @@ fn place(span: Span, sources: &Sources) -> Value {
     })
 }
 
-fn place_of_nothing() -> Value {
-    json!({ "file": null, "line": null, "column": null })
+/// The scene that was read, and no place in it.
+fn place_of_nothing(sources: &Sources) -> Value {
+    json!({ "file": sources.first(), "line": null, "column": null })
+}
+
+/// The same object of what has no code and no place.
+pub(super) fn remark(severity: Severity, message: &str, help: Option<&str>) -> Value {
+    let mut object = place_of_nothing(&Sources::default());
+    (object["code"], object["severity"]) = (json!(null), json!(word(severity)));
+    (object["message"], object["help"]) = (json!(message), help.into_iter().collect());
+    object
+}
+
+/// How severe something is.
+pub(super) fn word(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Warning => "warning",
+        Severity::Error => "error",
+    }
 }
 
 #[cfg(test)]
@@ -99,6 +114,15 @@ mod tests {
         assert_eq!(value["severity"], "error");
         let nowhere = json(&Diagnostic::unplaced("E0409", "no camera"), &sources);
         assert_eq!((&nowhere["line"], &nowhere["code"]), (&Value::Null, &json!("E0409")));
+        assert_eq!(nowhere["file"], "a.scene");
+    }
+
+    #[test]
+    fn what_has_no_code_is_told_in_the_same_way() {
+        let told = remark(Severity::Warning, "late", Some("hurry"));
+        assert_eq!((&told["severity"], &told["message"]), (&json!("warning"), &json!("late")));
+        assert_eq!((&told["help"], &told["code"]), (&json!(["hurry"]), &Value::Null));
+        assert_eq!(remark(Severity::Error, "late", None)["help"], json!([]));
     }
 
     #[test]

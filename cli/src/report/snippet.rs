@@ -20,6 +20,9 @@ pub(super) fn render(diagnostic: &Diagnostic, sources: &Sources, coloured: bool)
     for labels in together(&diagnostic.labels, sources) {
         main = excerpt(main, &labels, sources, labels[0] == &diagnostic.labels[0]);
     }
+    if let (true, Some(scene)) = (diagnostic.labels.is_empty(), sources.first()) {
+        main = main.element(Origin::path(clean(scene)));
+    }
     for help in &diagnostic.help {
         main = main.element(Level::HELP.message(clean(help)));
     }

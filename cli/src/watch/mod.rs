@@ -68,8 +68,8 @@ pub(crate) struct Args {
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
-    /// Of each picture the summary as one JSON object on a line of standard output, diagnostics as
-    /// JSON lines on standard error
+    /// Of each picture the summary as one JSON object on a line of standard output, diagnostics and
+    /// failures as JSON lines on standard error
     #[arg(long)]
     json: bool,
 }

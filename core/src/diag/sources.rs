@@ -61,6 +61,11 @@ impl Sources {
         self.files.get(id.0 as usize).map_or("", |(name, _)| name)
     }
 
+    /// The name of the first text, which is the scene.
+    pub fn first(&self) -> Option<&str> {
+        self.files.first().map(|(name, _)| name.as_str())
+    }
+
     /// The text; empty when unknown.
     pub fn text(&self, id: SourceId) -> &str {
         self.files.get(id.0 as usize).map_or("", |(_, text)| text)

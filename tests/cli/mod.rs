@@ -174,6 +174,40 @@ fn check_tells_place_and_code_as_json_lines() {
 }
 
 #[test]
+fn what_has_no_place_names_the_scene_that_it_is_of() {
+    let blind = "scene 1\nlight constant { radiance = 1 nit }\n";
+    let folder = Folder::new("unplaced").with("a.scene", SCENE).with("blind.scene", blind);
+    let both = folder.luxel(&["check", "--json", "a.scene", "blind.scene", "none.scene"]);
+    let told: Vec<serde_json::Value> =
+        both.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let of = |code: &str| told.iter().find(|it| it["code"] == code).map(|it| it["file"].clone());
+    assert_eq!(of("E0409"), Some("blind.scene".into()), "{both:?}");
+    assert_eq!(of("E0107"), Some("none.scene".into()), "{both:?}");
+    let text = folder.luxel(&["check", "blind.scene"]);
+    assert!(text.err.contains("--> blind.scene\n"), "{text:?}");
+    let lost = folder.luxel(&["render", "a.scene", "-o", "none/a", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(lost.err.trim()).unwrap();
+    assert!(lost.code == 1 && told["severity"] == "error", "{lost:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_scene_may_be_a_link_to_another_folder_and_its_files_may_not() {
+    use std::os::unix::fs::symlink;
+
+    let scene = format!("{SCENE}include \"more.scene\"\n");
+    let folder =
+        Folder::new("linked").with("real/a.scene", &scene).with("in/more.scene", "scene 1\n");
+    symlink("../real/a.scene", folder.path("in/a.scene")).unwrap();
+    assert_eq!(folder.luxel(&["check", "in/a.scene"]).code, 0);
+    std::fs::remove_file(folder.path("in/more.scene")).unwrap();
+    folder.write("real/more.scene", "scene 1\n");
+    symlink("../real/more.scene", folder.path("in/more.scene")).unwrap();
+    let done = folder.luxel(&["check", "in/a.scene"]);
+    assert!(done.code == 1 && done.err.contains("E0108"), "{done:?}");
+}
+
+#[test]
 fn check_prints_the_scene_graph() {
     let folder = Folder::new("print").with("a.scene", SCENE);
     let done = folder.luxel(&["check", "--print", "a.scene"]);

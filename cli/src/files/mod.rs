@@ -43,14 +43,15 @@ pub(crate) struct DiskFiles {
 }
 
 impl DiskFiles {
-    /// Files for one scene: its own folder, and those below `allow`, may be read.
+    /// Files for one scene: its own folder, those below `allow`, and the scene itself, which may be a link
+    /// to another folder, may be read.
     pub(crate) fn new(scene: &Path, allow: &[PathBuf]) -> Self {
         let own = match scene.parent() {
             Some(folder) if folder != Path::new("") => folder,
             _ => Path::new("."),
         };
-        let allowed = std::iter::once(own).chain(allow.iter().map(PathBuf::as_path));
-        // A folder that does not exist holds nothing that could be allowed.
+        let allowed = [own, scene].into_iter().chain(allow.iter().map(PathBuf::as_path));
+        // A folder that does not exist holds nothing that could be allowed. Below a file there is but itself.
         let allowed = allowed.filter_map(|folder| fs::canonicalize(folder).ok()).collect();
         let (asked, read, known, stop) = Default::default();
         Self { allowed, asked, read, known, stop }

@@ -1,6 +1,5 @@
 //! Reading an EXR: ours with standard error and samples, others with R, G and B or Y alone.
 
-use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
@@ -15,6 +14,7 @@ use serde_json::Value;
 
 use super::exr::Plane;
 use crate::exit::{Exit, Failure};
+use crate::files::open_regular;
 
 /// Values of the largest picture, all channels together: 4 GiB of them.
 const MOST_VALUES: usize = 1 << 30;
@@ -46,8 +46,7 @@ impl Picture {
         let wrong = |what: &dyn std::fmt::Display| {
             Failure::new(Exit::Input, format!("cannot read the picture {}: {what}", path.display()))
         };
-        #[expect(clippy::disallowed_methods, reason = "named by the person, read by no scene")]
-        let file = File::open(path).map_err(|error| wrong(&error))?;
+        let (file, _) = open_regular(path, u64::MAX).map_err(|error| wrong(&error))?;
         Self::read(BufReader::new(file)).map_err(|what| {
             wrong(&what).help("it takes channels R, G and B, or Y alone; ours has SE.R … and N too")
         })
@@ -285,7 +284,9 @@ mod tests {
     fn files_that_are_no_picture_are_told_by_name() {
         let folder = Folder::new("view-wrong");
         folder.write("a.exr", b"no picture");
-        for name in ["a.exr", "none.exr"] {
+        // A device is neither waited for nor read to its end.
+        let device = std::path::PathBuf::from(if cfg!(unix) { "/dev/zero" } else { "none" });
+        for name in ["a.exr", "none.exr", device.to_str().unwrap()] {
             let wrong = Picture::open(&folder.path(name)).err().unwrap();
             assert_eq!(wrong.exit, Exit::Input);
             assert!(wrong.message.contains(name), "{}", wrong.message);

@@ -171,6 +171,7 @@ fn nothing_but_get_and_no_path_leads_out() {
         let lines = format!("host: 127.0.0.1:{port}\r\ncontent-length: 0\r\n");
         let answer = say(port, &format!("{method} /?token={token} HTTP/1.1\r\n{lines}\r\n"));
         assert_eq!(code(&answer), 405, "{method}");
+        assert!(answer.contains("allow: GET"), "{answer}");
     }
     for path in ["/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd", "/page/main.js"]
     {

@@ -152,6 +152,7 @@ fn with_headers(mut response: Response, host: &str) -> Response {
     let policy = HeaderValue::try_from(policy).expect("an allowed host holds no odd characters");
     headers.insert(header::CONTENT_SECURITY_POLICY, policy);
     for (name, value) in [
+        ("allow", "GET"),
         ("cache-control", "no-store"),
         ("cross-origin-opener-policy", "same-origin"),
         ("cross-origin-resource-policy", "same-origin"),

@@ -303,11 +303,11 @@ fn seconds(text: &str) -> Result<Duration, String> {
 const DIFFERENCES: [(&str, &str); 7] = [
     ("luxel", "another version"),
     ("build", "another build of the program"),
-    ("scene", "another scene, or of one that has been edited since"),
-    ("files", "other textures or meshes"),
-    ("libraries", "other plugin libraries"),
     ("seed", "another seed"),
     ("window", "another size or crop"),
+    ("scene", "another scene, of one that has been edited since, or of other --set or --aov"),
+    ("files", "other textures or meshes"),
+    ("libraries", "other plugin libraries"),
 ];
 
 /// Writes, and remembers what.

@@ -59,6 +59,7 @@ fn title(old: &str, new: &str) -> String {
         out
     };
     match (old.is_empty(), new.is_empty()) {
+        _ if new.trim().is_empty() && new.contains('\n') => "begin a new line".to_owned(),
         (true, _) => format!("insert `{}`", short(new)),
         (_, true) => format!("remove `{}`", short(old)),
         _ => format!("replace `{}` by `{}`", short(old), short(new)),

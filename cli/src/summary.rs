@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::files::DiskFiles;
 use crate::origin::Origin;
 use crate::output::Output;
-use crate::picture::Notes;
+use crate::picture::{Exposed, Notes};
 use crate::progress::duration;
 use crate::reached::Reached;
 
@@ -37,6 +37,7 @@ pub(crate) struct Summary {
     /// Of this run and those that it went on from.
     samples_in_all: u64,
     mean: DVec3,
+    exposed: Exposed,
     reached: Reached,
     scene: String,
     files: String,
@@ -105,6 +106,7 @@ impl Summary {
             took,
             samples_in_all: film.samples().max(took.samples),
             mean: film.mean().0,
+            exposed: Exposed::of(film, &stage.film),
             reached: Reached::of(film, goal),
             scene: hex(stage.scene.hash()),
             files: files.hash().to_hex().to_string(),
@@ -194,7 +196,7 @@ impl Summary {
             "wrote {exr} and {png}{done}\n\
              {size}, {spp} spp, {mode}, {time}, {rate:.2} Msamples/s\n\
              mean radiance ({:.4}, {:.4}, {:.4}) W/m²/sr\n\
-             {dark}{reached}{bad}{dropped}",
+             {exposed}{reached}{bad}{dropped}",
             mean.x,
             mean.y,
             mean.z,
@@ -205,7 +207,7 @@ impl Summary {
             mode = self.mode,
             time = self.took.words(),
             rate = self.took.rate() / 1e6,
-            dark = self.dark_words(),
+            exposed = self.exposed.words(),
             reached = self.reached.words(),
             bad = self.bad_places.words(),
             dropped = self.dropped_words(),
@@ -217,11 +219,6 @@ impl Summary {
         let [least, most] = self.counts;
         let is_even = least == most || !self.goal.is_some();
         if is_even { self.spp.to_string() } else { format!("{least} to {most}") }
-    }
-
-    fn dark_words(&self) -> &'static str {
-        let is_dark = self.samples_in_all > 0 && self.mean.abs().max_element() <= 0.0;
-        if is_dark { "the picture is black: nothing that shines is seen in it\n" } else { "" }
     }
 
     fn dropped_words(&self) -> String {

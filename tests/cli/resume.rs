@@ -187,7 +187,7 @@ fn nothing_is_gone_on_with_that_is_of_another_picture() {
     let seed = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--seed", "9"]);
     assert!(seed.code == 1 && seed.err.contains("it is of another seed"), "{seed:?}");
     let size = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--size", "8x8"]);
-    assert!(size.code == 1 && size.err.contains("it is of another scene"), "{size:?}");
+    assert!(size.code == 1 && size.err.contains("it is of another size"), "{size:?}");
     let fewer = folder.luxel(&["render", "a.scene", "-o", "a", "--resume", "--spp", "9"]);
     assert!(fewer.code == 1 && fewer.err.contains("64 samples of a pixel, more than"), "{fewer:?}");
     // What nobody says is as it was: the error is not reached this time either.

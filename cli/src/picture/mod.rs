@@ -1,6 +1,7 @@
 //! Pictures on disk: the EXR holds what was measured, the PNG how it looks.
 
 mod display;
+mod exposed;
 mod exr;
 mod png;
 mod read;
@@ -14,6 +15,7 @@ use crate::exit::Failure;
 use crate::output::{Draft, Output, unwritable};
 
 pub(crate) use display::{scale, show};
+pub(crate) use exposed::Exposed;
 pub(crate) use exr::{Notes, Plane, write_planes};
 pub(crate) use png::write_signal;
 pub(crate) use read::Picture;

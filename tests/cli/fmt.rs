@@ -116,10 +116,9 @@ fn an_interrupt_between_two_files_leaves_the_second_as_it_was() {
 fn pipes_and_folders_are_no_scenes() {
     let folder = Folder::new("fmt-pipe").with("sub/a.scene", STRAIGHT);
     let done = folder.luxel_under("mkfifo pipe.scene", &["fmt", "pipe.scene", "sub"]);
-    for part in [
-        "pipe.scene: it cannot be read: it is not a regular",
-        "sub: it cannot be read: it is a",
-    ] {
+    for part in
+        ["pipe.scene: it cannot be read: it is not a regular", "sub: it cannot be read: it is a"]
+    {
         assert!(done.code == 1 && done.err.contains(part), "{done:?}");
     }
 }

@@ -75,11 +75,12 @@ fn place_of_nothing(sources: &Sources) -> Value {
     json!({ "file": sources.first(), "line": null, "column": null })
 }
 
-/// The same object of what has no code and no place.
+/// The same object of what has no code and is of no scene.
 pub(super) fn remark(severity: Severity, message: &str, help: Option<&str>) -> Value {
-    let mut object = place_of_nothing(&Sources::default());
-    (object["code"], object["severity"]) = (json!(null), json!(word(severity)));
-    (object["message"], object["help"]) = (json!(message), help.into_iter().collect());
+    let mut told = Diagnostic { severity, ..Diagnostic::unplaced("", message) };
+    told.help.extend(help.map(str::to_owned));
+    let mut object = json(&told, &Sources::default());
+    object["code"] = Value::Null;
     object
 }
 

@@ -28,12 +28,10 @@ impl Evaluator<'_> {
         };
         let message = format!("a {word} cannot stand in this object without a name");
         let found = Diagnostic::error("E0026", object.head(), message);
-        let is_free = |param: &&Param| {
-            body.fields.iter().all(|field| *field.name.text != *param.name)
-                && !body.meant.contains(&Some(param.name))
-        };
-        let free: Vec<&Param> = takers(&class, kind).filter(is_free).collect();
-        let Some(param) = free.first() else {
+        let is_given = |param: &&Param| body.fields.iter().any(|it| *it.name.text == *param.name);
+        let open: Vec<_> = takers(&class, kind).filter(|param| !is_given(param)).collect();
+        let is_free = |param: &&&Param| !body.meant.contains(&Some(param.name));
+        let Some(param) = open.iter().find(is_free) else {
             let class = format!("{} {}", class.kind, class.name);
             let help = format!("no other parameter of `{class}` takes a {word}; groups hold many");
             self.tell(found.help(help));
@@ -41,7 +39,7 @@ impl Evaluator<'_> {
         };
         body.meant.push(Some(param.name));
         let start = Span { end: object.category.span.start, ..object.category.span };
-        let grade = if free.len() == 1 { Grade::Sure } else { Grade::Guess };
+        let grade = if open.len() == 1 { Grade::Sure } else { Grade::Guess };
         let help = format!("give it to a parameter: `{} = {word} …`", param.name);
         self.tell(found.help(help).mend(start, format!("{} = ", param.name), grade));
     }

@@ -78,8 +78,9 @@ fn lone_name(around: &Around<'_>) -> Option<Diagnostic> {
 fn assertion(around: &Around<'_>) -> Option<Diagnostic> {
     let text = around.current().filter(|t| t.kind == TokenKind::Text)?;
     let before = around.before(1).filter(|t| t.ends_operand())?;
-    let start = (0..around.at).rev().find(|i| around.begins(*i))?;
-    if around.word(start) != "assert" || start + 1 >= around.at {
+    let is_head = |i: &usize| around.word(*i) == "assert" && around.begins(*i);
+    let start = (0..around.at).rev().find(is_head)?;
+    if start + 1 == around.at || !around.open.is_empty() && around.inner() == Place::Fields {
         return None;
     }
     let gap = Span::new(around.source, before.end(), before.end());

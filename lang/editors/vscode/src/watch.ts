@@ -94,8 +94,9 @@ export class Watch {
     const told = object(line);
     if (told === undefined) return this.listener.message(line);
     if (told.severity === "error" && typeof told.message === "string") {
-      const place = typeof told.file === "string" ? `${told.file}:${told.line}:${told.column}: ` : "";
-      this.listener.message(place + told.message);
+      // What has no place is of a scene all the same; what is of none has no file either.
+      const parts = [told.file, told.line, told.column].filter((part) => part !== null && part !== undefined);
+      this.listener.message(parts.length > 0 ? `${parts.join(":")}: ${told.message}` : told.message);
     }
   }
 

@@ -22,7 +22,8 @@ if (mood === "refuses") {
 if (mood === "slow") writeFileSync(`${output}.png`, "");
 console.error("preview: http://127.0.0.1:4711/?token=abc");
 console.error(JSON.stringify({ severity: "error", message: "unknown kind", file: "a.scene", line: 2, column: 7 }));
-console.error(JSON.stringify({ severity: "error", message: "no camera", file: null, line: null, column: null }));
+console.error(JSON.stringify({ severity: "error", message: "no camera", file: "a.scene", line: null, column: null }));
+console.error(JSON.stringify({ severity: "error", message: "a full disk", file: null, line: null, column: null }));
 console.error(JSON.stringify({ severity: "warning", message: "not told" }));
 if (mood !== "slow") console.log(JSON.stringify({ png: `${output}.png`, complete: true }));
 console.log("no summary");

@@ -40,7 +40,8 @@ test("address, pictures and mistakes are told, and stopping ends it well", async
   assert.deepEqual(of(told, "picture"), [join(folder, "a.png")]);
   const messages = of(told, "message");
   assert.ok(messages.includes("a.scene:2:7: unknown kind"));
-  assert.ok(messages.includes("no camera"), "of no place none is told");
+  assert.ok(messages.includes("a.scene: no camera"), "of no place none is told");
+  assert.ok(messages.includes("a full disk"), "and of no scene no file");
   assert.ok(messages.includes(""), "a finished picture takes the last message away");
   assert.ok(!of(told, "message").includes("not told"));
   assert.deepEqual(of(told, "ended"), [0]);

@@ -7,6 +7,7 @@ use luxel_sdk::abi::Class;
 
 use super::Evaluator;
 use super::env::Env;
+use super::stray::Stray;
 use super::value::{FieldValue, Function, Value};
 use crate::syntax::{Block, Expr, ExprNode, Name, Op, Stmt, StmtNode, stray};
 
@@ -30,7 +31,9 @@ pub(super) struct Body {
     pub(super) broken: bool,
     /// Statements of it that cannot be read.
     pub(super) unread: Vec<Span>,
-    /// Parameters that objects without a name are meant for; `None` may be any.
+    /// Objects in it that have no name.
+    pub(super) strays: Vec<Stray>,
+    /// Parameters that they are meant for; `None` may be any.
     pub(super) meant: Vec<Option<&'static str>>,
     /// The class whose parameters the fields are, if it is known.
     pub(super) class: Option<Class>,
@@ -38,7 +41,8 @@ pub(super) struct Body {
 
 impl Body {
     pub(super) fn new(place: Place) -> Self {
-        Self { place, fields: vec![], broken: false, unread: vec![], meant: vec![], class: None }
+        let (fields, unread, strays, meant) = Default::default();
+        Self { place, fields, broken: false, unread, strays, meant, class: None }
     }
 
     /// Whether all of it is known, and is where it belongs.
@@ -148,7 +152,7 @@ impl Evaluator<'_> {
             StmtNode::Object(object) => {
                 let value = self.object(object, env, body.class.as_ref());
                 if body.place == Place::Object {
-                    self.stray_object(object, body);
+                    body.strays.push(Stray::of(object));
                 } else {
                     self.labels.add(object.label.as_ref(), &value);
                     self.emit(&value, object.head());

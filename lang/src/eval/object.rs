@@ -60,6 +60,7 @@ impl Evaluator<'_> {
         let class = |head: &Head| self.registry.class(head.kind?, &head.class.text);
         body.class = head.as_ref().and_then(class).copied();
         self.block(&object.body, env, &mut body);
+        self.tell_strays(&mut body);
         match head {
             Some(head) if body.is_whole() => self.build(&head, body.fields),
             head => {

@@ -206,12 +206,17 @@ impl Running {
 
     /// The port and token of the page that it serves.
     pub(crate) fn page(&mut self) -> (u16, String) {
-        let mut lines = BufReader::new(self.0.as_mut().unwrap().stderr.take().unwrap()).lines();
-        let told =
-            lines.find_map(|line| line.unwrap().split_once("127.0.0.1:").map(|it| it.1.to_owned()));
-        let (port, token) = told.as_ref().unwrap().split_once("/?token=").unwrap();
-        std::thread::spawn(move || lines.count());
+        let told = self.says(|line| line.split_once("127.0.0.1:").map(|it| it.1.to_owned()));
+        let (port, token) = told.split_once("/?token=").unwrap();
         (port.parse().unwrap(), token.to_owned())
+    }
+
+    /// Waits for a line on standard error of which `find` makes something; the others are lost.
+    pub(crate) fn says<T>(&mut self, find: impl Fn(&str) -> Option<T>) -> T {
+        let mut lines = BufReader::new(self.0.as_mut().unwrap().stderr.take().unwrap()).lines();
+        let found = lines.find_map(|line| find(&line.unwrap())).expect("it is said");
+        std::thread::spawn(move || lines.count());
+        found
     }
 
     pub(crate) fn end(mut self) -> Done {

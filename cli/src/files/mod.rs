@@ -51,7 +51,7 @@ impl DiskFiles {
             _ => Path::new("."),
         };
         let allowed = [own, scene].into_iter().chain(allow.iter().map(PathBuf::as_path));
-        // A folder that does not exist holds nothing that could be allowed. Below a file there is but itself.
+        // A folder that does not exist holds nothing that could be allowed; a file allows itself alone.
         let allowed = allowed.filter_map(|folder| fs::canonicalize(folder).ok()).collect();
         let (asked, read, known, stop) = Default::default();
         Self { allowed, asked, read, known, stop }

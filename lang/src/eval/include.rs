@@ -186,8 +186,8 @@ impl Evaluator<'_> {
         Env::new(Rc::new(File { folder, units, overrides, is_root }))
     }
 
-    /// Tells of a file that is no scene by its name, and how it is read; whether it is one.
-    fn is_other(&mut self, name: &Name) -> bool {
+    /// Whether a file is no scene by its name, which is told with how it is read.
+    fn is_no_scene(&mut self, name: &Name) -> bool {
         let (file, path) = (&name.text, Path::new(&*name.text));
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let importer = if ending == "glb" { "gltf" } else { &ending };
@@ -208,7 +208,7 @@ impl Evaluator<'_> {
 
     /// The file that a statement names: its path and text. `None` after a mistake.
     fn open(&mut self, name: &Name, env: &Env) -> Option<(PathBuf, PathBuf, Rc<ReadFile>)> {
-        if self.is_other(name) {
+        if self.is_no_scene(name) {
             return None;
         }
         let path = env.file.folder.join(&*name.text);

@@ -112,3 +112,8 @@ impl<'a> Around<'a> {
 pub(super) fn is_category(word: &str) -> bool {
     Kind::of_word(word).is_some()
 }
+
+/// Something that is not expected there.
+pub(super) fn told(span: Span, message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error("E0023", span, message)
+}

@@ -10,7 +10,7 @@ use super::Rule;
 use super::gaps::Gaps;
 use super::habits::condition;
 use super::make::{self, RESERVED};
-use super::statement::{is_single, of_single};
+use super::statement::{is_suffix, of_suffix};
 use super::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
     Quoted, Stmt, StmtNode,
@@ -387,8 +387,8 @@ impl Builder<'_> {
             self.sink.push(found);
             return None;
         }
-        if is_single(text) {
-            self.sink.push(of_single(span));
+        if is_suffix(text) {
+            self.sink.push(of_suffix(span));
             return None;
         }
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));

@@ -6,7 +6,7 @@ use std::ops::Range;
 use luxel_core::diag::{Diagnostic, Grade, Span};
 use luxel_sdk::params::Unit;
 
-use super::around::{Around, Place, is_category};
+use super::around::{Around, Place, is_category, told};
 use super::lex::{Token, TokenKind};
 use super::type_names;
 
@@ -26,10 +26,6 @@ pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| bare_vector(around))
         .or_else(|| braced_vector(around))
         .or_else(|| called_parameter(around))
-}
-
-fn told(span: Span, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error("E0023", span, message)
 }
 
 /// The token that begins a statement with one of these words, at most two before the place.

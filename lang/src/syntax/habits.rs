@@ -2,7 +2,7 @@
 
 use luxel_core::diag::{Diagnostic, Span};
 
-use super::around::{Around, Place, is_category};
+use super::around::{Around, Place, is_category, told};
 use super::defined::stem;
 use super::foreign::foreign;
 use super::lex::{Token, TokenKind};
@@ -62,10 +62,6 @@ fn joined(around: &Around<'_>, first: usize, texts: &[&str]) -> Option<Span> {
     let touch = tokens.windows(2).all(|pair| pair[0].end() == pair[1].start);
     let same = tokens.iter().zip(texts).all(|(token, text)| token.text == *text);
     (touch && same).then(|| around.span(&tokens[0]).to(around.span(&tokens[texts.len() - 1])))
-}
-
-fn told(span: Span, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error("E0023", span, message)
 }
 
 /// A sign of typography, or a blank that is none to the grammar.

@@ -2,7 +2,7 @@
 
 use luxel_core::diag::{Diagnostic, Span};
 
-use super::around::{Around, Place, is_category};
+use super::around::{Around, Place, is_category, told};
 use super::lex::{Token, TokenKind};
 use super::make::RESERVED;
 
@@ -13,7 +13,7 @@ pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| assertion(around))
         .or_else(|| stepped(around))
         .or_else(|| quoted_name(around))
-        .or_else(|| single(around))
+        .or_else(|| suffixed(around))
 }
 
 /// How a statement is written of which the place is a part.
@@ -28,10 +28,6 @@ pub(super) fn pattern(word: &str) -> Option<&'static str> {
         "set" => "a setting is written `set label.radius = 2 m`",
         _ => return None,
     })
-}
-
-fn told(span: Span, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error("E0023", span, message)
 }
 
 /// `place tree(1 m)`
@@ -121,19 +117,19 @@ fn quoted_name(around: &Around<'_>) -> Option<Diagnostic> {
 }
 
 /// `2.5f m`
-fn single(around: &Around<'_>) -> Option<Diagnostic> {
+fn suffixed(around: &Around<'_>) -> Option<Diagnostic> {
     let (letter, number) = (around.before(1)?, around.before(2)?);
     let touch = number.kind == TokenKind::Number && number.end() == letter.start;
-    (touch && is_single(letter.text)).then(|| of_single(around.span(letter)))
+    (touch && is_suffix(letter.text)).then(|| of_suffix(around.span(letter)))
 }
 
 /// Whether a letter behind a number says elsewhere of which precision it is.
-pub(super) fn is_single(letter: &str) -> bool {
+pub(super) fn is_suffix(letter: &str) -> bool {
     matches!(letter, "f" | "F")
 }
 
 /// What is said of such a letter.
-pub(super) fn of_single(letter: Span) -> Diagnostic {
+pub(super) fn of_suffix(letter: Span) -> Diagnostic {
     let found = Diagnostic::error("E0204", letter, "no letter stands behind a number");
     found.help("what is calculated with is precise enough").guess(letter, "")
 }

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { basename, join } from "node:path";
 import { PHONE, attacked, isHidden, mean, open, press, readback, roomy, root, run, shots, text, until, view } from "./common.mjs";
-import { begun, CAMERA, coarse, corner, done, facts, isWiped, rendered, scene, shows, SIZE, slide, watch, WINDOW, wiped, words, worst } from "./watching.mjs";
+import { begun, CAMERA, coarse, corner, done, facts, generation, isWiped, rendered, scene, shows, SIZE, slide, slow, watch, WINDOW, wiped, words, worst } from "./watching.mjs";
 
 const tests = {
   async "after twelve saves 60 ms apart the last is shown"({ browser }) {
@@ -97,16 +97,15 @@ const tests = {
     const { page, complaints, close } = await open(browser, one.url, { viewport: WINDOW, before: coarse });
     await done(page);
     await press(page, "z");
-    const generation = () => page.evaluate(() => Number(document.getElementById("picture").dataset.generation));
-    const first = await generation();
+    const first = await generation(page);
     // A coarse picture is missed now and then when the next one is there before it is sent.
     await page.evaluate(() => (window.isCoarse = true));
-    for (let i = 0; (await generation()) === first; i++) {
+    for (let i = 0; (await generation(page)) === first; i++) {
       assert.ok(i < 40, "no coarse picture came");
       one.save(scene({ grey: `0.${20 + i}` }));
       await page.waitForTimeout(250);
     }
-    assert.ok((await generation()) > first);
+    assert.ok((await generation(page)) > first);
     await page.evaluate(() => (window.isCoarse = false));
     one.save(scene({ grey: "0.1" }));
     const [now, past] = [rendered(scene({ grey: "0.1" })), rendered(scene())];
@@ -117,6 +116,24 @@ const tests = {
     assert.deepEqual(complaints, []);
     await close();
     await one.end();
+  },
+
+  async "the first picture of an edit waits for no better one of the edit before"({ browser }) {
+    const { page, save, end } = await begun(browser, scene(), { viewport: WINDOW, before: slow });
+    await page.evaluate(() => (window.isSlow = true));
+    // A better picture is missed now and then when the last one is there before the first is sent.
+    for (let i = 0; !(await page.evaluate(() => window.isBusy)); i++) {
+      assert.ok(i < 40, "no better picture came");
+      save(scene({ grey: `0.${20 + i}` }));
+      await page.waitForTimeout(250);
+    }
+    const before = await generation(page);
+    save(scene({ grey: "0.1" }));
+    await until("the next edit", async () => (await generation(page)) > before);
+    await page.evaluate(() => (window.isSlow = false));
+    await shows(page, rendered(scene({ grey: "0.1" })));
+    await done(page);
+    await end();
   },
 
   async "a picture that was pinned stays to be compared with"({ browser }) {

@@ -95,6 +95,21 @@ export const coarse = (page) => page.addInitScript(() => {
     },
   });
 });
+// Has a browser stay busy with the first picture that is drawn in parts, from when its `isSlow` is set.
+export const slow = (page) => page.addInitScript(() => {
+  Object.assign(window, { isSlow: false, isBusy: false });
+  const { scissor, getSyncParameter } = WebGL2RenderingContext.prototype;
+  Object.assign(WebGL2RenderingContext.prototype, {
+    scissor(...box) {
+      window.isBusy = window.isSlow;
+      scissor.apply(this, box);
+    },
+    getSyncParameter(fence, name) {
+      return window.isSlow && window.isBusy ? this.UNSIGNALED : getSyncParameter.call(this, fence, name);
+    },
+  });
+});
+export const generation = (page) => page.evaluate(() => Number(document.getElementById("picture").dataset.generation));
 export const done = (page) => until("the last sample", async () => /done/.test(await text(page, "status")));
 export const facts = (page) => page.evaluate(() => Object.fromEntries([...document.querySelectorAll("#facts dt")].map((dt) => [dt.textContent, dt.nextElementSibling.textContent])));
 export const slide = (page, name, value) => page.evaluate(({ name, value }) => {

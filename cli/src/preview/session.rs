@@ -62,7 +62,7 @@ pub(crate) struct View {
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 enum Said {
-    /// The last picture is on the screen: the next may come.
+    /// The oldest picture that was sent is on the screen, or given up for a later one.
     Drawn,
     Ask(Command),
 }
@@ -76,18 +76,44 @@ pub(crate) const PACE: Duration = Duration::from_millis(100);
 /// A page that takes nothing for so long is given up; tests have less patience.
 const PATIENCE: Duration = Duration::from_millis(if cfg!(test) { 500 } else { 30_000 });
 
+/// The pictures that a page has been sent and not drawn yet.
+#[derive(Debug, Default)]
+struct Drawing {
+    n: usize,
+    /// Whether the last of them is an edit's first.
+    is_first: bool,
+}
+
+impl Drawing {
+    /// Whether the next may be sent: the first picture of an edit waits for the first of another alone, for
+    /// a page gives up better pictures of the edit before.
+    fn takes(&self, is_first: bool) -> bool {
+        self.n == 0 || is_first && !self.is_first
+    }
+
+    fn begin(&mut self, is_first: bool) {
+        self.n += 1;
+        self.is_first = is_first;
+    }
+
+    fn end(&mut self) {
+        self.n = self.n.saturating_sub(1);
+    }
+}
+
 /// Tells the page everything until it goes.
 pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSender<Command>) {
     let mut changes = board.subscribe();
     let mut told = [0; Topic::ALL.len()];
-    let (mut drawing, mut next) = (false, Instant::now());
+    let (mut drawing, mut next) = (Drawing::default(), Instant::now());
     loop {
         let _ = changes.borrow_and_update();
         let early = Instant::now() < next;
         for topic in Topic::ALL {
             let Some(news) = board.later(topic, told[topic as usize]) else { continue };
             // Whoever edits waits for the first picture, and for no pace.
-            if topic.is_picture() && (drawing || early && !news.is_first) {
+            let waits = !drawing.takes(news.is_first) || early && !news.is_first;
+            if topic.is_picture() && waits {
                 continue;
             }
             if send(&mut socket, topic, news.bytes).await.is_none() {
@@ -95,15 +121,16 @@ pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSen
             }
             told[topic as usize] = news.number;
             if topic.is_picture() {
-                (drawing, next) = (true, Instant::now() + PACE);
+                drawing.begin(news.is_first);
+                next = Instant::now() + PACE;
             }
         }
         tokio::select! {
             changed = changes.changed() => if changed.is_err() { return },
-            () = sleep_until(next), if !drawing && early => {}
+            () = sleep_until(next), if drawing.takes(false) && early => {}
             said = socket.recv() => match said {
                 Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
-                    Ok(Said::Drawn) => drawing = false,
+                    Ok(Said::Drawn) => drawing.end(),
                     Ok(Said::Ask(command)) => { let _ = commands.try_send(command); }
                     // Not one of our pages.
                     Err(_) => return,
@@ -128,6 +155,25 @@ async fn send(socket: &mut WebSocket, topic: Topic, bytes: Bytes) -> Option<()> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_edits_first_picture_waits_for_no_better_one_of_the_edit_before() {
+        let mut drawing = Drawing::default();
+        assert!(drawing.takes(true) && drawing.takes(false));
+        drawing.begin(true);
+        assert!(!drawing.takes(true) && !drawing.takes(false));
+        drawing.end();
+        drawing.begin(false);
+        assert!(drawing.takes(true) && !drawing.takes(false));
+        drawing.begin(true);
+        assert!(!drawing.takes(true) && !drawing.takes(false));
+        // The better one is given up, the first is still to be drawn.
+        drawing.end();
+        assert!(!drawing.takes(true) && !drawing.takes(false));
+        drawing.end();
+        drawing.end();
+        assert!(drawing.takes(true) && drawing.takes(false));
+    }
 
     #[test]
     fn what_a_page_says_is_understood_or_refused() {

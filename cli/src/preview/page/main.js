@@ -40,6 +40,7 @@ const camera = new Camera((command) => wire.ask(command), pan);
 let due = false;
 let afterDrawing = [];
 function redraw() {
+  giveUp();
   if (due) return;
   due = true;
   requestAnimationFrame(() => {
@@ -50,17 +51,46 @@ function redraw() {
   });
 }
 
+// A better picture of the edit on the screen is drawn in parts, so that the next edit's first need not wait.
+let giveUp = () => {};
+function refine(drawn) {
+  giveUp();
+  const end = () => {
+    giveUp = () => {};
+    drawn();
+  };
+  const shown = () => {
+    tell();
+    end();
+  };
+  const stop = attempt(() => painter.drawInParts(state, pan, devicePixelRatio, shown));
+  if (!stop) return end();
+  giveUp = () => {
+    stop();
+    end();
+  };
+}
+
+function attempt(draw) {
+  try {
+    return draw();
+  } catch (error) {
+    $("empty").hidden = false;
+    $("empty").textContent = error.message;
+  }
+}
+
 function paint() {
   const ratio = devicePixelRatio, [w, h] = pan.room.map((side) => Math.max(Math.round(side * ratio), 1));
   if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
   $("empty").hidden = Boolean(state.a);
   if (!state.a) return;
-  try {
-    painter.draw(state, pan, ratio);
-  } catch (error) {
-    $("empty").hidden = false;
-    $("empty").textContent = error.message;
-  }
+  attempt(() => painter.draw(state, pan, ratio));
+  tell();
+}
+
+// What stands around the picture on the screen.
+function tell() {
   // Which edit is on the screen, for whoever measures how soon.
   canvas.dataset.generation = state.a.generation;
   legend(state);
@@ -210,6 +240,7 @@ $("set-copy").addEventListener("click", () => copy($("set-text").textContent, $(
 const wire = connect({
   picture(picture, drawn) {
     const first = !state.a;
+    const isBetter = picture.side !== "b" && state.a?.generation === picture.generation && !due && !document.hidden;
     if (picture.side === "b") {
       state.b = picture;
       if (state.compare === "off") state.compare = "b";
@@ -224,6 +255,7 @@ const wire = connect({
     }
     painter.forget([state.a, state.b, state.previous, state.pinned]);
     if (!state.a) return drawn();
+    if (isBetter && painter.drawInParts) return refine(drawn);
     afterDrawing.push(drawn);
     redraw();
   },

@@ -140,7 +140,7 @@ function single(param, tell, out) {
       const text = input.value.trim();
       if (param.kind === "text") tell(input.value);
       // With a unit of its own, as it stands.
-      else if (text) tell(isNumber(text) ? text + behind : text);
+      else if (text) tell(isNumber(text) ? plain(text) + behind : text);
     });
   }
   const show = (value) => {
@@ -153,6 +153,8 @@ function single(param, tell, out) {
 }
 
 const isNumber = (text) => text !== "" && Number.isFinite(Number(text));
+// As a scene writes it: `5.` and `+1` are numbers here alone.
+const plain = (text) => String(Number(text)).replace("+", "");
 
 // What a screen is given for linear sRGB, and the other way.
 const encoded = (x) => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
@@ -176,9 +178,9 @@ function many(param, tell, out) {
   const told = () => {
     const texts = inputs.map((input, i) => (input.value === rounded(exact[i]) ? String(exact[i]) : input.value.trim()));
     if (texts.includes("")) return;
-    if (texts.every(isNumber)) tell(open + texts.join(", ") + close + behind);
+    if (texts.every(isNumber)) tell(open + texts.map(plain).join(", ") + close + behind);
     // With units of their own, as they stand.
-    else tell(open + texts.map((text) => (isNumber(text) ? text + behind : text)).join(", ") + close);
+    else tell(open + texts.map((text) => (isNumber(text) ? plain(text) + behind : text)).join(", ") + close);
   };
   let inputs = [];
   const show = (value) => {

@@ -78,11 +78,10 @@ fn words(difference: &Difference, texts: &[Text; 2]) -> String {
     let (what, places) = (difference.counted(), places.collect::<Vec<_>>().join(" "));
     let mut out = format!("{what}{how}  {places}\n");
     for change in changes(difference) {
-        let [a, b] = both(change.spans, texts, written);
-        let values = match (a, b) {
-            (Some(a), Some(b)) if a != b => format!(": {a} → {b}"),
-            (Some(a), None) => format!(": {a} → default"),
-            (None, Some(b)) => format!(": default → {b}"),
+        let values = match values(change, texts) {
+            [Some(a), Some(b)] if a != b => format!(": {a} → {b}"),
+            [Some(a), None] => format!(": {a} → default"),
+            [None, Some(b)] => format!(": default → {b}"),
             // What it is made of differs.
             _ => String::new(),
         };
@@ -99,13 +98,24 @@ fn told(difference: &Difference, texts: &[Text; 2]) -> Value {
         How::Changed(_) => "changed",
     };
     let parameter = |change: &Change| {
-        let [a, b] = both(change.spans, texts, written);
+        let [a, b] = values(change, texts);
         json!({ "name": change.name, "a": a, "b": b })
     };
     let [a, b] = both(difference.spans, texts, place);
     let parameters: Vec<_> = changes(difference).iter().map(parameter).collect();
     let Difference { what, n, .. } = difference;
     json!({ "what": what, "n": n, "how": how, "a": a, "b": b, "parameters": parameters })
+}
+
+/// The values of a parameter as their authors have them, or as what they come to.
+fn values(change: &Change, texts: &[Text; 2]) -> [Option<String>; 2] {
+    let written = both(change.spans, texts, written);
+    let is_alike = written[0] == written[1] && change.values[0] != change.values[1];
+    if is_alike && change.values.iter().all(Option::is_some) {
+        change.values.clone()
+    } else {
+        written
+    }
 }
 
 fn changes(difference: &Difference) -> &[Change] {

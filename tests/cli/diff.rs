@@ -70,13 +70,38 @@ fn what_a_loop_makes_is_told_once() {
 }
 
 #[test]
+fn what_is_written_alike_is_told_as_what_it_comes_to() {
+    let scene = |r: &str| {
+        let shapes = "shape box { size = (1, 1, 1) * r } shape sphere \"ball\" { radius = r / 2 }";
+        let many = "for i in 1..3 { shape disk { radius = i * r } shape disk { radius = r } }";
+        format!("{SCENE}let r = {r}\n{}\n{many}\n", shapes.replace(" shape", "\nshape"))
+    };
+    let folder = Folder::new("diff-alike").with("a.scene", &scene("1 m"));
+    let folder = folder.with("b.scene", &scene("25 cm"));
+    let done = folder.luxel(&["diff", "a.scene", "b.scene"]);
+    let line = SCENE.lines().count();
+    let at = |n: usize| format!("a.scene:{0} b.scene:{0}", line + n);
+    let told = format!(
+        "shape box  {}\n  size: (1, 1, 1) → (0.25, 0.25, 0.25)\nsphere \"ball\"  {}\n  radius: 0.5 m → 0.125 m\n\
+         2 × shape disk  {}\n  radius\n2 × shape disk  {}\n  radius: 1 m → 0.25 m\n",
+        at(2),
+        at(3),
+        at(4),
+        at(4),
+    );
+    // The one in the loop comes to another value each time.
+    assert_eq!((done.code, &*done.out), (1, &*told), "{done:?}");
+}
+
+#[test]
 fn params_are_set_in_both_and_mistakes_are_told() {
     let scene = |n: &str| SCENE.replace("camera", &format!("param n: int = {n}\ncamera"));
     let scene = |n: &str| scene(n).replace("samples = 4", "samples = n");
     let folder = Folder::new("diff-set").with("a.scene", &scene("1")).with("b.scene", &scene("2"));
     let done = folder.luxel(&["diff", "a.scene", "b.scene"]);
     // Both say `n`: what it stands for differs.
-    assert_eq!((done.code, &*done.out), (1, "sampler sobol  a.scene:8 b.scene:8\n  samples\n"));
+    let told = "sampler sobol  a.scene:8 b.scene:8\n  samples: 1 → 2\n";
+    assert_eq!((done.code, &*done.out), (1, told));
     assert_eq!(folder.luxel(&["diff", "a.scene", "b.scene", "--set", "n=3"]).code, 0);
     folder.write("wrong.scene", "scene 1\nlet a = 5 +\n");
     let done = folder.luxel(&["diff", "a.scene", "wrong.scene"]);

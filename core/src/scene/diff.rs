@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
 use std::path::Path;
 
+use super::print::in_line;
 use super::value::{Hash, group_hashes, hash_item};
 use super::{Group, Node, NodeId, Placed, Scene, Target, Value};
 use crate::diag::Span;
@@ -39,12 +40,41 @@ pub struct Change {
     pub name: String,
     /// Its values in the first scene and in the second; none where it is not given.
     pub spans: [Option<Span>; 2],
+    /// What these come to, in SI units: of what a line tells, and alike wherever `n` of them differ.
+    pub values: [Option<String>; 2],
 }
 
 impl Change {
     /// Of what has no value of its own.
     fn named(name: impl Into<String>) -> Self {
-        Self { name: name.into(), spans: [None; 2] }
+        Self { name: name.into(), spans: [None; 2], values: [None, None] }
+    }
+
+    /// Whether it is the same parameter, written in the same places.
+    fn is_of(&self, other: &Self) -> bool {
+        (&self.name, &self.spans) == (&other.name, &other.spans)
+    }
+}
+
+impl How {
+    /// Whether it is written in the same places.
+    fn is_written_as(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Changed(some), Self::Changed(others)) => {
+                some.len() == others.len() && some.iter().zip(others).all(|(a, b)| a.is_of(b))
+            }
+            _ => self == other,
+        }
+    }
+
+    /// Tells no values that the other has not.
+    fn forget_unlike(&mut self, other: &Self) {
+        let (Self::Changed(some), Self::Changed(others)) = (self, other) else { return };
+        for (change, other) in some.iter_mut().zip(others) {
+            if change.values != other.values {
+                change.values = [None, None];
+            }
+        }
     }
 }
 
@@ -101,9 +131,12 @@ fn together(found: Vec<Difference>) -> Vec<Difference> {
     let mut last: BTreeMap<[Option<Span>; 2], usize> = BTreeMap::new();
     for difference in found {
         let before = last.get(&difference.spans).map(|at| &mut out[*at]);
-        let is_same = |it: &&mut Difference| it.what == difference.what && it.how == difference.how;
+        let is_same = |it: &&mut Difference| {
+            it.what == difference.what && it.how.is_written_as(&difference.how)
+        };
         if let Some(same) = before.filter(is_same) {
             same.n += 1;
+            same.how.forget_unlike(&difference.how);
         } else {
             last.insert(difference.spans, out.len());
             out.push(difference);
@@ -228,7 +261,8 @@ impl Differ<'_> {
         let mut changed = vec![];
         for name in names {
             let spans = [x, y].map(|node| node.get(name).map(|it| it.span));
-            let change = || Change { name: name.to_owned(), spans };
+            let values = || [x, y].map(|node| node.get(name).and_then(|it| in_line(&it.value)));
+            let change = || Change { name: name.to_owned(), spans, values: values() };
             match (x.get(name).map(|it| &it.value), y.get(name).map(|it| &it.value)) {
                 (Some(Value::Node(a)), Some(Value::Node(b))) => self.nodes(*a, *b),
                 (Some(Value::Moved(a, from)), Some(Value::Moved(b, to))) => {

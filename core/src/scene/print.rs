@@ -5,6 +5,7 @@ use std::fmt::Write;
 use glam::DAffine3;
 use luxel_sdk::params::Dimension;
 
+use super::conform::number_words;
 use super::{Group, Node, NodeId, Placed, Pose, Scene, Step, Target, Value};
 
 /// Tables longer than this are shown by their first numbers, their length and a hash.
@@ -152,6 +153,22 @@ fn print_value(out: &mut String, value: &Value) {
             Ok(())
         }
     };
+}
+
+/// What a line tells of a value, in SI units; `None` of what it does not tell whole.
+pub(super) fn in_line(value: &Value) -> Option<String> {
+    match value {
+        Value::Bool(value) => Some(value.to_string()),
+        Value::Number(x, Dimension::NONE) => Some(number_words(*x)),
+        Value::Number(x, dimension) => Some(format!("{} {dimension}", number_words(*x))),
+        Value::Vector(v) => {
+            let all: Vec<_> = v.iter().map(|x| number_words(*x)).collect();
+            Some(format!("({})", all.join(", ")))
+        }
+        Value::Text(text) => Some(format!("{text:?}")),
+        Value::Path(path) => Some(format!("{:?}", path.to_string_lossy())),
+        _ => None,
+    }
 }
 
 fn print_table(out: &mut String, table: &[f64]) {

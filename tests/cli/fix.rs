@@ -167,7 +167,8 @@ fn what_a_mend_uncovers_is_mended_too() {
 
 #[test]
 fn a_code_is_explained_with_an_example_and_its_mend() {
-    let folder = Folder::new("explain-page").with("a.scene", "scene 1\nshape spher { }\n");
+    let folder =
+        Folder::new("explain-page").with("a.scene", "scene 1\nshape spher { radius = 1 m }\n");
     let done = folder.luxel(&["explain", "e0402"]);
     assert!(done.code == 0 && done.out.starts_with("E0402: an unknown parameter\n\n"), "{done:?}");
     assert!(done.out.contains("\n    shape sphere { radus = 5 cm }\n"), "{done:?}");

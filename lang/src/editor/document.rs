@@ -148,6 +148,15 @@ impl Document {
         let before = |at: usize| self.pieces.partition_point(|piece| piece.start < at);
         // A bracket that did not close may close now.
         let touched = self.unclosed.first().map_or(range.start, |open| (open + 1).min(range.start));
+        // Where a string ends that its line does not end depends on the rest of the line.
+        let line = self.line(self.line_of(range.start)).start;
+        let begun = self.pieces.get(before(line).saturating_sub(1)..before(touched));
+        let torn = begun
+            .unwrap_or_default()
+            .iter()
+            .find(|piece| piece.faulty)
+            .map(|piece| piece.start + 1);
+        let touched = torn.map_or(touched, |torn| torn.min(touched));
         // One further back, for a statement whose first word changes may begin no more.
         let first = before(touched).checked_sub(2).filter(|_| is_same_head);
         let shift = |at: usize| at - range.end + range.start + length;

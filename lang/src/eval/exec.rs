@@ -9,7 +9,7 @@ use super::Evaluator;
 use super::env::Env;
 use super::stray::Stray;
 use super::value::{FieldValue, Function, Value};
-use crate::syntax::{Block, Expr, ExprNode, Name, Op, Stmt, StmtNode, stray};
+use crate::syntax::{Block, Expr, ExprNode, Name, Op, RESERVED, Stmt, StmtNode, stray};
 
 /// What the statements of a block may say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,6 +164,10 @@ impl Evaluator<'_> {
     }
 
     fn stray_field(&mut self, name: &Name, env: &Env) {
+        // `let = 3`: that it is no name is told already.
+        if RESERVED.contains(&&*name.text) {
+            return;
+        }
         let message = format!("`{}` stands in no object", name.text);
         let start = Span { end: name.span.start, ..name.span };
         let found = Diagnostic::error("E0113", name.span, message);

@@ -85,6 +85,7 @@ impl Evaluator<'_> {
 
     /// The values of `name = value` pairs.
     pub(super) fn fields(&mut self, fields: &[Field], env: &Env) -> Vec<FieldValue> {
+        self.given_twice(fields.iter().map(|field| &field.name));
         fields.iter().map(|field| self.field(field, env)).collect()
     }
 

@@ -17,6 +17,7 @@ mod expr;
 mod finish;
 mod given;
 mod include;
+mod kind;
 mod lacking;
 mod mention;
 pub(crate) mod names;

@@ -1,5 +1,6 @@
 //! Objects: fields against the schema of their class, and what becomes of them in the scene.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -13,14 +14,9 @@ use luxel_sdk::params::{Param, Type};
 use super::elsewhere::meant;
 use super::env::Env;
 use super::exec::{Body, Place};
-use super::stray::takers;
-use super::unseen::is_slip;
 use super::value::{FieldValue, Head, ObjectValue, Value, What};
 use super::{Evaluator, OpenGroup};
 use crate::syntax::{Name, Object};
-
-/// Libraries that a message lists, at most.
-const SHOWN: usize = 8;
 
 /// Bytes between two parameters of one object that are looked through.
 const BESIDE: usize = 1 << 12;
@@ -58,13 +54,15 @@ impl Evaluator<'_> {
         let head = self.head(object, span, within);
         let mut body = Body::new(Place::Object);
         let class = |head: &Head| self.registry.class(head.kind?, &head.class.text);
-        body.class = head.as_ref().and_then(class).copied();
+        let known = head.as_ref().map_or_else(|meant| meant.as_ref(), Some);
+        body.class = known.and_then(class).copied();
         self.block(&object.body, env, &mut body);
         self.tell_strays(&mut body);
         match head {
-            Some(head) if body.is_whole() => self.build(&head, body.fields),
+            Ok(head) if body.is_whole() => self.build(&head, body.fields),
             head => {
                 self.damaged = true;
+                let head = head.map_or_else(|meant| meant, Some);
                 if let (Some(head), Some(class), false) = (head, body.class, body.broken) {
                     self.look_over(&head, &class, &body);
                 }
@@ -86,69 +84,6 @@ impl Evaluator<'_> {
             meant.push(name.filter(|_| !text.trim().contains('\n')));
         }
         self.complete(class, head, &body.fields, &meant);
-    }
-
-    fn head(&mut self, object: &Object, span: Span, within: Option<&Class>) -> Option<Head> {
-        let category = &object.category;
-        let Some(kind) = Kind::of_word(&category.text) else {
-            let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
-            let meant = near(&category.text, words().chain(["units"]));
-            let is_other = meant.is_some_and(|meant| !is_slip(meant.name));
-            self.unseen.thing |= !is_other;
-            let message = format!("there is no kind of object `{}`", category.text);
-            let found =
-                Diagnostic::error("E0401", category.span, message).meant(category.span, meant);
-            let kinds = Kind::ALL.iter().filter(|(kind, _)| {
-                let name = category.text.to_lowercase();
-                self.registry.class(*kind, &name).is_some() && object.kind.is_none()
-            });
-            let start = Span { end: category.span.start, ..category.span };
-            let found = kinds.fold(found, |found, (kind, word)| {
-                let name = category.text.to_lowercase();
-                let param = within.and_then(|class| takers(class, *kind).next());
-                let given = param.map_or(String::new(), |param| format!("{} = ", param.name));
-                if name == *category.text {
-                    return found.guess(start, format!("{given}{word} "));
-                }
-                found.guess(category.span, format!("{given}{word} {name}"))
-            });
-            let known: Vec<_> = words().collect();
-            self.tell(found.help(format!("known are {}", known.join(", "))));
-            return None;
-        };
-        let names = || self.registry.of_kind(kind).map(|e| e.class.name).collect::<Vec<_>>();
-        let Some(class) = &object.kind else {
-            let message = format!("which {kind}? its name is missing after `{kind}`");
-            let found = Diagnostic::error("E0401", category.span, message);
-            let names = names().join(", ");
-            self.tell(found.help(format!("known are {names}")));
-            return None;
-        };
-        if self.registry.class(kind, &class.text).is_none() {
-            let names = names();
-            self.no_class(kind, class, &names);
-            return None;
-        }
-        Some(Head { kind: Some(kind), class: class.clone(), label: object.label.clone(), span })
-    }
-
-    /// Tells of a class that nobody has, and which libraries that are not loaded may have it.
-    fn no_class(&mut self, kind: Kind, class: &Name, names: &[&str]) {
-        let near = meant(&class.text, names);
-        // It may be of the plugin that is asked for and not there, which has been told.
-        if near.is_none() && self.n_unmet > 0 {
-            return;
-        }
-        let namesake = self.unloaded.iter().any(|library| *library.stem == *class.text);
-        let missing = namesake || (near.is_none() && !self.unloaded.is_empty());
-        let code = if missing { "E0414" } else { "E0401" };
-        let message = format!("there is no {kind} `{}`", class.text);
-        let mut found = Diagnostic::error(code, class.span, message).meant(class.span, near);
-        if missing {
-            let advice = self.unloaded.iter().take(SHOWN).map(|library| library.advice.clone());
-            found = advice.fold(found, Diagnostic::help);
-        }
-        self.tell(found.help(format!("known are {}", names.join(", "))));
     }
 
     fn group(&mut self, object: &Object, span: Span, env: &Env) -> Value {
@@ -178,8 +113,8 @@ impl Evaluator<'_> {
     /// The transform and material of a group or a placement.
     pub(super) fn group_fields(&mut self, fields: &[FieldValue]) -> (Pose, Option<NodeId>) {
         let (mut pose, mut material) = (Pose::IDENTITY, None);
-        for (i, field) in fields.iter().enumerate() {
-            self.given_twice(&fields[..i], field);
+        self.given_twice(fields.iter().map(|field| &field.name));
+        for field in fields {
             match &*field.name.text {
                 "transform" => {
                     pose = self.transform(&field.value, field.span).unwrap_or_default();
@@ -285,8 +220,8 @@ impl Evaluator<'_> {
             is_placed: true,
             lacks_own: false,
         };
-        for (i, field) in fields.iter().enumerate() {
-            self.given_twice(&fields[..i], field);
+        self.given_twice(fields.iter().map(|field| &field.name));
+        for field in fields {
             let Some(param) = Registry::params(class).find(|p| p.name == &*field.name.text) else {
                 match &*field.name.text {
                     "transform" if stands_somewhere(class.kind) => {
@@ -391,11 +326,16 @@ impl Evaluator<'_> {
         Argument { name: param.name, value, span: field.span }
     }
 
-    fn given_twice(&mut self, before: &[FieldValue], field: &FieldValue) {
-        if let Some(first) = before.iter().find(|f| f.name.text == field.name.text) {
-            let message = format!("`{}` is given twice", field.name.text);
-            let diagnostic = Diagnostic::error("E0404", field.name.span, message);
-            self.tell(diagnostic.label(first.name.span, "first given here"));
+    /// Tells of fields that have the name of one before.
+    pub(super) fn given_twice<'n>(&mut self, names: impl Iterator<Item = &'n Name>) {
+        let mut firsts: BTreeMap<&str, Span> = BTreeMap::new();
+        for name in names {
+            let first = *firsts.entry(&name.text).or_insert(name.span);
+            if first != name.span {
+                let message = format!("`{}` is given twice", name.text);
+                let diagnostic = Diagnostic::error("E0404", name.span, message);
+                self.tell(diagnostic.label(first, "first given here"));
+            }
         }
     }
 

@@ -42,7 +42,8 @@ impl Evaluator<'_> {
         let code = if env.file.is_root { Some("E0112") } else { None };
         let value = self.fit_setting(def, &own, &given, env, code);
         self.in_range(def, &value, range.as_ref(), given.span, code.unwrap_or("E0405"));
-        if self.mistakes() > before {
+        // What is no value at all has been told already. The parameter stays known, to be given another.
+        if self.mistakes() > before || value.is_poison() {
             return Value::Poison;
         }
         if let Some(info) = place.and_then(|place| self.params.get_mut(place)) {
@@ -108,17 +109,29 @@ impl Evaluator<'_> {
             }
             return;
         };
-        let Value::Number(x, dimension) = value else { return };
-        if *dimension != range.dimension {
+        let (numbers, dimension) = match value {
+            Value::Number(x, dimension) => (std::slice::from_ref(x), dimension),
+            Value::Numbers(numbers) => (&*numbers.data, &numbers.dimension),
+            Value::Poison => return,
+            other => {
+                let message = format!("a range bounds numbers, not {}", other.describe());
+                self.poison("E0214", *range_span, message);
+                return;
+            }
+        };
+        if range.start > range.end {
+            self.poison("E0214", *range_span, "the range is empty: it goes up");
+        } else if *dimension != range.dimension {
             let message = format!(
                 "the range is of {}, the parameter {}",
                 range.dimension.name(),
                 dimension.name()
             );
             self.poison("E0203", *range_span, message);
-        } else if !range.contains(*x) {
+        } else if let Some(x) = numbers.iter().find(|x| !range.contains(**x)) {
+            let what = if matches!(value, Value::Number(..)) { "is" } else { "has" };
             let message = format!(
-                "`{}` is {}; it must be from {} to {}",
+                "`{}` {what} {}; it must be from {} to {}",
                 def.name.text,
                 show_number(*x, *dimension),
                 show_number(range.start, range.dimension),

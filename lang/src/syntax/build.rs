@@ -396,14 +396,15 @@ impl Builder<'_> {
             self.sink.push(diagnostic.help("a size is a vector").guess(all, size));
             return None;
         }
-        match suggest_unit(&bad) {
-            Some((unit, grade)) => {
-                diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));
-                if bad == text {
-                    diagnostic = diagnostic.mend(span, unit, grade);
-                }
+        if let Some((unit, grade)) = suggest_unit(&bad) {
+            diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));
+            if bad == text {
+                diagnostic = diagnostic.mend(span, unit, grade);
             }
-            None => diagnostic = diagnostic.help("a variable is multiplied by `*`"),
+        } else {
+            diagnostic = diagnostic.help(
+                "units are written as `cm`, `deg` or `W/m^2/sr`; a variable is multiplied by `*`",
+            );
         }
         self.sink.push(diagnostic);
         None
@@ -412,7 +413,7 @@ impl Builder<'_> {
 
 /// The unit that a misspelt one stands for: full names are sure, slips of the pen are guessed.
 fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
-    const FULL: [(&str, &str); 17] = [
+    const FULL: [(&str, &str); 21] = [
         ("meter", "m"),
         ("metre", "m"),
         ("kilometer", "km"),
@@ -430,11 +431,16 @@ fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
         ("lumen", "lm"),
         ("candela", "cd"),
         ("in", "inch"),
+        ("inche", "inch"),
+        ("foot", "ft"),
+        ("feet", "ft"),
+        ("lux", "lx"),
     ];
     let lower = text.to_lowercase();
     let singular = lower.strip_suffix('s').unwrap_or(&lower);
     let full = FULL.iter().find(|(name, _)| *name == singular).map(|(_, unit)| *unit);
     let case = UNITS.iter().find(|(name, _)| name.to_lowercase() == lower).map(|(name, _)| *name);
-    let near = case.or_else(|| nearest(text, UNITS.iter().map(|(name, _)| *name)));
+    let slip = || nearest(text, UNITS.iter().map(|(name, _)| *name)).filter(|_| text.len() > 2);
+    let near = case.or_else(slip);
     full.map(|unit| (unit, Grade::Sure)).or(near.map(|unit| (unit, Grade::Guess)))
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, near};
+use luxel_core::diag::{Diagnostic, Grade, Near, SourceId, Span, near};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category};
@@ -31,7 +31,7 @@ pub(super) const LONE_ELSE: &str = "`else` without an `if` before it";
 
 /// Whether a word is a directive of pbrt's language.
 pub(super) fn is_pbrt(word: &str) -> bool {
-    const WORDS: [&str; 32] = [
+    const WORDS: [&str; 38] = [
         "Accelerator",
         "ActiveTransform",
         "AreaLightSource",
@@ -55,15 +55,21 @@ pub(super) fn is_pbrt(word: &str) -> bool {
         "MediumInterface",
         "NamedMaterial",
         "ObjectBegin",
+        "ObjectEnd",
         "ObjectInstance",
         "PixelFilter",
+        "ReverseOrientation",
         "Rotate",
         "Sampler",
         "Scale",
         "Shape",
         "Texture",
+        "Transform",
+        "TransformBegin",
+        "TransformEnd",
         "Translate",
         "WorldBegin",
+        "WorldEnd",
     ];
     WORDS.contains(&word)
 }
@@ -150,10 +156,15 @@ impl<'a> Around<'a> {
             );
         }
         let current = self.current()?;
-        if current.text == "else" {
-            return Some(self.error("E0020", current, LONE_ELSE.to_owned()));
+        if let Some(lone) = [first, current].into_iter().find(|t| t.text == "else") {
+            return Some(self.error("E0020", lone, LONE_ELSE.to_owned()));
         }
         let before = self.before(1)?;
+        let start = (0..self.at).rev().find(|i| self.begins(*i)).unwrap_or(0);
+        if current.text == ":" && head::opens_block(self.word(start)) {
+            let found = self.error("E0023", current, "a block stands between `{` and `}`");
+            return Some(found.help("what is to be done stands in it, not behind `:`"));
+        }
         if current.text == ":" && before.kind == TokenKind::Word {
             let message = "a value is given with `=`, not with `:`";
             let found = self.error("E0017", current, message);
@@ -202,17 +213,22 @@ impl<'a> Around<'a> {
         })
     }
 
-    /// The next word of the language that begins a line outside brackets.
+    /// The next word of the language that begins a line outside brackets, or of an object that no `=`
+    /// stands before.
     fn next_keyword(&self) -> Option<&Token<'a>> {
         let mut depth = 0_usize;
-        self.tokens[self.at..].iter().skip(1).find(|token| {
+        let i = (self.at + 1..self.tokens.len()).find(|i| {
+            let token = &self.tokens[*i];
             match token.text {
                 "(" | "[" | "{" => depth += 1,
                 ")" | "]" | "}" => depth = depth.saturating_sub(1),
                 _ => {}
             }
-            depth == 0 && token.first_on_line && STATEMENTS.contains(&token.text)
-        })
+            let is_object = is_category(token.text) && self.is_word(i + 1);
+            let begins = is_object && self.word(i - 1) != "=" || STATEMENTS.contains(&token.text);
+            depth == 0 && token.first_on_line && begins
+        });
+        i.map(|i| &self.tokens[i])
     }
 
     /// An operator with nothing after it.
@@ -324,7 +340,8 @@ impl<'a> Around<'a> {
         }
         let first = self.tokens.iter().position(|t| t.kind != TokenKind::Doc).unwrap_or(self.at);
         let word = self.word(first);
-        if let Some(near) = near(word, RESERVED).filter(|near| near.name != word) {
+        let is_slip = |near: &Near<'_>| near.name != word && word.len() > 2;
+        if let Some(near) = near(word, RESERVED).filter(is_slip) {
             return head::begins_nothing(self, first, near);
         }
         let message = format!("`{}` is not expected here", short(current.text));

@@ -72,8 +72,43 @@ fn sign(around: &Around<'_>) -> Option<Diagnostic> {
         let message = format!("this blank (U+{:04X}) is none to the language", u32::from(c));
         return Some(told(around.span(mark), message).fix(around.span(mark), " "));
     }
+    if let Some(found) = temperature(around).or_else(|| letter(around, c)) {
+        return Some(found);
+    }
     let (_, here, message) = SIGNS.iter().find(|(sign, ..)| *sign == mark.text)?;
     Some(told(around.span(mark), *message).fix(around.span(mark), *here))
+}
+
+/// `20 °C`
+fn temperature(around: &Around<'_>) -> Option<Diagnostic> {
+    let mark = around.current().filter(|mark| mark.text == "°")?;
+    let scale = around.tokens.get(around.at + 1).filter(|t| t.start == mark.end())?;
+    let span = around.span(mark).to(around.span(scale));
+    let found = told(span, "a temperature is measured in kelvin");
+    match scale.text {
+        "C" => {
+            let number = around.before(1).filter(|t| t.kind == TokenKind::Number);
+            let degrees: Option<f64> = number.and_then(|t| t.text.parse().ok());
+            let (Some(number), Some(degrees)) = (number, degrees) else { return Some(found) };
+            let all = around.span(number).to(span);
+            Some(found.guess(all, format!("{} K", ((degrees + 273.15) * 100.0).round() / 100.0)))
+        }
+        "F" => Some(found),
+        _ => None,
+    }
+}
+
+/// `größe`
+fn letter(around: &Around<'_>, c: char) -> Option<Diagnostic> {
+    let mark = around.current().filter(|_| c.is_alphabetic() && c != 'π')?;
+    let touches =
+        around.before(1).is_some_and(|t| t.kind == TokenKind::Word && t.end() == mark.start)
+            || around
+                .tokens
+                .get(around.at + 1)
+                .is_some_and(|t| t.kind == TokenKind::Word && t.start == mark.end());
+    let found = told(around.span(mark), format!("`{c}` stands in no name"));
+    touches.then(|| found.help("names are made of the letters a to z and A to Z, digits and `_`"))
 }
 
 /// `'a'`, `“a”`
@@ -181,6 +216,10 @@ fn operator(around: &Around<'_>) -> Option<Diagnostic> {
             told(around.span(current), "a choice is no operator")
                 .help("it is written `if x > 1 { a } else { b }`"),
         ),
+        "=>" if around.inner() == Place::Fields && around.begins(back) => {
+            let span = around.span(current);
+            Some(told(span, "a value is given with `=`").fix(span, "="))
+        }
         "=>" => Some(nameless(around.span(current))),
         _ => None,
     }

@@ -419,6 +419,11 @@ impl Reader<'_> {
             }
             Err(error) => {
                 let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
+                if let Some(line) = self.whole_before(chunk.start + at, &chunk) {
+                    self.chunk(chunk.start..line, place);
+                    self.chunk(line..chunk.end, place);
+                    return;
+                }
                 // What stands after it on its last line comes after it.
                 let after = keep.then_some(self.out.stmts.len());
                 self.recover(chunk.start + at, chunk.clone(), place);
@@ -458,7 +463,8 @@ fn marks(text: &str) -> (Vec<usize>, usize) {
         if written.starts_with('#') {
             marks.push(at + line.len() - written.len());
         } else if !written.is_empty() && !written.starts_with("//") {
-            return if written.starts_with("scene") { (marks, at) } else { (vec![], 0) };
+            let is_head = written.starts_with("scene") && !marks.is_empty();
+            return if is_head { (marks, at) } else { (vec![], 0) };
         }
         at += line.len();
     }

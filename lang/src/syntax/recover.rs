@@ -85,6 +85,16 @@ impl Reader<'_> {
         }
     }
 
+    /// Where the line begins at whose first character a statement cannot be read further, if what stands
+    /// before that line is one as it is.
+    pub(super) fn whole_before(&self, at: usize, chunk: &Range<usize>) -> Option<usize> {
+        let before = &self.text[chunk.start..at];
+        let line = chunk.start + before.rfind('\n')? + 1;
+        let is_first = self.text[line..at].trim().is_empty();
+        let whole = || SceneParser::parse(Rule::one_stmt, &self.text[chunk.start..line]);
+        (is_first && whole().is_ok()).then_some(line)
+    }
+
     /// The bracket that closes the one at `open`, or `end`.
     fn matching(&self, open: usize, end: usize) -> usize {
         let mut depth = 0_usize;

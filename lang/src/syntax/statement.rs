@@ -1,8 +1,10 @@
 //! Statements and fields that have a word too many or too few.
 
 use luxel_core::diag::{Diagnostic, Span};
+use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, told};
+use super::explain::is_pbrt;
 use super::lex::{Token, TokenKind};
 use super::make::RESERVED;
 
@@ -14,6 +16,10 @@ pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| stepped(around))
         .or_else(|| quoted_name(around))
         .or_else(|| suffixed(around))
+        .or_else(|| signed(around))
+        .or_else(|| commented_unit(around))
+        .or_else(|| unquoted_path(around))
+        .or_else(|| named_unit(around))
 }
 
 /// How a statement is written of which the place is a part.
@@ -60,7 +66,7 @@ fn lone_name(around: &Around<'_>) -> Option<Diagnostic> {
     }
     let name = &around.tokens[first];
     let is_name = around.is_word(first) && last.kind == TokenKind::Word;
-    let is_ours = RESERVED.contains(&name.text) || is_category(name.text);
+    let is_ours = RESERVED.contains(&name.text) || is_category(name.text) || is_pbrt(name.text);
     if !is_name || is_ours || !around.begins(first) || around.inner() == Place::Fields {
         return None;
     }
@@ -121,6 +127,70 @@ fn suffixed(around: &Around<'_>) -> Option<Diagnostic> {
     let (letter, number) = (around.before(1)?, around.before(2)?);
     let touch = number.kind == TokenKind::Number && number.end() == letter.start;
     (touch && is_suffix(letter.text)).then(|| of_suffix(around.span(letter)))
+}
+
+/// `+3` and `+/- 3`
+fn signed(around: &Around<'_>) -> Option<Diagnostic> {
+    let is_sign = |i: &usize| around.word(*i) == "+" && !around.tokens[*i].first_on_line;
+    let plus = [around.at.saturating_sub(1), around.at].into_iter().find(is_sign)?;
+    let (sign, before) = (&around.tokens[plus], &around.tokens[plus.checked_sub(1)?]);
+    if [1, 2].map(|k| around.word(plus + k)) == ["/", "-"] {
+        let all = around.span(sign).to(around.span(&around.tokens[plus + 2]));
+        return Some(told(all, "this sign is written `±`").fix(all, "±"));
+    }
+    let is_operand = around.tokens.get(plus + 1).is_some_and(|t| t.start == sign.end());
+    let begins = before.is_operator() || matches!(before.text, "(" | "[" | ",");
+    let found = told(around.span(sign), "what is positive has no sign");
+    (is_operand && begins).then(|| found.fix(around.span(sign), ""))
+}
+
+/// `(0, 1, 0) /* up */ m`
+fn commented_unit(around: &Around<'_>) -> Option<Diagnostic> {
+    let back = around.at.saturating_sub(1);
+    let unit = [back, around.at].into_iter().find(|i| Unit::named(around.word(*i)).is_some())?;
+    let before = around.tokens.get(unit.checked_sub(1)?).filter(|t| t.ends_operand())?;
+    let (from, to) = (before.end(), around.tokens[unit].start);
+    let at = from + around.text[from..to].find("/*")?;
+    let span = Span::new(around.source, at, at + around.text[at..to].trim_end().len());
+    let found = told(span, "no comment stands between a number and its unit");
+    Some(found.help("write it before the number or behind the unit"))
+}
+
+/// `include tools.scene`, `use plugin velvet`
+fn unquoted_path(around: &Around<'_>) -> Option<Diagnostic> {
+    let is_head = |i: &usize| match around.word(*i) {
+        "include" | "import" => around.begins(*i),
+        "plugin" => *i > 0 && around.word(i - 1) == "use" && around.begins(i - 1),
+        _ => false,
+    };
+    let head = (around.at.saturating_sub(2)..around.at).rev().find(is_head)?;
+    let name = around.tokens.get(head + 1)?;
+    if name.kind != TokenKind::Word || name.first_on_line {
+        return None;
+    }
+    let rest = &around.text[name.start..around.end];
+    let length = rest.find(|c: char| c.is_whitespace() || c == ';').unwrap_or(rest.len());
+    let span = Span::new(around.source, name.start, name.start + length);
+    let found = told(span, "the name of a file or a plugin stands between `\"`");
+    Some(found.guess(span, format!("\"{}\"", &rest[..length])))
+}
+
+/// `n m`
+fn named_unit(around: &Around<'_>) -> Option<Diagnostic> {
+    let (unit, name, before) = (around.current()?, around.before(1)?, around.before(2)?);
+    let is_value = name.kind == TokenKind::Word && (before.is_operator() || before.text == ",");
+    if !is_value || unit.first_on_line || Unit::named(unit.text).is_none() {
+        return None;
+    }
+    let (name, unit) = (name.text, around.span(unit));
+    let found = told(unit, "a unit stands behind a number, not behind a name");
+    let word = &around.text[unit.range()];
+    let gap = Span::new(around.source, around.tokens[around.at - 1].end(), unit.range().end);
+    Some(
+        found
+            .help(format!("`{name}` may measure something already"))
+            .guess(gap, format!(" * 1 {word}")),
+    )
 }
 
 /// Whether a letter behind a number says elsewhere of which precision it is.

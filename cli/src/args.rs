@@ -119,10 +119,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<UVec2>,
     /// Samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..),
+        allow_hyphen_values = true)]
     pub(crate) spp: Option<u32>,
     /// Seed of the random numbers
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) seed: Option<u32>,
     /// Threads [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = threads)]

@@ -182,8 +182,7 @@ impl Checkpoint {
         let read = from.read_until(b'\n', &mut magic);
         read.and_then(|_| from.read_until(b'\n', &mut about)).map_err(|e| self.wrong(&e))?;
         if magic != MAGIC {
-            let message = format!("`{}` is in the way: no checkpoint", self.place.display());
-            return Err(Failure::new(Exit::Input, message).help("choose another place: -o OUT"));
+            return Err(self.in_the_way("no checkpoint"));
         }
         Ok(Some(serde_json::from_slice(&about).unwrap_or_default()))
     }
@@ -192,13 +191,18 @@ impl Checkpoint {
     fn open(&self) -> Result<Option<File>, Failure> {
         match std::fs::metadata(&self.place) {
             Ok(about) if !about.is_file() => {
-                return Err(self.wrong(&"something that is not a file is in its place"));
+                return Err(self.in_the_way("no file"));
             }
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             _ => {}
         }
         #[expect(clippy::disallowed_methods, reason = "our own file, read by no scene")]
         File::open(&self.place).map(Some).map_err(|error| self.wrong(&error))
+    }
+
+    fn in_the_way(&self, what: &str) -> Failure {
+        let message = format!("`{}` is in the way: {what}", self.place.display());
+        Failure::new(Exit::Input, message).help("choose another place: -o OUT")
     }
 
     fn wrong(&self, why: &dyn std::fmt::Display) -> Failure {

@@ -14,7 +14,7 @@ pub(crate) struct GoalArgs {
     /// Go on until the standard error of every tile of 16 by 16 pixels is this small, as in 1%: root
     /// mean square over its pixels, relative to their luminance or to a tenth of the picture's mean.
     /// --spp is then the most samples of a pixel [default: 1048576]
-    #[arg(long, value_name = "SHARE", value_parser = share)]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     error: Option<f64>,
     /// Make --error hold for the half width of intervals that hold the truth this often, as in 95%,
     /// instead of for one standard error: with 95% about 2.1 times as much is asked, and 4.4 times the
@@ -24,7 +24,7 @@ pub(crate) struct GoalArgs {
     /// Go on for this long, as in 30s or 5min; samples go where they lower the error most, or, with
     /// --error, where that is not yet reached. It counts from the first sample of this run: with
     /// --resume it is added to what was spent before
-    #[arg(long, value_name = "DURATION", value_parser = duration)]
+    #[arg(long, value_name = "DURATION", value_parser = duration, allow_hyphen_values = true)]
     time: Option<Duration>,
 }
 
@@ -50,18 +50,20 @@ fn confidence(text: &str) -> Result<Confidence, String> {
     found.ok_or_else(|| "expected a share from 50% to 99.9%, as in 95% or 0.95".into())
 }
 
-/// `30s`, `5min`, `1.5h`; seconds without a unit.
+/// `30s`, `5min`, `1.5h`, `500ms`; seconds without a unit.
 pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match &text[digits.len()..] {
         "" | "s" => 1.0,
+        "ms" => 1e-3,
         "min" => 60.0,
         "h" => 3600.0,
         _ => f64::NAN,
     };
     let seconds = digits.trim().parse().ok().map(|x: f64| x * unit);
     let found = seconds.filter(|s| (1e-3..=MOST_SECONDS).contains(s));
-    let told = || "expected a length of time, as in 30s, 5min or 1.5h".into();
+    let told =
+        || "expected a length of time of a millisecond or more, as in 30s, 5min or 1.5h".into();
     found.map(Duration::from_secs_f64).ok_or_else(told)
 }
 
@@ -85,6 +87,7 @@ mod tests {
         assert_eq!(duration("30s"), Ok(Duration::from_secs(30)));
         assert_eq!(duration("1.5h"), Ok(Duration::from_secs(5400)));
         assert_eq!(duration("2min"), Ok(Duration::from_secs(120)));
+        assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));
         assert_eq!(duration("7"), Ok(Duration::from_secs(7)));
         for bad in ["", "s", "0", "-3s", "3 weeks", "1e9h", "NaN"] {
             assert!(duration(bad).is_err(), "{bad}");

@@ -187,6 +187,11 @@ impl Guard {
         self.state().writing > 0
     }
 
+    /// Whether the end was asked for.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        self.state().first.is_some()
+    }
+
     /// A scene is about to be read and made ready, followed by `watch`: there is nothing to be saved.
     pub(crate) fn loading(&self, watch: &Arc<Watch>) {
         let mut state = self.state();

@@ -27,6 +27,13 @@ pub(crate) struct Measured {
     pub(crate) seconds: f64,
 }
 
+impl Measured {
+    /// Whether all samples that were wanted were taken.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.outcome == Outcome::Complete
+    }
+}
+
 /// What will be measured, checked.
 ///
 /// # Errors

@@ -139,10 +139,22 @@ fn is_temporary(name: &OsStr, of: &OsStr) -> bool {
     parts.len() == 2 && parts.into_iter().all(is_number)
 }
 
+/// Where a file is written: through links, also to what is not there yet, so that what they point to is
+/// replaced and not the link.
+fn behind_links(path: &Path) -> PathBuf {
+    const MOST: usize = 40;
+    let mut place = path.to_path_buf();
+    for _ in 0..MOST {
+        let Ok(to) = fs::read_link(&place) else { break };
+        place = place.parent().unwrap_or(Path::new("")).join(to);
+    }
+    fs::canonicalize(&place).unwrap_or(place)
+}
+
 /// Removes what processes that were killed have left of drafts of a file. A draft that a process is
 /// still at work on is locked by it, and stays; so does everything where nothing can be locked.
 pub(crate) fn sweep(path: &Path) {
-    let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let place = behind_links(path);
     let (Some(folder), Some(of)) = (place.parent(), place.file_name()) else { return };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -183,8 +195,7 @@ impl Draft {
     /// # Errors
     /// The system's; also when something other than a writable, regular file is in the place.
     pub(crate) fn begin(path: &Path) -> io::Result<Self> {
-        // Through a link, so that the file it points to is replaced and not the link.
-        let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let place = behind_links(path);
         if let Ok(about) = fs::metadata(&place) {
             if !about.is_file() {
                 return Err(io::Error::other("something that is not a file is in its place"));

@@ -62,7 +62,8 @@ impl Reached {
     /// Two or three lines.
     pub(crate) fn words(&self) -> String {
         let Some(Errors { rms, median, p95, worst, worst_at, .. }) = self.error else {
-            return "standard error per pixel: unknown, it takes two samples\n".into();
+            let unknown = "standard error per pixel: unknown, it takes two samples\n";
+            return unknown.to_owned() + &self.asked_words();
         };
         let [rms, median, p95, worst] = [rms, median, p95, worst].map(percent);
         let intervals = self.intervals.map_or_else(String::new, |of| {

@@ -214,11 +214,16 @@ impl Summary {
         )
     }
 
-    /// `64`, or `64 to 1024`.
+    /// `64`, `64 to 1024`, or of a picture that was interrupted `8 of 64`.
     fn spp_words(&self) -> String {
         let [least, most] = self.counts;
-        let is_even = least == most || !self.goal.is_some();
-        if is_even { self.spp.to_string() } else { format!("{least} to {most}") }
+        let has_goal = self.goal.is_some();
+        let taken = if least == most { least.to_string() } else { format!("{least} to {most}") };
+        match self.outcome {
+            Outcome::Cancelled | Outcome::Failed if !has_goal => format!("{taken} of {}", self.spp),
+            _ if least == most || !has_goal => self.spp.to_string(),
+            _ => taken,
+        }
     }
 
     fn dropped_words(&self) -> String {

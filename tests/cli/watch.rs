@@ -32,6 +32,29 @@ fn a_save_changes_the_picture_a_mistake_keeps_it_and_ctrl_c_ends_well() {
 }
 
 #[test]
+fn the_end_leaves_both_files_of_one_picture() {
+    let folder = Folder::new("watch-pair").with("a.scene", SCENE);
+    let mut watching = folder.start(&["watch", "a.scene"]);
+    until("the first picture", || !folder.read("a.png").is_empty());
+    let [exr, png] = ["a.exr", "a.png"].map(|name| folder.read(name));
+    folder.write("a.scene", &SCENE.replace("samples = 4", "samples = 1000000"));
+    until("the first samples of the second", || folder.read("a.png") != png);
+    assert_eq!(folder.read("a.exr"), exr);
+    watching.interrupt();
+    let done = watching.end();
+    assert!(done.code == 0 && done.out.contains(", interrupted after 0."), "{done:?}");
+    assert!(done.out.contains(" of 1000000 spp, "), "{done:?}");
+    assert_ne!(folder.read("a.exr"), exr);
+    // Of one that is wanted whole that is no good end.
+    let mut once = folder.start(&["watch", "a.scene", "--once-stable", "-o", "b"]);
+    until("the first samples", || folder.names().contains(&"b.png".to_owned()));
+    once.interrupt();
+    let done = once.end();
+    assert!(done.code == 3 && done.err.contains("watching has ended"), "{done:?}");
+    assert_eq!(folder.names(), ["a.exr", "a.png", "a.scene", "b.exr", "b.png"]);
+}
+
+#[test]
 fn comments_and_mistakes_leave_a_render_in_hand_alone() {
     let scene = |comment: &str, radius: &str| {
         let long = SCENE.replace("samples = 4", "samples = 3072").replace("radius", radius);

@@ -48,7 +48,7 @@ impl Numbers {
             noise += (a.se.length_squared() + b.se.length_squared()) / 3.0;
             found.max_ulp = found.max_ulp.max(ulps(a.rgb, b.rgb));
         }
-        let n = f64::max(n, 1.0);
+        // Of no pixel at all there is none: NaN.
         found.mse /= n;
         found.rel_mse /= n;
         found.expected_mse = Some(noise / n).filter(|noise| noise.is_finite());

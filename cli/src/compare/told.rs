@@ -106,9 +106,11 @@ impl Told<'_> {
             expected_mse.map_or(String::new(), |noise| format!(", of noise alone {noise:.3e}"));
         let flip =
             self.flip.map_or("not for so large pictures".into(), |flip| format!("{flip:.4}"));
+        let number = |x: f64| if x.is_nan() { "–".to_owned() } else { format!("{x:.3e}") };
+        let [mse, rel_mse] = [mse, rel_mse].map(number);
         format!(
-            "MSE         {mse:.3e}{expected}\n\
-             relMSE      {rel_mse:.3e}\n\
+            "MSE         {mse}{expected}\n\
+             relMSE      {rel_mse}\n\
              FLIP        {flip}\n\
              max ulp     {max_ulp}\n\
              not finite  {a} pixels of A, {b} of B"

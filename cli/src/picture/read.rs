@@ -1,6 +1,6 @@
 //! Reading an EXR: ours with standard error and samples, others with R, G and B or Y alone.
 
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 use exr::image::FlatSamples;
@@ -47,8 +47,18 @@ impl Picture {
             Failure::new(Exit::Input, format!("cannot read the picture {}: {what}", path.display()))
         };
         let (file, _) = open_regular(path, u64::MAX).map_err(|error| wrong(&error))?;
-        Self::read(BufReader::new(file)).map_err(|what| {
-            wrong(&what).help("it takes channels R, G and B, or Y alone; ours has SE.R … and N too")
+        let mut file = BufReader::new(file);
+        let begin = file.fill_buf().map_err(|error| wrong(&error))?.to_vec();
+        if let Some(other) = other_than_exr(&begin) {
+            return Err(wrong(&other)
+                .help("pictures are read from EXR files, as `luxel render` writes them"));
+        }
+        Self::read(file).map_err(|what| match what {
+            what if what.contains("missing bytes") => {
+                wrong(&"it ends too early").help("copy or render it again")
+            }
+            what => wrong(&what)
+                .help("it takes channels R, G and B, or Y alone; ours has SE.R … and N too"),
         })
     }
 
@@ -138,6 +148,22 @@ impl Picture {
 }
 
 type Decoded = (Layer<AnyChannels<FlatSamples>>, (UVec2, glam::IVec2));
+
+/// What a file that begins so is, if it is no EXR.
+fn other_than_exr(begin: &[u8]) -> Option<&'static str> {
+    const KNOWN: [(&[u8], &str); 4] = [
+        (b"\x89PNG", "it is a PNG, not an EXR"),
+        (b"\xff\xd8\xff", "it is a JPEG, not an EXR"),
+        (b"#?RADIANCE", "it is a Radiance picture, not an EXR"),
+        (b"scene", "it is a scene, not a picture"),
+    ];
+    let known = KNOWN.iter().find(|(magic, _)| begin.starts_with(magic));
+    match begin {
+        [] => Some("it is empty"),
+        [0x76, 0x2f, 0x31, 0x01, ..] => None,
+        _ => Some(known.map_or("it is no EXR", |(_, what)| what)),
+    }
+}
 
 /// The first layer, and the display window's size and place.
 fn decode(from: impl Read + Seek) -> Result<Decoded, String> {

@@ -7,6 +7,7 @@ mod window;
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use luxel_core::diag::{Diagnostic, Severity, Sources};
 
@@ -160,13 +161,25 @@ fn tell(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
+/// Whether whoever read standard output has gone.
+static UNHEARD: AtomicBool = AtomicBool::new(false);
+
+/// Whether whoever read standard output has gone: nobody is told anything any more.
+pub(crate) fn is_unheard() -> bool {
+    UNHEARD.load(Ordering::Relaxed)
+}
+
 fn written(done: io::Result<()>) -> Result<(), Failure> {
     match done {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+            UNHEARD.store(true, Ordering::Relaxed);
+            Ok(())
+        }
+        Err(error) => {
             let message = format!("cannot write to standard output: {error}");
             Err(Failure::new(Exit::Input, message))
         }
-        _ => Ok(()),
+        Ok(()) => Ok(()),
     }
 }
 

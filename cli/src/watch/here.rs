@@ -88,7 +88,7 @@ pub(super) fn watch(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
         render.cancel();
         build.cancel();
     })?;
-    beat.on_stop(interrupt);
+    beat.on_stop(interrupt.clone());
     changes.arm([args.file.as_path()]);
     let audience = Audience::new(args, wishes, beat, again.as_ref())?;
     if let (Some(failure), Some(again)) = (&failure, &again)
@@ -116,19 +116,19 @@ pub(super) fn watch(args: &Args, beat: &Beat) -> Result<Exit, Failure> {
             impatient: true,
             is_good: false,
             has_told: false,
-            press: Press::start(scope, args, &audience),
+            press: Press::start(scope, args, &audience, interrupt),
         };
         let ended = watching.rounds(&mut session, &surroundings);
         let has_picture = watching.end();
         ended.map(|()| has_picture)
     })
     .map(|has_picture| {
-        if args.then.once_stable {
+        if args.then.once_stable && !guard.is_interrupted() {
             return if has_picture { Exit::Fine } else { Exit::Input };
         }
         audience.end();
         report::note(ENDED);
-        Exit::Fine
+        if args.then.once_stable && !has_picture { Exit::Incomplete } else { Exit::Fine }
     })
 }
 

@@ -127,6 +127,16 @@ mod tests {
     }
 
     #[test]
+    fn a_param_that_was_given_what_is_no_value_can_be_given_another() {
+        let text = "scene 1\nparam r: float = 0.5\nparam n: int = 3\n";
+        for wrong in ["0,5", "abc", "1e", "", "0.5 m", "\"x\""] {
+            let found = offers(text, &[("r", wrong)]);
+            let names: Vec<_> = found.iter().map(|param| (&*param.name, param.set)).collect();
+            assert_eq!(names, [("r", true), ("n", false)], "{wrong}");
+        }
+    }
+
+    #[test]
     fn the_ends_that_are_offered_are_taken() {
         for unit in ["deg", "rad", "mm", "ft", "um"] {
             let kind = if ["deg", "rad"].contains(&unit) { "angle" } else { "length" };

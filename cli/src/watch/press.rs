@@ -8,7 +8,7 @@ use super::Args;
 use super::audience::Audience;
 use super::round::Sitting;
 use crate::exit::blaming;
-use crate::interrupt::Saving;
+use crate::interrupt::{Interrupt, Saving};
 use crate::isolate::Beat;
 use crate::report;
 
@@ -41,16 +41,20 @@ pub(super) struct Press<'scope, 'env> {
 }
 
 impl<'scope, 'env> Press<'scope, 'env> {
-    /// Tells the audience of each.
+    /// Tells the audience of each; `end` ends the program, where nobody hears any more what is told.
     pub(super) fn start(
         scope: &'scope Scope<'scope, 'env>,
         args: &'env Args,
         audience: &'env Audience,
+        end: Interrupt,
     ) -> Self {
         let (tray, sheets) = mpsc::sync_channel(WAITING);
         let thread = scope.spawn(move || {
             for sheet in sheets {
                 write(&sheet, args, audience);
+                if args.json && report::is_unheard() {
+                    end();
+                }
             }
         });
         Self { tray: Tray(tray), thread }
@@ -75,7 +79,9 @@ fn write(Sheet { sitting, .. }: &Sheet<'_>, args: &Args, audience: &Audience) {
         let written = blaming(&name, || print.write(args, &Beat::silent())).flatten();
         sitting.printed(written.is_ok());
         match written {
-            Ok(output) => audience.written(output),
+            Ok(output) if print.is_whole() => audience.written(output),
+            // The program ends.
+            Ok(_) => {}
             // The page shows another picture, which says for itself what becomes of it.
             Err(failure) if sitting.is_past() => report::failure(&failure),
             Err(failure) => audience.lost(&failure),

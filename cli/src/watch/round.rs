@@ -100,7 +100,8 @@ impl Sitting {
 
     /// Whether there is a picture on the disk, all of its samples taken.
     pub(super) fn is_written(&self) -> bool {
-        self.lock().ink == Ink::Dry
+        let shown = self.lock();
+        shown.ink == Ink::Dry && shown.done.as_ref().is_some_and(|done| done.0.is_whole())
     }
 
     /// Whether the picture is still to be written, or being written.
@@ -135,7 +136,8 @@ impl Sitting {
     }
 
     /// Renders the picture, which `look` sees grow. Returns whether there is one to be written: one
-    /// that was cancelled or failed is not, and the last stays.
+    /// that was cancelled or failed is not, and the last stays; but what was measured until the end of
+    /// the program is, where a PNG of its first samples has been.
     ///
     /// # Errors
     /// What stands in the way; a panic in the renderer.
@@ -167,7 +169,7 @@ impl Sitting {
         let mut first = !args.preview && of_samples > COARSE;
         let begun = self.lock().first.take();
         let mut has_all = begun.is_some();
-        let mut refused = None;
+        let (mut refused, mut replaced) = (None, false);
         let mut seen = |film: &Film, now: Reached| {
             look(film, now);
             let has_now = now.step == 1 && now.is_whole;
@@ -177,6 +179,7 @@ impl Sitting {
             if first && is_some && !guard.is_saving() && !control.is_cancelled() {
                 first = false;
                 refused = self.coarse(args, film, course).err();
+                replaced = refused.is_none();
                 if refused.is_some() {
                     // What cannot be written is not worth more samples.
                     control.cancel();
@@ -197,6 +200,8 @@ impl Sitting {
         }
         let mut shown = self.lock();
         match measured.outcome {
+            // The PNG of the first samples has taken the place of the last picture's.
+            Outcome::Cancelled if replaced && guard.is_interrupted() => {}
             Outcome::Cancelled => {
                 // Coarse steps leave samples that nothing else counts.
                 shown.left = has_all.then_some(measured.film);
@@ -285,6 +290,11 @@ fn output((stage, read): (&Stage, &Read), args: &Args) -> Result<Output, Failure
 }
 
 impl Print {
+    /// Whether all of its samples were taken.
+    pub(super) fn is_whole(&self) -> bool {
+        self.done.0.is_whole()
+    }
+
     /// Writes the picture and tells of it. Returns where it is.
     ///
     /// # Errors

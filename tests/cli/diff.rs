@@ -82,10 +82,10 @@ fn what_is_written_alike_is_told_as_what_it_comes_to() {
     let line = SCENE.lines().count();
     let at = |n: usize| format!("a.scene:{0} b.scene:{0}", line + n);
     let told = format!(
-        "shape box  {}\n  size: (1, 1, 1) → (0.25, 0.25, 0.25)\nsphere \"ball\"  {}\n  radius: 0.5 m → 0.125 m\n\
+        "sphere \"ball\"  {}\n  radius: 0.5 m → 0.125 m\nshape box  {}\n  size: (1, 1, 1) → (0.25, 0.25, 0.25)\n\
          2 × shape disk  {}\n  radius\n2 × shape disk  {}\n  radius: 1 m → 0.25 m\n",
-        at(2),
         at(3),
+        at(2),
         at(4),
         at(4),
     );

@@ -330,6 +330,32 @@ fn an_edit_is_shown_ten_times_a_second_at_most_however_fast_a_page_draws() {
 }
 
 #[test]
+fn while_an_edit_is_expected_its_first_picture_comes_before_better_ones_of_the_last() {
+    let preview = preview();
+    let (port, token) = place(&preview);
+    let mut page = socket(port, &token);
+    assert_eq!(message(&mut page).0, 1);
+    let screen = preview.screen();
+    screen.show(&frame(1, UVec2::ONE));
+    assert_eq!(message(&mut page).0, 2);
+    tell(&mut page, "\"drawn\"");
+    std::thread::sleep(PACE);
+    let since = Instant::now();
+    screen.expect();
+    screen.show(&frame(1, UVec2::ONE));
+    // Nothing comes of the edit: the better picture does, a little later.
+    assert_eq!(generation(&message(&mut page).1), 1);
+    assert!(since.elapsed() > PACE / 2, "{:?}", since.elapsed());
+    tell(&mut page, "\"drawn\"");
+    std::thread::sleep(PACE);
+    screen.expect();
+    screen.show(&frame(1, UVec2::ONE));
+    std::thread::sleep(PACE / 10);
+    screen.show(&frame(2, UVec2::ONE));
+    assert_eq!(generation(&message(&mut page).1), 2);
+}
+
+#[test]
 fn a_page_is_told_everything_and_gets_the_latest_picture_when_it_has_drawn() {
     let preview = preview();
     let (port, token) = place(&preview);

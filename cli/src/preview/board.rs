@@ -1,10 +1,12 @@
 //! What there is to be shown: of each topic the latest message, for as many pages as look on.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use axum::body::Bytes;
 use serde_json::Value;
 use tokio::sync::watch;
+use tokio::time::Instant;
 
 /// What a message is about; a new one takes the place of the last of its topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +46,8 @@ impl Topic {
 pub(super) struct Board {
     notes: Mutex<[Note; Topic::ALL.len()]>,
     changed: watch::Sender<u64>,
+    /// From when on better pictures of an edit are shown again.
+    better_from: Mutex<Instant>,
 }
 
 #[derive(Default)]
@@ -65,7 +69,8 @@ pub(super) struct News {
 
 impl Board {
     pub(super) fn new() -> Self {
-        Self { notes: Mutex::default(), changed: watch::Sender::new(0) }
+        let better_from = Mutex::new(Instant::now());
+        Self { notes: Mutex::default(), changed: watch::Sender::new(0), better_from }
     }
 
     fn notes(&self) -> MutexGuard<'_, [Note; Topic::ALL.len()]> {
@@ -107,6 +112,20 @@ impl Board {
         let Note { number, bytes, first, .. } = &self.notes()[topic as usize];
         let news = || News { number: *number, bytes: bytes.clone(), is_first: *first > than };
         (*number > than).then(news)
+    }
+
+    /// Another edit is on its way: better pictures of the last wait so long, and leave it the machine.
+    pub(super) fn expect(&self, patience: Duration) {
+        *self.lock_better() = Instant::now() + patience;
+    }
+
+    /// From when on better pictures of an edit are shown.
+    pub(super) fn better_from(&self) -> Instant {
+        *self.lock_better()
+    }
+
+    fn lock_better(&self) -> MutexGuard<'_, Instant> {
+        self.better_from.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether anybody is told of changes.

@@ -157,6 +157,11 @@ impl Screen {
         self.0.tell(Topic::Problems, &json!({ "problems": problems }));
     }
 
+    /// Another edit is on its way: better pictures of the last wait a moment.
+    pub(crate) fn expect(&self) {
+        self.0.expect(session::PACE);
+    }
+
     /// One line below the picture: what changed, samples, time left.
     pub(crate) fn status(&self, text: &str) {
         self.0.tell(Topic::Status, &json!({ "status": text }));

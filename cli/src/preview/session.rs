@@ -108,7 +108,8 @@ pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSen
     let (mut drawing, mut next) = (Drawing::default(), Instant::now());
     loop {
         let _ = changes.borrow_and_update();
-        let early = Instant::now() < next;
+        let better = next.max(board.better_from());
+        let early = Instant::now() < better;
         for topic in Topic::ALL {
             let Some(news) = board.later(topic, told[topic as usize]) else { continue };
             // Whoever edits waits for the first picture, and for no pace.
@@ -127,7 +128,7 @@ pub(super) async fn run(mut socket: WebSocket, board: &Board, commands: &SyncSen
         }
         tokio::select! {
             changed = changes.changed() => if changed.is_err() { return },
-            () = sleep_until(next), if drawing.takes(false) && early => {}
+            () = sleep_until(better), if drawing.takes(false) && early => {}
             said = socket.recv() => match said {
                 Some(Ok(Message::Text(text))) => match serde_json::from_str(&text) {
                     Ok(Said::Drawn) => drawing.end(),

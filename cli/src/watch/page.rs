@@ -104,6 +104,7 @@ impl Page {
 
     /// Tells that a save has been noticed, until it is known what it shows.
     pub(super) fn reading(&self) {
+        self.screen.expect();
         self.screen.status("reading");
     }
 

@@ -159,7 +159,7 @@ impl Screen {
 
     /// Another edit is on its way: better pictures of the last wait a moment.
     pub(crate) fn expect(&self) {
-        self.0.expect(session::PACE);
+        self.0.expect(PACE);
     }
 
     /// One line below the picture: what changed, samples, time left.

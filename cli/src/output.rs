@@ -310,6 +310,25 @@ mod tests {
         assert_eq!(found, expected);
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_file_is_written_through_links_also_to_what_is_not_there_yet() {
+        let folder = Folder::new("links");
+        folder.write("far/other", b"");
+        let link = |to: &str, from: &str| {
+            std::os::unix::fs::symlink(to, folder.path(from)).unwrap();
+        };
+        link("b.exr", "a.exr");
+        link("far/c.exr", "b.exr");
+        for content in [b"first", b"other"] {
+            let mut draft = Draft::begin(&folder.path("a.exr")).unwrap();
+            draft.file.write_all(content).unwrap();
+            draft.finish().unwrap();
+            assert_eq!(bytes(&folder.path("far/c.exr")), content);
+            assert!(folder.path("a.exr").is_symlink() && folder.path("b.exr").is_symlink());
+        }
+    }
+
     #[test]
     fn folders_in_the_place_and_missing_folders_are_told() {
         let folder = Folder::new("places");

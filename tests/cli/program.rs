@@ -219,6 +219,12 @@ impl Running {
         found
     }
 
+    /// Reads its standard output no more.
+    #[cfg(unix)]
+    pub(crate) fn turn_away(&mut self) {
+        drop(self.0.as_mut().unwrap().stdout.take());
+    }
+
     pub(crate) fn end(mut self) -> Done {
         told(&self.0.take().unwrap().wait_with_output().unwrap())
     }

@@ -55,6 +55,23 @@ fn the_end_leaves_both_files_of_one_picture() {
 }
 
 #[test]
+fn a_watch_whose_json_nobody_reads_ends() {
+    let folder = Folder::new("watch-unheard").with("a.scene", SCENE);
+    let mut watching = folder.start(&["watch", "a.scene", "--json"]);
+    until("the first picture", || !folder.read("a.png").is_empty());
+    watching.turn_away();
+    for i in 0.. {
+        if watching.is_over() {
+            break;
+        }
+        assert!(i < 100, "it goes on");
+        folder.write("a.scene", &SCENE.replace("samples = 4", &format!("samples = {}", 5 + i)));
+        std::thread::sleep(std::time::Duration::from_millis(200));
+    }
+    assert_eq!(watching.end().code, 0);
+}
+
+#[test]
 fn comments_and_mistakes_leave_a_render_in_hand_alone() {
     let scene = |comment: &str, radius: &str| {
         let long = SCENE.replace("samples = 4", "samples = 3072").replace("radius", radius);

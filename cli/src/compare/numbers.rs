@@ -11,7 +11,7 @@ pub(super) const FLOOR: f64 = 0.01;
 /// Measures of the pixels that are finite in both pictures.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Numbers {
-    /// Mean of squared differences, over pixels and channels.
+    /// Mean of squared differences, over pixels and channels; NaN of no pixel.
     pub(super) mse: f64,
     /// What the standard errors let one expect of it between equal pictures; nothing if a pixel does
     /// not say how wrong it is.
@@ -122,5 +122,9 @@ mod tests {
         let found = Numbers::of(&pair);
         assert_eq!((found.not_finite, found.finite_in_one), ([2, 1], 1));
         assert!(found.mse <= 0.0);
+        // Of no pixel at all there is none.
+        pair.a.rgb.fill(f32::NAN);
+        let found = Numbers::of(&pair);
+        assert!(found.mse.is_nan() && found.rel_mse.is_nan() && found.expected_mse.is_none());
     }
 }

@@ -317,6 +317,19 @@ mod tests {
             assert_eq!(wrong.exit, Exit::Input);
             assert!(wrong.message.contains(name), "{}", wrong.message);
         }
+        let whole = foreign(&["R", "G", "B"]);
+        let told: [(&[u8], &str); 5] = [
+            (b"", "it is empty"),
+            (b"\x89PNG\r\n\x1a\n", "it is a PNG, not an EXR"),
+            (b"scene 1\n", "it is a scene, not a picture"),
+            (b"no picture", "it is no EXR"),
+            (&whole[..whole.len() / 2], "it ends too early"),
+        ];
+        for (bytes, what) in told {
+            folder.write("a.exr", bytes);
+            let wrong = Picture::open(&folder.path("a.exr")).err().unwrap();
+            assert!(wrong.message.ends_with(what), "{}", wrong.message);
+        }
     }
 
     #[test]

@@ -185,7 +185,9 @@ fn names_of_libraries(entries: impl Iterator<Item = fs::DirEntry>) -> blake3::Ha
     let mut names: Vec<_> = entries.map(|entry| entry.file_name().into_encoded_bytes()).collect();
     names.retain(|name| name.ends_with(std::env::consts::DLL_SUFFIX.as_bytes()));
     names.sort_unstable();
-    blake3::hash(&names.join(&0))
+    // No file that is empty is a folder of none.
+    let names = names.iter().flat_map(|name| name.iter().copied().chain([0]));
+    blake3::hash(&b"folder\0".iter().copied().chain(names).collect::<Vec<u8>>())
 }
 
 /// The bytes of a regular file.
@@ -245,6 +247,18 @@ mod tests {
         assert_eq!(files.asked().len(), 4);
         assert!(files.read(&folder.path("scenes/sub")).is_err());
         assert!(files.asked().iter().all(|(path, seen)| look(path) == *seen), "nothing is news");
+    }
+
+    #[test]
+    fn an_empty_file_is_no_folder_of_nothing() {
+        let folder = Folder::new("empty-or-folder");
+        folder.write("empty", b"");
+        folder.write("folder/other", b"");
+        folder.write(&format!("library/a{}", std::env::consts::DLL_SUFFIX), b"");
+        let found = ["empty", "folder", "library", "none"].map(|name| look(&folder.path(name)));
+        let mut others = found.to_vec();
+        others.dedup();
+        assert_eq!(others.len(), 4);
     }
 
     #[test]

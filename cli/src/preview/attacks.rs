@@ -350,7 +350,6 @@ fn while_an_edit_is_expected_its_first_picture_comes_before_better_ones_of_the_l
     std::thread::sleep(PACE);
     screen.expect();
     screen.show(&frame(1, UVec2::ONE));
-    std::thread::sleep(PACE / 10);
     screen.show(&frame(2, UVec2::ONE));
     assert_eq!(generation(&message(&mut page).1), 2);
 }

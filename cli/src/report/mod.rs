@@ -161,7 +161,7 @@ fn tell(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Whether whoever read standard output has gone.
+/// What `is_unheard` tells.
 static UNHEARD: AtomicBool = AtomicBool::new(false);
 
 /// Whether whoever read standard output has gone: nobody is told anything any more.

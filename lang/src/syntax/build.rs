@@ -431,6 +431,7 @@ fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
         ("lumen", "lm"),
         ("candela", "cd"),
         ("in", "inch"),
+        // `inches`
         ("inche", "inch"),
         ("foot", "ft"),
         ("feet", "ft"),

@@ -14,6 +14,9 @@ const SMALL: u32 = 33;
 /// Instead of the large one: 2 · 64² = 8,192 triangles, whose tree takes several threads.
 const MIDDLE: u32 = 65;
 
+/// The golden section of 2³²: its multiples lie apart from each other, anywhere.
+const GOLDEN: u32 = 0x9e37_79b9;
+
 /// What can be edited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -23,17 +26,19 @@ pub(super) enum Kind {
     Texture,
     SmallMesh,
     LargeMesh,
+    LastTriangle,
     Comment,
 }
 
 impl Kind {
-    pub(super) const ALL: [Self; 7] = [
+    pub(super) const ALL: [Self; 8] = [
         Self::Camera,
         Self::Material,
         Self::Place,
         Self::Texture,
         Self::SmallMesh,
         Self::LargeMesh,
+        Self::LastTriangle,
         Self::Comment,
     ];
 
@@ -45,6 +50,7 @@ impl Kind {
             Self::Texture => "texture, 256 x 256",
             Self::SmallMesh => "mesh of 2,048 triangles",
             Self::LargeMesh => "mesh of 1,002,528 triangles",
+            Self::LastTriangle => "the same, its last triangle",
             Self::Comment => "comment",
         }
     }
@@ -66,6 +72,8 @@ pub(super) struct Subject {
     samples: u32,
     /// How often each kind was edited.
     edits: [u32; Kind::ALL.len()],
+    /// Vertices along each side of the large mesh.
+    large: u32,
     /// The files of the large and the small mesh, if there is one.
     meshes: [Vec<u8>; 2],
 }
@@ -84,8 +92,9 @@ impl Subject {
         let folder = scratch()?.join(name);
         let _ = std::fs::remove_dir_all(&folder);
         std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-        let meshes = [grid(if large { LARGE } else { MIDDLE }), grid(SMALL)];
-        let mut subject = Self { folder, size, samples, edits: [0; Kind::ALL.len()], meshes };
+        let large = if large { LARGE } else { MIDDLE };
+        let (edits, meshes) = ([0; Kind::ALL.len()], [grid(large), grid(SMALL)]);
+        let mut subject = Self { folder, size, samples, edits, large, meshes };
         for kind in [Kind::LargeMesh, Kind::SmallMesh, Kind::Texture, Kind::Camera] {
             subject.write(kind, Way::InPlace)?;
         }
@@ -119,11 +128,17 @@ impl Subject {
             Kind::Texture => put(&self.texture(), &soil(n), way),
             Kind::SmallMesh => self.write_mesh(1, n, "small.ply", way),
             Kind::LargeMesh => self.write_mesh(0, n, "large.ply", way),
+            Kind::LastTriangle => {
+                // The same corners, and other bytes at the end of the file.
+                let corners = self.meshes[0].len() - 3 * size_of::<u32>();
+                self.meshes[0][corners..].rotate_left(size_of::<u32>());
+                put(&self.mesh(), &self.meshes[0], way)
+            }
             _ => put(&self.scene(), self.text().as_bytes(), way),
         }
     }
 
-    /// The last corner of the mesh is moved a little.
+    /// A corner is moved a little, each time another one, anywhere in the mesh.
     fn write_mesh(
         &mut self,
         which: usize,
@@ -132,10 +147,13 @@ impl Subject {
         way: Way,
     ) -> Result<Instant, String> {
         let path = self.folder.join(name);
+        let side = if which == 0 { self.large } else { SMALL };
         let mesh = &mut self.meshes[which];
         let end = b"end_header\n";
         let begins = mesh.windows(end.len()).position(|bytes| bytes == end);
-        let y = begins.ok_or("no header")? + end.len() + size_of::<f32>();
+        let corner = (u64::from(GOLDEN.wrapping_mul(n)) * u64::from(side * side)) >> 32;
+        let before = 3 * usize::try_from(corner).map_err(|error| error.to_string())? + 1;
+        let y = begins.ok_or("no header")? + end.len() + before * size_of::<f32>();
         mesh[y..y + size_of::<f32>()].copy_from_slice(&(1e-4 * n as f32).to_le_bytes());
         put(&path, mesh, way)
     }

@@ -11,7 +11,9 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use luxel_core::diag::Sources;
-use luxel_core::files::{FileError, Files, Whole, hash_whole, normalise, read_whole};
+use luxel_core::files::{
+    Beginnings, FileError, Files, Whole, hash_unless_other, normalise, read_whole,
+};
 use luxel_core::scene::Hash;
 
 pub(crate) use known::Known;
@@ -173,11 +175,25 @@ pub(crate) fn look(path: &Path) -> Seen {
 
 /// The same, unless it is not wanted any more.
 fn seen(path: &Path, stop: &AtomicBool) -> Seen {
+    found(path, stop, &[]).and_then(|(seen, _)| seen)
+}
+
+/// What is there now and the hashes of its beginnings; none if one of these is not what is known, which
+/// may take much less time than to look at all of it.
+pub(crate) fn look_unless_other(path: &Path, known: &[Hash]) -> Option<(Seen, Beginnings)> {
+    found(path, &AtomicBool::new(false), known)
+}
+
+fn found(path: &Path, stop: &AtomicBool, known: &[Hash]) -> Option<(Seen, Beginnings)> {
     if path.is_dir() {
-        return fs::read_dir(path).ok().map(|entries| names_of_libraries(entries.flatten()));
+        let entries = fs::read_dir(path).ok();
+        return Some((entries.map(|entries| names_of_libraries(entries.flatten())), vec![]));
     }
-    let (file, length) = open_regular(path, MAX_BYTES).ok()?;
-    hash_whole(file, length, MAX_BYTES, stop).ok().map(blake3::Hash::from)
+    let hash = |(file, length)| hash_unless_other(file, length, MAX_BYTES, stop, known);
+    match open_regular(path, MAX_BYTES).and_then(hash) {
+        Ok(found) => found.map(|(hash, beginnings)| (Some(hash.into()), beginnings)),
+        Err(_) => Some((None, vec![])),
+    }
 }
 
 /// Other files come and go in a folder of libraries and concern nobody.

@@ -44,21 +44,36 @@ pub fn read_whole(
     }
 }
 
-/// The hash of all of a source that has at most so many bytes.
+/// Hashes of a source's beginnings, each a piece longer than the one before, as far as there are whole
+/// pieces.
+pub type Beginnings = Vec<Hash>;
+
+/// The hash of all of a source that has at most so many bytes, and of its beginnings; none as soon as one
+/// of these is not what is known: it is another source, whatever comes after that piece.
 ///
 /// # Errors
 /// As `read_whole`.
-pub fn hash_whole(
+pub fn hash_unless_other(
     from: impl Read,
     length: usize,
     most: u64,
     stop: &AtomicBool,
-) -> Result<Hash, FileError> {
+    known: &[Hash],
+) -> Result<Option<(Hash, Beginnings)>, FileError> {
     // Room for all of a mesh takes the system longer to give than its bytes take to read.
     let mut piece = vec![0; length.clamp(1, PIECE)];
     let mut pieces = Pieces::new(from, most, stop);
-    while pieces.fill(&mut piece)? > 0 {}
-    pieces.hash()
+    let mut beginnings = vec![];
+    while let n @ 1.. = pieces.fill(&mut piece)? {
+        if n == PIECE {
+            let beginning = pieces.hash();
+            if known.get(beginnings.len()).is_some_and(|known| *known != beginning) {
+                return Ok(None);
+            }
+            beginnings.push(beginning);
+        }
+    }
+    Ok(Some((pieces.whole_hash()?, beginnings)))
 }
 
 /// All bytes of a source, most likely so many.
@@ -79,7 +94,7 @@ fn gather(mut pieces: Pieces<'_, impl Read>, length: usize) -> Result<Whole, Fil
             bytes = [&bytes[..], &more].concat().into();
         }
     }
-    Ok((bytes, pieces.hash()?))
+    Ok((bytes, pieces.whole_hash()?))
 }
 
 /// A source, hashed as it is read.
@@ -116,12 +131,17 @@ impl<'a, R: Read> Pieces<'a, R> {
         Ok(n)
     }
 
+    /// The hash of what was read so far.
+    fn hash(&self) -> Hash {
+        *self.hasher.finalize().as_bytes()
+    }
+
     /// The hash of all that was read, which is all there is.
-    fn hash(self) -> Result<Hash, FileError> {
+    fn whole_hash(self) -> Result<Hash, FileError> {
         if self.from.limit() == 0 {
             return Err(FileError::TooLarge(self.most));
         }
-        Ok(*self.hasher.finalize().as_bytes())
+        Ok(self.hash())
     }
 }
 
@@ -133,6 +153,16 @@ mod tests {
 
     fn never() -> Arc<AtomicBool> {
         Arc::default()
+    }
+
+    fn hash_whole(
+        from: impl Read,
+        length: usize,
+        most: u64,
+        stop: &AtomicBool,
+    ) -> Result<Hash, FileError> {
+        let found = hash_unless_other(from, length, most, stop, &[])?;
+        Ok(found.expect("nothing is known that could differ").0)
     }
 
     fn bytes(n: usize) -> Vec<u8> {
@@ -149,6 +179,31 @@ mod tests {
                 assert!(*read == *all && own == hash, "{n} told as {length}");
                 assert_eq!(hash_whole(all, length, u64::MAX, &never()), Ok(hash));
             }
+        }
+    }
+
+    #[test]
+    fn another_source_is_told_at_the_first_piece_that_differs() {
+        let hash = |from: &[u8], known: &[Hash]| {
+            let mut left = from;
+            let found = hash_unless_other(&mut left, from.len(), u64::MAX, &never(), known);
+            (found.unwrap(), (from.len() - left.len()) / PIECE)
+        };
+        let all = bytes(5 * PIECE + 7);
+        let (Some((whole, known)), 5) = hash(&all, &[]) else { panic!("not all is read") };
+        assert_eq!(known.len(), 5);
+        assert_eq!(known[1], *blake3::hash(&all[..2 * PIECE]).as_bytes());
+        assert_eq!(hash(&all, &known), (Some((whole, known.clone())), 5));
+        for i in 0..5 {
+            let mut other = all.clone();
+            other[i * PIECE + 3] ^= 1;
+            assert_eq!(hash(&other, &known), (None, i + 1));
+        }
+        // What differs after the last whole piece, in length or in bytes, is told by the hash.
+        for other in [&all[..5 * PIECE], &all[..PIECE], &all[..9], &[&all[..], b"x"].concat()] {
+            let (Some((found, beginnings)), _) = hash(other, &known) else { panic!() };
+            assert_ne!(found, whole);
+            assert!(known.starts_with(&beginnings));
         }
     }
 

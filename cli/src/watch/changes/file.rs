@@ -4,9 +4,12 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use luxel_core::files::Beginnings;
+use luxel_core::scene::Hash;
+
+use super::Seen;
 use super::hear::Heard;
-use super::{Seen, look};
-use crate::files::Stamp;
+use crate::files::{Stamp, look_unless_other};
 
 /// How files stand, the later the more there is to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,8 +26,20 @@ pub(super) enum Standing {
 /// long as the bytes do.
 const COARSEST: Duration = Duration::from_millis(2500);
 
+/// Bytes that take so long to read that it is waited first for whoever writes them.
+const LARGE: u64 = 1 << 20;
+
 /// So often a file that changes while it is read is read again at once.
 const READS: u32 = 3;
+
+/// What was found in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Found {
+    /// All of it was looked at.
+    Seen(Seen),
+    /// It has not the contents in question; what it has is not known.
+    Other,
+}
 
 /// One file and what is known of it.
 pub(super) struct File {
@@ -34,6 +49,8 @@ pub(super) struct File {
     known: Option<Known>,
     /// How long they were when that was last known.
     len: Option<u64>,
+    /// What they begin with, then.
+    beginnings: Beginnings,
 }
 
 struct Known {
@@ -45,7 +62,7 @@ struct Known {
 
 impl File {
     pub(super) fn new(seen: Seen) -> Self {
-        Self { seen, known: None, len: None }
+        Self { seen, known: None, len: None, beginnings: vec![] }
     }
 
     /// The stamp that alone tells that the contents are the same, if there is one.
@@ -53,8 +70,13 @@ impl File {
         self.known.as_ref().filter(|known| known.sure).map(|known| &known.stamp)
     }
 
-    /// How the file stands, and what was found if it was read.
-    pub(super) fn check(&mut self, path: &Path, heard: &Heard) -> (Standing, Option<Seen>) {
+    /// How the file stands, and what was found there if it has been looked at.
+    pub(super) fn check(
+        &mut self,
+        path: &Path,
+        heard: &Heard,
+        is_patient: bool,
+    ) -> (Standing, Option<Found>) {
         let now = Stamp::of(path);
         if let Some(known) = &mut self.known
             && known.stamp == now
@@ -65,28 +87,43 @@ impl File {
             }
             known.sure = true;
         }
-        let Some((stamp, found)) = steady(path) else {
+        if is_patient && heard.is_open(path) && now.len() >= Some(LARGE) {
+            self.known = None;
+            return (Standing::Half, None);
+        }
+        // All of it is read, which takes a while, where somebody may still be writing it.
+        let may_go_on = heard.may_go_on(path);
+        let beginnings = if may_go_on { &[][..] } else { &self.beginnings };
+        let Some((stamp, found)) = steady(path, beginnings) else {
             self.known = None;
             return (Standing::Half, None);
         };
-        if found == self.seen {
-            let kept = self.known.take().filter(|known| known.stamp == stamp);
-            self.len = stamp.len();
-            self.known = kept.or_else(|| Some(Known { stamp, since: Instant::now(), sure: false }));
-            return (Standing::Same, Some(found));
+        match found {
+            Some((seen, beginnings)) if seen == self.seen => {
+                let kept = self.known.take().filter(|known| known.stamp == stamp);
+                (self.len, self.beginnings) = (stamp.len(), beginnings);
+                let new = || Known { stamp, since: Instant::now(), sure: false };
+                self.known = kept.or_else(|| Some(new()));
+                (Standing::Same, Some(Found::Seen(seen)))
+            }
+            found => {
+                self.known = None;
+                let is_cut = stamp.len() < Some(self.len.unwrap_or(u64::MAX)) && may_go_on;
+                let is_half = stamp.len().unwrap_or(0) == 0 || is_cut;
+                let standing = if is_half { Standing::Half } else { Standing::Whole };
+                let found = found.map_or(Found::Other, |(seen, _)| Found::Seen(seen));
+                (standing, Some(found))
+            }
         }
-        self.known = None;
-        let is_cut = stamp.len() < Some(self.len.unwrap_or(u64::MAX)) && heard.may_go_on(path);
-        let half = stamp.len().unwrap_or(0) == 0 || is_cut;
-        (if half { Standing::Half } else { Standing::Whole }, Some(found))
     }
 }
 
-/// What is there, unless it changes again and again while it is read.
-fn steady(path: &Path) -> Option<(Stamp, Seen)> {
+/// What is there, unless it changes again and again while it is read; of another than the one that has
+/// these beginnings, that it is one.
+fn steady(path: &Path, beginnings: &[Hash]) -> Option<(Stamp, Option<(Seen, Beginnings)>)> {
     let mut before = Stamp::of(path);
     for _ in 0..READS {
-        let found = look(path);
+        let found = look_unless_other(path, beginnings);
         let after = Stamp::of(path);
         if before == after {
             return Some((after, found));

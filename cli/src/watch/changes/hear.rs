@@ -36,10 +36,15 @@ impl Heard {
         self.all || self.files.contains(file) || file.is_dir()
     }
 
+    /// Whether somebody is writing it.
+    pub(super) fn is_open(&self, file: &Path) -> bool {
+        self.open.contains(file)
+    }
+
     /// Whether somebody may still be writing it.
     pub(super) fn may_go_on(&self, file: &Path) -> bool {
         let done = self.all || self.done.contains(file);
-        self.open.contains(file) || !done
+        self.is_open(file) || !done
     }
 
     /// What was whole before is so still, unless something has happened to it since.

@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 
 use crate::files::{Known, Seen, Watched, look};
 
-use file::{File, Standing};
+use file::{File, Found, Standing};
 use hear::{Ears, Heard};
 use hops::Hops;
 
@@ -263,10 +263,11 @@ impl Changes {
             if heard.moved {
                 self.listen();
             }
-            let pause = match self.check(&heard) {
+            let is_patient = waited < PATIENCE;
+            let pause = match self.check(&heard, is_patient) {
                 Standing::Same => return Noticed::Nothing,
                 Standing::Whole if self.files.len() > 1 && waited < CLOSE => QUIET,
-                Standing::Half if waited < PATIENCE => STEP,
+                Standing::Half if is_patient => STEP,
                 Standing::Whole | Standing::Half => return self.save(),
             };
             match self.pause(Instant::now() + pause) {
@@ -283,13 +284,15 @@ impl Changes {
     }
 
     /// Compares all files with what was seen in them, reading those that may have changed.
-    fn check(&mut self, heard: &Heard) -> Standing {
+    fn check(&mut self, heard: &Heard, is_patient: bool) -> Standing {
         let mut all = Standing::Same;
         for (path, file) in &mut self.files {
-            let (standing, found) = file.check(path, heard);
+            let (standing, found) = file.check(path, heard, is_patient);
             self.known.set(path, file.sure(), file.seen);
-            if let Some(found) = found {
-                self.found.insert(path.clone(), found);
+            match found {
+                Some(Found::Seen(seen)) => _ = self.found.insert(path.clone(), seen),
+                Some(Found::Other) => _ = self.found.remove(path),
+                None => {}
             }
             all = all.max(standing);
         }

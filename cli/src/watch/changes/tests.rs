@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use notify::event::{AccessKind, AccessMode, DataChange, Event, EventKind, Flag, ModifyKind};
+
 use super::*;
 use crate::testing::Folder;
 
@@ -74,30 +76,57 @@ fn saves_are_noticed_by_stamps_where_the_system_tells_nothing() {
     assert!(changes.wait());
 }
 
+/// Tells what the system would tell.
+type Tells = Box<dyn Fn(notify::Result<Event>)>;
+
+/// Watches one file and hears what it is told alone: nothing is compared without a reason.
+fn told(path: &Path) -> (Changes, Tells) {
+    let mut tells: Option<Tells> = None;
+    let (mut changes, _sender) = Changes::hearing(|wake| {
+        let ears = Ears::deaf();
+        tells = Some(Box::new(ears.hearing(wake)));
+        ears
+    });
+    changes.expect(BTreeMap::from([(path.to_path_buf(), look(path))]));
+    changes.anyway = LONG * 10;
+    assert_eq!(changes.within(Duration::ZERO), Noticed::Nothing);
+    (changes, tells.expect("it was made"))
+}
+
+/// Some events were: anything may have happened.
+fn lost() -> Event {
+    Event::new(EventKind::Other).set_flag(Flag::Rescan)
+}
+
 #[test]
 fn what_the_system_could_not_tell_is_looked_for() {
-    use notify::event::{Event, EventKind, Flag};
-    let lost = || Ok(Event::new(EventKind::Other).set_flag(Flag::Rescan));
-    let failed = || Err(notify::Error::generic("the queue is full"));
-    for what in [lost, failed] {
+    for what in [Ok(lost()), Err(notify::Error::generic("the queue is full"))] {
         let folder = Folder::new("watch-overflow");
         folder.write("a.scene", b"one");
-        let mut hearing: Option<Box<dyn Fn(notify::Result<Event>)>> = None;
-        let (mut changes, sender) = Changes::hearing(|wake| {
-            let ears = Ears::deaf();
-            hearing = Some(Box::new(ears.hearing(wake)));
-            ears
-        });
-        let path = folder.path("a.scene");
-        changes.expect(BTreeMap::from([(path.clone(), look(&path))]));
-        // Nothing is compared without a reason.
-        changes.anyway = LONG * 10;
-        assert_eq!(changes.within(Duration::ZERO), Noticed::Nothing);
+        let (mut changes, tell) = told(&folder.path("a.scene"));
         folder.write("a.scene", b"two");
         assert_eq!(changes.within(CLOSE * 2), Noticed::Nothing);
-        hearing.expect("it was made")(what());
+        tell(what);
         assert_eq!(changes.within(LONG), Noticed::Save);
-        drop(sender);
+    }
+}
+
+#[test]
+fn a_large_file_is_not_read_to_its_end_to_notice_that_it_begins_otherwise() {
+    let folder = Folder::new("watch-large");
+    let (path, large) = (folder.path("a.ply"), vec![7; (1 << 20) + 1]);
+    for (at, is_read) in [(0, false), (1 << 19, false), (1 << 20, true)] {
+        folder.write("a.ply", &large);
+        let (mut changes, tell) = told(&path);
+        let mut other = large.clone();
+        other[at] = 8;
+        folder.write("a.ply", &other);
+        tell(Ok(lost()));
+        assert_eq!(changes.within(LONG), Noticed::Save);
+        assert_eq!(changes.found.contains_key(&path), is_read, "a difference at {at}");
+        // A load that does not tell what it saw has seen this.
+        changes.expect_more_than(Watched::new(), []);
+        assert_eq!(changes.within(Duration::ZERO), Noticed::Nothing);
     }
 }
 
@@ -118,6 +147,36 @@ fn what_was_saved_between_a_load_and_the_wait_is_noticed() {
     folder.write("a.scene", b"three");
     changes.expect_more_than(Watched::new(), [path.as_path()]);
     assert_eq!(changes.within(Duration::ZERO), Noticed::Save);
+}
+
+#[test]
+fn a_large_file_is_not_read_while_somebody_writes_it() {
+    let folder = Folder::new("watch-open");
+    let (path, mut large) = (folder.path("a.ply"), vec![7; 1 << 20]);
+    folder.write("a.ply", &large);
+    let (mut changes, tell) = told(&path);
+    let before = changes.found.clone();
+    let event = |kind| Ok(Event::new(kind).add_path(path.clone()));
+    let written = || event(EventKind::Modify(ModifyKind::Data(DataChange::Any)));
+    large[9] = 8;
+    folder.write("a.ply", &large);
+    tell(written());
+    let heard = changes.ears.take();
+    assert_eq!(changes.check(&heard, true), Standing::Half);
+    assert_eq!(changes.found, before, "it was read");
+    assert_eq!(changes.check(&heard, false), Standing::Whole);
+    tell(event(EventKind::Access(AccessKind::Close(AccessMode::Write))));
+    let heard = changes.ears.take();
+    assert_eq!(changes.check(&heard, true), Standing::Whole);
+    // Who never closes it is not waited for for ever, and who has written nothing new has saved nothing.
+    changes.expect(BTreeMap::from([(path.clone(), look(&path))]));
+    assert_eq!(changes.within(Duration::ZERO), Noticed::Nothing);
+    tell(written());
+    assert_eq!(changes.within(LONG), Noticed::Nothing);
+    large[9] = 9;
+    folder.write("a.ply", &large);
+    tell(written());
+    assert_eq!(changes.within(LONG), Noticed::Save);
 }
 
 #[test]

@@ -184,27 +184,24 @@ impl<'scope> Watching<'scope, '_> {
             if next == Next::End {
                 return Ok(());
             }
-            self.hold();
+            self.shown.as_ref().inspect(|shown| shown.hold(self.args.preview));
             self.audience.page().inspect(|page| page.reading());
             self.renew(session, (&self.args.plugins, around))?;
-        }
-    }
-
-    /// Has the render in hand stand still while a save is looked at, so that who looks on sees soon what
-    /// comes of it.
-    fn hold(&self) {
-        if let Some(shown) = self.shown.as_ref().filter(|_| self.args.preview) {
-            shown.control.hold();
         }
     }
 
     /// Waits for a save, or for the picture if that is the end.
     fn wait(&mut self) -> Next {
         loop {
-            let noticed = self.changes.within(STILL);
-            let is_done = || self.shown.as_ref().is_some_and(Shown::is_done);
-            if noticed == Noticed::Nothing && (self.shown.is_none() || is_done()) {
-                self.beat.phase(Phase::Waiting);
+            let (shown, is_seen) = (self.shown.as_ref(), self.args.preview);
+            let hold = || _ = shown.inspect(|shown| shown.hold(is_seen));
+            let noticed = self.changes.within_then(STILL, hold);
+            let is_done = || shown.is_some_and(Shown::is_done);
+            if noticed == Noticed::Nothing {
+                shown.inspect(|shown| shown.control.release());
+                if shown.is_none() || is_done() {
+                    self.beat.phase(Phase::Waiting);
+                }
             }
             match noticed {
                 Noticed::Save => return Next::Read,

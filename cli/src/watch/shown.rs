@@ -87,6 +87,14 @@ impl Shown<'_> {
         self.thread.is_finished() && !self.sitting.is_in_press()
     }
 
+    /// Has a render that is seen stand still while a save is looked at, so that who looks on sees soon what
+    /// comes of it.
+    pub(super) fn hold(&self, is_seen: bool) {
+        if is_seen {
+            self.control.hold();
+        }
+    }
+
     /// Waits for the end of the render, and gives its picture. What it had to say it has said; a panic
     /// was caught and told inside.
     pub(super) fn ended(self) -> Arc<Sitting> {

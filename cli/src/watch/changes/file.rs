@@ -51,6 +51,8 @@ pub(super) struct File {
     len: Option<u64>,
     /// What they begin with, then.
     beginnings: Beginnings,
+    /// A stamp under which there were others.
+    other: Option<Stamp>,
 }
 
 struct Known {
@@ -62,7 +64,7 @@ struct Known {
 
 impl File {
     pub(super) fn new(seen: Seen) -> Self {
-        Self { seen, known: None, len: None, beginnings: vec![] }
+        Self { seen, known: None, len: None, beginnings: vec![], other: None }
     }
 
     /// The stamp that alone tells that the contents are the same, if there is one.
@@ -86,6 +88,10 @@ impl File {
                 return (Standing::Same, None);
             }
             known.sure = true;
+        }
+        // One save makes several events. What comes of the rest of it is loaded whatever it is.
+        if self.other.as_ref() == Some(&now) {
+            return (Standing::Whole, None);
         }
         if is_patient && heard.is_open(path) && now.len() >= Some(LARGE) {
             self.known = None;
@@ -111,6 +117,7 @@ impl File {
                 let is_cut = stamp.len() < Some(self.len.unwrap_or(u64::MAX)) && may_go_on;
                 let is_half = stamp.len().unwrap_or(0) == 0 || is_cut;
                 let standing = if is_half { Standing::Half } else { Standing::Whole };
+                self.other = Some(stamp).filter(|_| !is_half);
                 let found = found.map_or(Found::Other, |(seen, _)| Found::Seen(seen));
                 (standing, Some(found))
             }

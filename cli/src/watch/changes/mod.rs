@@ -184,6 +184,11 @@ impl Changes {
 
     /// Waits for one event, or for so long without one.
     pub(super) fn within(&mut self, time: Duration) -> Noticed {
+        self.within_then(time, || {})
+    }
+
+    /// The same, with something to be done before it is looked at what has happened to files.
+    pub(super) fn within_then(&mut self, time: Duration, then: impl FnOnce()) -> Noticed {
         if std::mem::take(&mut self.stopped) {
             return Noticed::Stop;
         }
@@ -210,6 +215,7 @@ impl Changes {
                         return Noticed::Stop;
                     }
                 }
+                then();
                 self.decide()
             }
             Ok(false) if self.compared.elapsed() < self.anyway => Noticed::Nothing,
@@ -263,16 +269,18 @@ impl Changes {
             if heard.moved {
                 self.listen();
             }
-            let is_patient = waited < PATIENCE;
-            let pause = match self.check(&heard, is_patient) {
+            let (is_patient, looked) = (waited < PATIENCE, Instant::now());
+            let standing = self.check(&heard, is_patient);
+            let until = match standing {
                 Standing::Same => return Noticed::Nothing,
-                Standing::Whole if self.files.len() > 1 && waited < CLOSE => QUIET,
-                Standing::Half if is_patient => STEP,
+                // Large files are still while they are looked at.
+                Standing::Whole if self.files.len() > 1 && waited < CLOSE => looked + QUIET,
+                Standing::Half if is_patient => Instant::now() + STEP,
                 Standing::Whole | Standing::Half => return self.save(),
             };
-            match self.pause(Instant::now() + pause) {
+            match self.pause(until) {
                 Err(Stopped) => return Noticed::Stop,
-                Ok(false) if pause == QUIET => return self.save(),
+                Ok(false) if standing == Standing::Whole => return self.save(),
                 Ok(_) => {}
             }
         }

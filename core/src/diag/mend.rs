@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Diagnostic, Fix, Grade, SourceId, Sources};
+use super::{Diagnostic, Fix, SourceId, Sources};
 
 /// A text with mends applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,8 +26,7 @@ pub fn mend(
 ) -> Vec<Mended> {
     let mut texts: BTreeMap<SourceId, Vec<(&'static str, Fix)>> = BTreeMap::new();
     for diagnostic in found {
-        let mut sure = diagnostic.fixes.iter().filter(|fix| fix.grade == Grade::Sure);
-        let (Some(fix), None) = (sure.next(), sure.next()) else { continue };
+        let Some(fix) = diagnostic.sure() else { continue };
         if !may(fix.span.source) {
             continue;
         }

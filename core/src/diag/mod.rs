@@ -184,6 +184,12 @@ impl Diagnostic {
         self
     }
 
+    /// The mend that may be applied unasked; of several that are sure a person chooses.
+    pub fn sure(&self) -> Option<&Fix> {
+        let mut sure = self.fixes.iter().filter(|fix| fix.grade == Grade::Sure);
+        sure.next().filter(|_| sure.next().is_none())
+    }
+
     /// Asks whether a near name was meant, and offers it.
     #[must_use]
     pub fn meant(self, span: Span, near: Option<Near<'_>>) -> Self {

@@ -269,7 +269,9 @@ impl Evaluator<'_> {
             }
             let Some(objects) = self.labels.objects.get(&set.label.text).cloned() else {
                 let text = format!("\"{}\"", set.label.text);
-                if !self.damaged || !self.sink.is_full() && !self.is_written(&text) {
+                // What may be set is known of what was written, not of what is meant by it.
+                let is_whole = !self.damaged && !self.sink.tells("E00");
+                if is_whole || !self.sink.is_full() && !self.is_written(&text) {
                     self.no_label(&set.label);
                 }
                 continue;

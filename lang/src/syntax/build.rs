@@ -1,5 +1,6 @@
 //! From pest's pairs to the syntax tree: statements.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, nearest};
@@ -7,6 +8,7 @@ use luxel_sdk::params::{UNITS, Unit};
 use pest::iterators::Pair;
 
 use super::Rule;
+use super::edits::Edits;
 use super::gaps::Gaps;
 use super::habits::condition;
 use super::make::{self, RESERVED};
@@ -26,6 +28,8 @@ pub(super) struct Builder<'a> {
     pub(super) budgets: &'a Budgets,
     /// What stands in the text for statements that cannot be read.
     pub(super) gaps: Gaps,
+    /// What was mended of what was written.
+    pub(super) edits: Edits,
 }
 
 fn is_keyword(rule: Rule) -> bool {
@@ -67,10 +71,28 @@ pub(super) fn take<'i>(parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> Pair
     parts.next().expect("the grammar promises this part")
 }
 
+impl<'a> Builder<'a> {
+    /// Of a text as it was written.
+    pub(super) fn new(
+        (source, base): (SourceId, usize),
+        sink: &'a mut Sink,
+        budgets: &'a Budgets,
+    ) -> Self {
+        let (gaps, edits) = (Gaps::default(), Edits::default());
+        Self { source, base, sink, budgets, gaps, edits }
+    }
+}
+
 impl Builder<'_> {
     pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let span = pair.as_span();
-        Span::new(self.source, self.base + span.start(), self.base + span.end())
+        self.written(span.start()..span.end())
+    }
+
+    /// Where some bytes of the text were written.
+    pub(super) fn written(&self, range: Range<usize>) -> Span {
+        let written = Span::new(self.source, self.base + range.start, self.base + range.end);
+        if self.edits.is_empty() { written } else { self.edits.span(written) }
     }
 
     pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Name {
@@ -99,10 +121,10 @@ impl Builder<'_> {
 
     /// The statements of a file or block.
     pub(super) fn stmt(&mut self, pair: Pair<'_, Rule>) -> Stmt {
-        let mut span = self.span(&pair);
-        if let Some(broken) = self.gaps.at(span.start as usize) {
+        if let Some(broken) = self.gaps.at(self.base + pair.as_span().start()) {
             return broken;
         }
+        let mut span = self.span(&pair);
         let (mut docs, mut attrs) = (vec![], vec![]);
         for part in pair.into_inner() {
             let place = self.span(&part);

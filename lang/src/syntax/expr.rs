@@ -193,8 +193,8 @@ impl Builder<'_> {
     }
 
     fn bad_number(&mut self, pair: &Pair<'_, Rule>, bad: &BadToken) {
-        let start = self.base + pair.as_span().start();
-        let span = Span::new(self.source, start + bad.start, start + bad.end);
+        let start = pair.as_span().start();
+        let span = self.written(start + bad.start..start + bad.end);
         let token: String = pair.as_str()[bad.start..bad.end].chars().take(40).collect();
         let place = bad.index + 1;
         let diagnostic = if bad.overflow {

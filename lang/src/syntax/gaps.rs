@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{SourceId, Span};
-
-use super::defined::perhaps_defined;
-use super::tree::{Name, Stmt, StmtNode};
+use super::tree::Stmt;
 
 /// What stands in the place of a statement that cannot be read, for the grammar to go on.
 const FILLING: &str = "a=0";
@@ -21,20 +18,17 @@ pub(super) struct Gaps {
 #[derive(Debug)]
 struct Gap {
     range: Range<usize>,
-    span: Span,
-    defines: Box<[Name]>,
+    broken: Stmt,
 }
 
 impl Gaps {
     /// Those at some bytes of a text. What stands in another one goes with it.
-    pub(super) fn new(text: &str, source: SourceId, mut wrong: Vec<Range<usize>>) -> Self {
+    pub(super) fn new(mut wrong: Vec<Range<usize>>, broken: impl Fn(Range<usize>) -> Stmt) -> Self {
         wrong.sort_by_key(|range| (range.start, std::cmp::Reverse(range.end)));
         let mut gaps: Vec<Gap> = vec![];
         for range in wrong {
             if gaps.last().is_none_or(|last| last.range.end <= range.start) {
-                let span = Span::new(source, range.start, range.end);
-                let defines = perhaps_defined(text, range.clone(), source);
-                gaps.push(Gap { range, span, defines });
+                gaps.push(Gap { range: range.clone(), broken: broken(range) });
             }
         }
         Self { gaps, n_filled: 0 }
@@ -60,9 +54,7 @@ impl Gaps {
     pub(super) fn at(&mut self, start: usize) -> Option<Stmt> {
         let i = self.gaps.binary_search_by_key(&start, |gap| gap.range.start).ok()?;
         self.n_filled += 1;
-        let Gap { span, defines, .. } = &self.gaps[i];
-        let node = StmtNode::Broken { defines: defines.clone() };
-        Some(Stmt { span: *span, docs: Box::default(), attrs: Box::default(), node })
+        Some(self.gaps[i].broken.clone())
     }
 
     /// Whether each stands in the tree that was built.

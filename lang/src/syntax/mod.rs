@@ -9,6 +9,7 @@ pub(crate) mod check;
 mod cut;
 mod defined;
 mod direct;
+mod edits;
 mod explain;
 mod expr;
 mod fault;

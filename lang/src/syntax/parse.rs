@@ -11,6 +11,7 @@ use super::around::Place;
 use super::build::Builder;
 use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
 use super::direct::{self, Words};
+use super::edits::Edits;
 use super::fault;
 use super::gaps::Gaps;
 use super::habits::COMMENTS;
@@ -171,7 +172,7 @@ pub(super) fn parse_whole(
     sink: &mut Sink,
 ) -> Option<Tree> {
     let file = SceneParser::parse(Rule::file, text).ok()?.next()?;
-    let mut builder = Builder { source, base: 0, sink, budgets, gaps: Gaps::default() };
+    let mut builder = Builder::new((source, 0), sink, budgets);
     let stmts = file
         .into_inner()
         .filter(|part| part.as_rule() == Rule::stmt)
@@ -191,10 +192,13 @@ pub(crate) fn parse_expr(
     let faults = scan(text, start..text.len(), 0, budgets.brackets).faults;
     let pairs = SceneParser::parse(Rule::one_expr, &text[start..]).ok();
     let pair = pairs.filter(|_| faults.is_empty())?.next()?.into_inner().next()?;
-    let mut builder = Builder { source, base: start, sink, budgets, gaps: Gaps::default() };
+    let mut builder = Builder::new((source, start), sink, budgets);
     let expr = builder.expr(pair);
     (expr.node != ExprNode::Broken).then_some(expr)
 }
+
+/// Bytes of a statement that are read once more, all in all, to find its further mistakes.
+const AGAIN: usize = 1 << 18;
 
 pub(super) struct Reader<'a> {
     pub(super) text: &'a str,
@@ -202,22 +206,32 @@ pub(super) struct Reader<'a> {
     pub(super) budgets: &'a Budgets,
     pub(super) sink: &'a mut Sink,
     /// Words that were met, if statements are read straight from their bytes where that is possible.
-    direct: Option<Words>,
+    pub(super) direct: Option<Words>,
     /// Where the statement that is being read cannot be read: the innermost statements around mistakes.
     pub(super) wrong: Vec<Range<usize>>,
+    /// What was mended of what was written.
+    pub(super) edits: Edits,
+    /// Bytes that may still be read once more to find further mistakes of the statement.
+    pub(super) again: usize,
     pub(super) out: Tree,
 }
 
 impl<'a> Reader<'a> {
-    fn new(text: &'a str, source: SourceId, budgets: &'a Budgets, sink: &'a mut Sink) -> Self {
+    pub(super) fn new(
+        text: &'a str,
+        source: SourceId,
+        budgets: &'a Budgets,
+        sink: &'a mut Sink,
+    ) -> Self {
         let (direct, out) = (Some(Words::default()), Tree::default());
-        Self { text, source, budgets, sink, direct, wrong: vec![], out }
+        let (wrong, edits, again) = (vec![], Edits::default(), AGAIN);
+        Self { text, source, budgets, sink, direct, wrong, edits, again, out }
     }
 }
 
 impl Reader<'_> {
     pub(super) fn span(&self, range: Range<usize>) -> Span {
-        Span::new(self.source, range.start, range.end)
+        self.edits.span(Span::new(self.source, range.start, range.end))
     }
 
     fn tree(&mut self) -> Tree {
@@ -350,6 +364,7 @@ impl Reader<'_> {
             if piece.faulty {
                 self.broken(piece.range.clone());
             } else {
+                self.again = AGAIN;
                 self.chunk(piece.range.clone(), Place::File);
             }
         }
@@ -424,9 +439,13 @@ impl Reader<'_> {
                     self.chunk(line..chunk.end, place);
                     return;
                 }
+                let at = chunk.start + at;
+                if self.mended(at, &chunk, place) {
+                    return;
+                }
                 // What stands after it on its last line comes after it.
                 let after = keep.then_some(self.out.stmts.len());
-                self.recover(chunk.start + at, chunk.clone(), place);
+                self.recover(at, chunk.clone(), place);
                 if let Some(after) = after {
                     let stmt = self.repaired(&chunk);
                     self.out.stmts.insert(after, stmt);
@@ -436,8 +455,8 @@ impl Reader<'_> {
     }
 
     pub(super) fn builder(&mut self, base: usize) -> Builder<'_> {
-        let gaps = Gaps::default();
-        Builder { source: self.source, base, sink: self.sink, budgets: self.budgets, gaps }
+        let (gaps, edits) = (Gaps::default(), self.edits.clone());
+        Builder { source: self.source, base, sink: self.sink, budgets: self.budgets, gaps, edits }
     }
 
     /// Whether a statement would take too much to read, which is told.
@@ -445,7 +464,7 @@ impl Reader<'_> {
         let found = too_large(self.text, chunk, self.source, self.budgets);
         let is_found = found.is_some();
         if let Some(found) = found {
-            self.sink.push(found);
+            self.sink.push(self.edits.told(found));
         }
         is_found
     }

@@ -3,10 +3,12 @@
 use std::ops::Range;
 
 use pest::Parser;
+use pest::error::InputLocation;
 
 use super::around::Place;
 use super::build::Builder;
 use super::defined::perhaps_defined;
+use super::edits::{Edits, Mended};
 use super::explain::explain;
 use super::gaps::Gaps;
 use super::lex::{TokenKind, tokens};
@@ -21,6 +23,13 @@ const REPAIRED: usize = 1 << 18;
 /// In how many enclosing blocks statements after a mistake are still looked at.
 const BLOCKS_LOOKED_AT: usize = 8;
 
+/// Where a statement cannot be read further, if it cannot.
+fn fault(text: &str) -> Option<usize> {
+    let error = SceneParser::parse(Rule::one_stmt, text).err()?;
+    let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
+    Some(at)
+}
+
 impl Reader<'_> {
     /// A statement of the file without the inner statements that cannot be read: more mistakes may be
     /// found in the rest.
@@ -28,7 +37,7 @@ impl Reader<'_> {
         let is_own =
             |range: &mut Range<usize>| chunk.start <= range.start && range.end <= chunk.end;
         let wrong = self.wrong.extract_if(.., is_own).collect();
-        let gaps = Gaps::new(self.text, self.source, wrong);
+        let gaps = Gaps::new(wrong, |range| self.broken_stmt(range));
         let is_worth = chunk.len() <= REPAIRED && !self.sink.is_full();
         let text = Some(chunk).filter(|_| is_worth).and_then(|chunk| gaps.filled(self.text, chunk));
         let pairs = text.as_ref().and_then(|text| SceneParser::parse(Rule::one_stmt, text).ok());
@@ -42,12 +51,57 @@ impl Reader<'_> {
         stmt.unwrap_or_else(|| self.broken_stmt(chunk.clone()))
     }
 
+    /// Mends what is wrong with a statement near byte `at`, and further on, as long as the mend is sure;
+    /// tells it, and reads what comes of it. False, and nothing told, where the first mistake has none.
+    pub(super) fn mended(&mut self, at: usize, chunk: &Range<usize>, place: Place) -> bool {
+        let (mut mended, mut part, mut at) = if self.edits.is_empty() {
+            let (text, edits) = (self.text[chunk.clone()].to_owned(), Edits::new(chunk.start));
+            (Mended { text, edits }, 0..chunk.len(), at - chunk.start)
+        } else {
+            let (text, edits) = (self.text.to_owned(), self.edits.clone());
+            (Mended { text, edits }, chunk.clone(), at)
+        };
+        let mut told = vec![];
+        loop {
+            let found = explain(&mended.text, part.clone(), at, self.source, place).diagnostic;
+            let Some(next) = mended.with(&found) else { break };
+            let Some(again) = self.again.checked_sub(next.text.len()) else { break };
+            self.again = again;
+            let end = part.end + next.text.len() - mended.text.len();
+            let fault = fault(&next.text[part.start..end]).map(|to| part.start + to);
+            let written = |of: &Mended, at: usize| of.edits.written(at..at).start;
+            if fault.is_some_and(|to| written(&next, to) <= written(&mended, at)) {
+                break;
+            }
+            told.push(mended.edits.told(found));
+            (mended, part.end) = (next, end);
+            let Some(to) = fault else { break };
+            at = to;
+        }
+        if told.is_empty() {
+            return false;
+        }
+        told.into_iter().for_each(|found| _ = self.sink.push(found));
+        let (mut sink, again) = (self.sink.like(), self.again);
+        let Mended { text, edits } = mended;
+        let read = Reader::new(&text, self.source, self.budgets, &mut sink);
+        let mut reader = Reader { direct: None, edits, again, ..read };
+        reader.chunk(part, place);
+        self.again = reader.again;
+        self.out.stmts.append(&mut reader.out.stmts);
+        if place != Place::File {
+            self.wrong.push(chunk.clone());
+        }
+        self.sink.absorb(sink);
+        true
+    }
+
     /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those
     /// around it.
     pub(super) fn recover(&mut self, at: usize, chunk: Range<usize>, place: Place) {
         let found = explain(self.text, chunk.clone(), at, self.source, place);
         let here = found.at;
-        self.sink.push(found.diagnostic);
+        self.sink.push(self.edits.told(found.diagnostic));
         if self.sink.is_full() {
             return;
         }
@@ -119,7 +173,8 @@ impl Reader<'_> {
 
     fn broken_stmt(&self, chunk: Range<usize>) -> Stmt {
         let span = self.span(chunk.clone());
-        let defines = perhaps_defined(self.text, chunk, self.source);
+        let mut defines = perhaps_defined(self.text, chunk, self.source);
+        defines.iter_mut().for_each(|name| name.span = self.edits.span(name.span));
         let node = StmtNode::Broken { defines };
         Stmt { span, docs: Box::default(), attrs: Box::default(), node }
     }

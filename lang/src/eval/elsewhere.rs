@@ -3,7 +3,7 @@
 use luxel_core::diag::{Grade, Near, near};
 
 /// Their word and ours. Ours counts only where it is known: whether it is, plugins decide.
-const WORDS: [(&str, &str); 76] = [
+const WORDS: [(&str, &str); 67] = [
     ("albedo", "reflectance"),
     ("color", "reflectance"),
     ("kd", "reflectance"),
@@ -59,20 +59,11 @@ const WORDS: [(&str, &str); 76] = [
     ("bounces", "max_depth"),
     ("depth", "max_depth"),
     ("max_bounces", "max_depth"),
-    ("width", "resolution"),
-    ("height", "resolution"),
     ("size", "resolution"),
     ("location", "center"),
     ("origin", "center"),
-    ("origin", "look"),
-    ("position", "look"),
-    ("direction", "look"),
     ("to_world", "look"),
     ("to_world", "transform"),
-    ("rotate", "transform"),
-    ("rotation", "transform"),
-    ("translate", "transform"),
-    ("translation", "transform"),
     ("fstop", "f_number"),
     ("focus_distance", "focus"),
     ("lens_radius", "aperture"),
@@ -81,6 +72,39 @@ const WORDS: [(&str, &str); 76] = [
     ("faces", "indices"),
     ("triangles", "indices"),
 ];
+
+/// What is one thing here and several elsewhere, or has another form: ours with how it is written, and
+/// their words.
+const FORMS: [(&str, &str, &[&str]); 4] = [
+    ("resolution", "resolution = (640, 480)", &["width", "height", "xresolution", "yresolution"]),
+    (
+        "look",
+        "look = look_at(from = (0, 1, 5) m, to = (0, 1, 0) m, up = (0, 1, 0))",
+        &[
+            "position",
+            "location",
+            "origin",
+            "from",
+            "eye",
+            "at",
+            "to",
+            "target",
+            "lookat",
+            "look_at",
+            "direction",
+            "up",
+        ],
+    ),
+    ("transform", "transform = move((1, 0, 0) m)", &["translate", "translation", "move"]),
+    ("transform", "transform = rotate((0, 1, 0), 20 deg)", &["rotate", "rotation"]),
+];
+
+/// The known word that is meant by another renderer's, which wants more than that word, and how it is
+/// written.
+pub(super) fn form(found: &str, known: &[&'static str]) -> Option<(&'static str, &'static str)> {
+    let of = FORMS.iter().find(|(ours, _, theirs)| theirs.contains(&found) && known.contains(ours));
+    of.map(|(ours, form, _)| (*ours, *form))
+}
 
 /// The known word that is meant: another's word for it, which is a guess, or the nearest.
 pub(super) fn meant<'a>(found: &str, known: &[&'a str]) -> Option<Near<'a>> {
@@ -101,5 +125,8 @@ mod tests {
         assert_eq!(name("irradiance", &["illuminance", "radiance"]), Some("illuminance"));
         assert_eq!(name("distant", &["point", "spot"]), None);
         assert_eq!(name("radus", &["center", "radius"]), Some("radius"));
+        assert_eq!(form("height", &["exposure", "resolution"]).map(|it| it.0), Some("resolution"));
+        assert_eq!(form("position", &["center", "transform"]), None);
+        assert_eq!(name("position", &["center", "transform"]), Some("center"));
     }
 }

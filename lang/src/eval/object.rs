@@ -11,7 +11,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Type};
 
-use super::elsewhere::meant;
+use super::elsewhere::{form, meant};
 use super::env::Env;
 use super::exec::{Body, Place};
 use super::value::{FieldValue, Head, ObjectValue, Value, What};
@@ -380,19 +380,21 @@ impl Evaluator<'_> {
     ) -> Option<&'static str> {
         let name = &field.name;
         let message = format!("`{what}` has no parameter `{}`", name.text);
-        let near = meant(&name.text, known);
+        let (form, near) = (form(&name.text, known), meant(&name.text, known));
+        let meant = form.map(|(ours, _)| ours).or(near.map(|near| near.name));
         let is_given = |other: &&FieldValue| {
-            near.is_some_and(|near| *other.name.text == *near.name)
+            meant.is_some_and(|meant| *other.name.text == *meant)
                 && self.is_beside(other.name.span, name.span)
         };
         let given = all.iter().find(is_given);
         let found = Diagnostic::error("E0402", name.span, message);
-        let found = match given {
-            Some(given) => found.label(given.name.span, "this one is given already"),
-            None => found.meant(name.span, near),
+        let found = match (given, form) {
+            (Some(given), _) => found.label(given.name.span, "this one is given already"),
+            (None, Some((_, form))) => found.help(format!("it is written `{form}`")),
+            (None, None) => found.meant(name.span, near),
         };
         self.tell(found.help(format!("known are {}", known.join(", "))));
-        near.map(|near| near.name)
+        meant
     }
 
     /// Whether two names stand in the same braces, not one of them in a `set` or `with`.

@@ -77,6 +77,12 @@ impl Resolver<'_> {
                 ),
             );
         }
+        if let Some((all, mended)) = self.unit_without_powers(name.span) {
+            let message =
+                format!("there is no unit `{}`", self.text.get(all.range()).unwrap_or(""));
+            let found = Diagnostic::error("E0204", all, message);
+            return found.help("powers are written with `^`").fix(all, mended);
+        }
         let dotted = builtins::names()
             .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
         let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };
@@ -114,6 +120,30 @@ impl Resolver<'_> {
             );
         }
         found
+    }
+}
+
+impl Resolver<'_> {
+    /// The unit behind a number of which a name is a part, and how it is written: `W/m2/sr`.
+    fn unit_without_powers(&self, name: Span) -> Option<(Span, String)> {
+        let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'/';
+        let (bytes, at) = (self.text.as_bytes(), name.range());
+        let n_before = bytes.get(..at.start)?.iter().rev().take_while(|b| is_part(b)).count();
+        let n_behind = bytes.get(at.end..)?.iter().take_while(|b| is_part(b)).count();
+        let (start, end) = (at.start - n_before, at.end + n_behind);
+        let number = self.text[..start].trim_end_matches(' ').bytes().next_back()?;
+        if !number.is_ascii_digit() && !matches!(number, b')' | b']' | b'.') {
+            return None;
+        }
+        let with_power = |part: &str| {
+            let letters = part.trim_end_matches(|c: char| c.is_ascii_digit());
+            let power = &part[letters.len()..];
+            if power.is_empty() { letters.to_owned() } else { format!("{letters}^{power}") }
+        };
+        let parts: Vec<String> = self.text[start..end].split('/').map(with_power).collect();
+        let mended = parts.join("/");
+        let is_it = mended.len() > end - start && Unit::parse(&mended).is_ok();
+        is_it.then(|| (Span::new(name.source, start, end), mended))
     }
 }
 

@@ -413,6 +413,15 @@ impl Builder<'_> {
             self.sink.push(of_suffix(span));
             return None;
         }
+        if matches!(text, "px" | "pixel" | "pixels") {
+            let before = &pair.get_input()[..pair.as_span().start()];
+            let gap = before.len() - before.trim_end_matches([' ', '\t']).len();
+            let all = Span::new(span.source, span.range().start - gap, span.range().end);
+            let message = format!("there is no unit `{text}`: pixels are counted");
+            let found = Diagnostic::error("E0204", span, message);
+            self.sink.push(found.fix(all, ""));
+            return None;
+        }
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
         if let Some((all, size)) = self.size(pair) {
             self.sink.push(diagnostic.help("a size is a vector").guess(all, size));

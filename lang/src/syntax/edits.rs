@@ -54,16 +54,12 @@ impl Edits {
     /// What was written where a byte stands now: no byte, or what a mend has replaced.
     fn place(&self, at: usize) -> Range<usize> {
         let i = self.edits.partition_point(|edit| edit.new.end <= at);
-        match self.edits.get(i).filter(|edit| edit.new.start < at) {
-            Some(edit) => edit.old.clone(),
-            None => {
-                let at = match i.checked_sub(1).map(|before| &self.edits[before]) {
-                    Some(before) => at - before.new.end + before.old.end,
-                    None => self.base + at,
-                };
-                at..at
-            }
+        if let Some(within) = self.edits.get(i).filter(|edit| edit.new.start < at) {
+            return within.old.clone();
         }
+        let before = i.checked_sub(1).map(|i| &self.edits[i]);
+        let at = before.map_or(self.base + at, |edit| at - edit.new.end + edit.old.end);
+        at..at
     }
 
     /// With one more mend of a text; `None` if it overlaps or touches another, or there are enough.

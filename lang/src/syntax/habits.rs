@@ -427,8 +427,8 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
             let both = around.span(kind).to(around.span(label));
             let found = told(both, "an object has one kind, and its label is a text");
             let (kind, label) = (kind.text, label.text);
-            let help = format!("or `{kind} \"{label}\"`, if `{kind}` is the kind");
-            Some(found.help(help).guess(both, format!("{label} \"{kind}\"")))
+            let help = format!("or `{label} \"{kind}\"`, if `{label}` is the kind");
+            Some(found.help(help).guess(both, format!("{kind} \"{label}\"")))
         }
         _ => None,
     }

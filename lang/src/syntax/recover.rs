@@ -81,7 +81,9 @@ impl Reader<'_> {
         if told.is_empty() {
             return false;
         }
-        told.into_iter().for_each(|found| _ = self.sink.push(found));
+        for found in told {
+            self.sink.push(found);
+        }
         let (mut sink, again) = (self.sink.like(), self.again);
         let Mended { text, edits } = mended;
         let read = Reader::new(&text, self.source, self.budgets, &mut sink);

@@ -57,8 +57,9 @@ impl Evaluator<'_> {
         for group in groups {
             let members: Vec<&str> =
                 Registry::params(class).filter(|p| p.group == group).map(|p| p.name).collect();
-            let chosen: Vec<&Name> =
+            let mut chosen: Vec<&Name> =
                 members.iter().filter_map(|m| given(m)).map(|f| &f.name).collect();
+            chosen.sort_by_key(|name| name.span);
             if let [first, second, ..] = chosen[..] {
                 let (a, b) = (&first.text, &second.text);
                 let message = format!("`{a}` and `{b}` are both given; only one can be");

@@ -411,7 +411,8 @@ impl Evaluator<'_> {
             }
             true
         };
-        one.source == other.source && text.len() <= BESIDE && text.bytes().all(stays)
+        let is_near = one.source == other.source && text.len() <= BESIDE;
+        is_near && text.bytes().all(stays) && depth == 0
     }
 }
 

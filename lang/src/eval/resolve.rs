@@ -288,19 +288,29 @@ impl<'a> Resolver<'a> {
     /// Parameters on one line have a comma between them.
     fn apart(&mut self, stmts: &[Stmt]) {
         for pair in stmts.windows(2) {
-            let (StmtNode::Field(one), StmtNode::Field(next)) = (&pair[0].node, &pair[1].node)
-            else {
-                continue;
+            let StmtNode::Field(one) = &pair[0].node else { continue };
+            let (name, place) = match &pair[1].node {
+                StmtNode::Field(next) => (&*next.name.text, next.name.span),
+                StmtNode::Call(call) => match called(call) {
+                    Some(name) => (&*name.text, name.span),
+                    None => continue,
+                },
+                _ => continue,
             };
             let end = one.value.span.end;
-            let between = self.text.get(end as usize..next.name.span.start as usize);
+            let between = self.text.get(end as usize..place.start as usize);
             if between.is_none_or(|between| between.contains([',', ';', '\n'])) {
                 continue;
             }
-            let gap = Span { start: end, end, ..next.name.span };
-            let message = format!("a comma is missing before `{}`", next.name.text);
-            let found = Diagnostic::error("E0014", next.name.span, message);
-            self.sink.push(found.fix(gap, ","));
+            let gap = Span { start: end, end, ..place };
+            let found =
+                Diagnostic::error("E0014", place, format!("a comma is missing before `{name}`"));
+            self.sink.push(match &pair[1].node {
+                StmtNode::Field(_) => found.fix(gap, ","),
+                _ if &*one.name.text == "transform" => found
+                    .help("several transforms stand in a list: `[scale(2), move((1, 0, 0) m)]`"),
+                _ => found,
+            });
         }
     }
 

@@ -102,6 +102,8 @@ impl Resolver<'_> {
         let ending = ending.map(|name| Near { name, grade: Grade::Sure });
         if Unit::named(shown).is_some() {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
+        } else if shown == "rgba" {
+            found = found.help("a colour is written `rgb.srgb(1, 0.5, 0)`, and has no alpha");
         } else if shown == "not" {
             found = found.help("`not` is written `!`").guess(place, "!");
         } else if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {

@@ -174,9 +174,26 @@ impl<'a> Around<'a> {
                 let help = "a name with a type is defined with `let` or `param`";
                 return Some(found.help(help).guess(start, "let "));
             }
-            return Some(found.fix(self.span(current), " ="));
+            return Some(self.colon(current, before, found));
         }
         None
+    }
+
+    /// With what stands for a `:` behind a word.
+    fn colon(&self, colon: &Token<'_>, word: &Token<'_>, found: Diagnostic) -> Diagnostic {
+        let gap = Span::new(self.source, word.end(), colon.end());
+        // `shape: sphere { … }` where objects stand.
+        let next = self.tokens.get(self.at + 1).filter(|t| t.kind == TokenKind::Word);
+        let opens = self.word(self.at + 2) == "{" && self.inner() != Place::Fields;
+        match next.filter(|_| opens && is_category(word.text)) {
+            Some(kind) => {
+                let gap = gap.to(Span::new(self.source, kind.start, kind.start));
+                let message = format!("no `:` stands between `{}` and its kind", word.text);
+                self.error("E0023", colon, message).fix(gap, " ")
+            }
+            None if word.end() < colon.start => found.fix(self.span(colon), "="),
+            None => found.fix(gap, " ="),
+        }
     }
 
     /// A word of the language where a value is wanted, on the same line.

@@ -81,6 +81,12 @@ fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
     if !in_head || name.first_on_line || !type_names::names().any(|known| known == ty.text) {
         return None;
     }
+    // `x: length y: length`
+    if around.before(2).is_some_and(|sign| sign.text == ":") {
+        let gap = Span::new(around.source, ty.end(), ty.end());
+        let message = format!("a comma is missing before `{}`", name.text);
+        return Some(around.error("E0014", name, message).fix(gap, ","));
+    }
     let both = around.span(ty).to(around.span(name));
     let found = told(both, "a type stands behind the name, and `:`");
     Some(found.fix(both, format!("{}: {}", name.text, ty.text)))

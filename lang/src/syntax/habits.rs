@@ -365,6 +365,12 @@ fn definition(around: &Around<'_>) -> Option<Diagnostic> {
                 return None;
             }
             let gap = Span::new(around.source, last.end(), second.start);
+            let is_object = is_category(second.text)
+                && (around.word(around.at + 1) == "{" || around.is_word(around.at + 1));
+            if is_object {
+                let message = format!("`=` is missing between `{}` and its value", last.text);
+                return Some(around.error("E0012", second, message).fix(gap, " = "));
+            }
             if type_names::names().any(|known| known == second.text) {
                 let found = told(around.span(second), "a type stands behind `:`");
                 return Some(found.fix(gap, ": "));

@@ -20,6 +20,7 @@ pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| commented_unit(around))
         .or_else(|| unquoted_path(around))
         .or_else(|| named_unit(around))
+        .or_else(|| argument(around))
 }
 
 /// How a statement is written of which the place is a part.
@@ -175,22 +176,45 @@ fn unquoted_path(around: &Around<'_>) -> Option<Diagnostic> {
     Some(found.guess(span, format!("\"{}\"", &rest[..length])))
 }
 
-/// `n m`
+/// `n m`, also where reading goes on to what stands behind it.
 fn named_unit(around: &Around<'_>) -> Option<Diagnostic> {
-    let (unit, name, before) = (around.current()?, around.before(1)?, around.before(2)?);
-    let is_value = name.kind == TokenKind::Word && (before.is_operator() || before.text == ",");
-    if !is_value || unit.first_on_line || Unit::named(unit.text).is_none() {
+    let is_unit = |i: &usize| {
+        let ends = |t: &Token<'_>| t.first_on_line || matches!(t.text, "," | ";" | "}");
+        let is_last = *i == around.at || around.current().is_none_or(ends);
+        is_last && around.is_word(*i) && Unit::named(around.word(*i)).is_some()
+    };
+    let at = [around.at, around.at.checked_sub(1)?].into_iter().find(is_unit)?;
+    let (unit, name, before) =
+        (around.tokens.get(at)?, around.tokens.get(at.checked_sub(1)?)?, at.checked_sub(2)?);
+    let before = &around.tokens[before];
+    let is_after = before.is_operator() || matches!(before.text, "," | "(" | "[");
+    if name.kind != TokenKind::Word || !is_after || unit.first_on_line {
         return None;
     }
-    let (name, unit) = (name.text, around.span(unit));
-    let found = told(unit, "a unit stands behind a number, not behind a name");
-    let word = &around.text[unit.range()];
-    let gap = Span::new(around.source, around.tokens[around.at - 1].end(), unit.range().end);
-    Some(
-        found
-            .help(format!("`{name}` may measure something already"))
-            .guess(gap, format!(" * 1 {word}")),
-    )
+    let message = format!("a unit stands behind a number, not behind the name `{}`", name.text);
+    let found = told(around.span(unit), message);
+    let gap = Span::new(around.source, name.end(), unit.end());
+    let help = format!("`{}` may measure something already", name.text);
+    Some(found.help(help).guess(gap, format!(" * 1 {}", unit.text)))
+}
+
+/// `look_at(from (0, 1, 4) m)`: an argument without its sign.
+fn argument(around: &Around<'_>) -> Option<Diagnostic> {
+    let unit = around.current().filter(|t| !t.first_on_line && Unit::named(t.text).is_some())?;
+    let close = around.before(1).filter(|t| t.text == ")" && t.end() <= unit.start)?;
+    let outer = *around.open.last().filter(|open| around.word(**open) == "(")?;
+    let open = (outer + 1..around.at)
+        .find(|i| around.word(*i) == "(" && around.closing(*i) == Some(around.at - 1))?;
+    let name = &around.tokens[open - 1];
+    let is_apart = name.end() < around.tokens[open].start && open >= 2;
+    let begins = is_apart && matches!(around.word(open - 2), "(" | ",");
+    if name.kind != TokenKind::Word || !begins {
+        return None;
+    }
+    let value = around.span(&around.tokens[open]).to(around.span(close));
+    let gap = Span::new(around.source, name.end(), name.end());
+    let message = format!("`=` is missing between `{}` and its value", name.text);
+    Some(Diagnostic::error("E0012", value, message).fix(gap, " ="))
 }
 
 /// Whether a letter behind a number says elsewhere of which precision it is.

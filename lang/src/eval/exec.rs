@@ -71,6 +71,10 @@ impl Evaluator<'_> {
             } else {
                 self.stmt(stmt, env, body);
             }
+            // Of what stands in a block, the statement of the file that it stands in is looked at.
+            if self.depth == 0 && !self.stopped {
+                self.look_at_untaken(stmt, env);
+            }
         }
     }
 

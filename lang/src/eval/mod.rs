@@ -34,6 +34,7 @@ mod turns;
 mod unitless;
 mod unknown;
 mod unseen;
+mod untaken;
 pub(crate) mod types;
 mod value;
 

@@ -352,7 +352,7 @@ impl Evaluator<'_> {
     }
 
     /// Tells of a field that the class does not have; gives the parameter that was probably meant.
-    fn unknown_param(
+    pub(super) fn unknown_param(
         &mut self,
         class: &Class,
         field: &FieldValue,
@@ -414,6 +414,13 @@ impl Evaluator<'_> {
         let is_near = one.source == other.source && text.len() <= BESIDE;
         is_near && text.bytes().all(stays) && depth == 0
     }
+}
+
+/// Whether objects of a class are given something of this name.
+pub(super) fn has_param(class: &Class, name: &str) -> bool {
+    let is_known = Registry::params(class).any(|param| param.name == name);
+    let is_place = name == "transform" && stands_somewhere(class.kind);
+    is_known || is_place || name == "materials" && class.kind == Kind::Importer
 }
 
 /// Whether objects of a kind stand in the scene and so take a `transform`.

@@ -49,7 +49,7 @@ pub(crate) use tree::{
     Object, Op, ParamDef, Stmt, StmtNode, Ty, children,
 };
 
-pub(crate) use walk::each_expr;
+pub(crate) use walk::{each_expr, each_object};
 
 pub(crate) use grammar::{Rule, SceneParser};
 

@@ -1,9 +1,36 @@
-//! Every expression of a statement.
+//! Every expression and every object of a statement.
 
-use super::tree::{Block, Expr, ExprNode, FnBody, Stmt, StmtNode, children};
+use super::tree::{Block, Expr, ExprNode, FnBody, Object, Stmt, StmtNode, children};
+
+/// What a statement is made of.
+#[derive(Clone, Copy)]
+enum Part<'s> {
+    Expr(&'s Expr),
+    Object(&'s Object),
+}
+
+/// What is done with each part.
+type Each<'e, 's> = &'e mut dyn FnMut(Part<'s>);
 
 /// Calls `each` on every expression in a statement, those in objects and blocks included.
 pub(crate) fn each_expr<'s>(stmt: &'s Stmt, each: &mut dyn FnMut(&'s Expr)) {
+    each_part(stmt, &mut |part| {
+        if let Part::Expr(expr) = part {
+            each(expr);
+        }
+    });
+}
+
+/// The same with every object.
+pub(crate) fn each_object<'s>(stmt: &'s Stmt, each: &mut dyn FnMut(&'s Object)) {
+    each_part(stmt, &mut |part| {
+        if let Part::Object(object) = part {
+            each(object);
+        }
+    });
+}
+
+fn each_part<'s>(stmt: &'s Stmt, each: Each<'_, 's>) {
     match &stmt.node {
         StmtNode::Let { value, .. } | StmtNode::Set { value, .. } => expr(value, each),
         StmtNode::Param(def) => {
@@ -45,22 +72,27 @@ pub(crate) fn each_expr<'s>(stmt: &'s Stmt, each: &mut dyn FnMut(&'s Expr)) {
             at.chain(&said.values).chain(given).for_each(|value| expr(value, each));
         }
         StmtNode::Field(field) => expr(&field.value, each),
-        StmtNode::Object(object) => block(&object.body, each),
+        StmtNode::Object(inner) => object(inner, each),
         StmtNode::Call(call) => expr(call, each),
         StmtNode::Import { .. } | StmtNode::Use { .. } | StmtNode::Broken { .. } => {}
     }
 }
 
-fn block<'s>(inner: &'s Block, each: &mut dyn FnMut(&'s Expr)) {
+fn block<'s>(inner: &'s Block, each: Each<'_, 's>) {
     for stmt in &inner.stmts {
-        each_expr(stmt, each);
+        each_part(stmt, each);
     }
 }
 
-fn expr<'s>(value: &'s Expr, each: &mut dyn FnMut(&'s Expr)) {
-    each(value);
-    if let ExprNode::Object(object) = &value.node {
-        block(&object.body, each);
+fn object<'s>(inner: &'s Object, each: Each<'_, 's>) {
+    each(Part::Object(inner));
+    block(&inner.body, each);
+}
+
+fn expr<'s>(value: &'s Expr, each: Each<'_, 's>) {
+    each(Part::Expr(value));
+    if let ExprNode::Object(inner) = &value.node {
+        object(inner, each);
     }
     children(value, &mut |child| expr(child, each));
 }

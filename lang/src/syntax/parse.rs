@@ -198,7 +198,7 @@ pub(crate) fn parse_expr(
 }
 
 /// Bytes of a statement that are read once more, all in all, to find its further mistakes.
-const AGAIN: usize = 1 << 18;
+const AGAIN: usize = 1 << 16;
 
 pub(super) struct Reader<'a> {
     pub(super) text: &'a str,

@@ -54,6 +54,10 @@ impl Reader<'_> {
     /// Mends what is wrong with a statement near byte `at`, and further on, as long as the mend is sure;
     /// tells it, and reads what comes of it. False, and nothing told, where the first mistake has none.
     pub(super) fn mended(&mut self, at: usize, chunk: &Range<usize>, place: Place) -> bool {
+        let length = if self.edits.is_empty() { chunk.len() } else { self.text.len() };
+        if length > self.again || self.sink.is_full() {
+            return false;
+        }
         let (mut mended, mut part, mut at) = if self.edits.is_empty() {
             let (text, edits) = (self.text[chunk.clone()].to_owned(), Edits::new(chunk.start));
             (Mended { text, edits }, 0..chunk.len(), at - chunk.start)

@@ -279,8 +279,8 @@ impl<'a> Resolver<'a> {
         if Kind::of_word(&object.category.text).is_none() && says_units(&object.category.text) {
             return;
         }
-        self.apart(&object.body.stmts);
         let outer = std::mem::replace(&mut self.in_object, &*object.category.text != "group");
+        self.apart(&object.body.stmts);
         self.block(&object.body.stmts, &[]);
         self.in_object = outer;
     }
@@ -291,7 +291,7 @@ impl<'a> Resolver<'a> {
             let StmtNode::Field(one) = &pair[0].node else { continue };
             let (name, place) = match &pair[1].node {
                 StmtNode::Field(next) => (&*next.name.text, next.name.span),
-                StmtNode::Call(call) => match called(call) {
+                StmtNode::Call(call) => match called(call).filter(|_| self.in_object) {
                     Some(name) => (&*name.text, name.span),
                     None => continue,
                 },

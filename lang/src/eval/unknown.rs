@@ -133,7 +133,7 @@ impl Resolver<'_> {
         let n_before = bytes.get(..at.start)?.iter().rev().take_while(|b| is_part(b)).count();
         let n_behind = bytes.get(at.end..)?.iter().take_while(|b| is_part(b)).count();
         let (start, end) = (at.start - n_before, at.end + n_behind);
-        let number = self.text[..start].trim_end_matches(' ').bytes().next_back()?;
+        let number = self.text.get(..start)?.trim_end_matches(' ').bytes().next_back()?;
         if !number.is_ascii_digit() && !matches!(number, b')' | b']' | b'.') {
             return None;
         }
@@ -142,7 +142,7 @@ impl Resolver<'_> {
             let power = &part[letters.len()..];
             if power.is_empty() { letters.to_owned() } else { format!("{letters}^{power}") }
         };
-        let parts: Vec<String> = self.text[start..end].split('/').map(with_power).collect();
+        let parts: Vec<String> = self.text.get(start..end)?.split('/').map(with_power).collect();
         let mended = parts.join("/");
         let is_it = mended.len() > end - start && Unit::parse(&mended).is_ok();
         is_it.then(|| (Span::new(name.source, start, end), mended))

@@ -11,9 +11,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use luxel_core::diag::Sources;
-use luxel_core::files::{
-    Beginnings, FileError, Files, Whole, hash_unless_other, normalise, read_whole,
-};
+use luxel_core::files::{FileError, Files, Marks, Whole, hash_whole, normalise, read_whole};
 use luxel_core::scene::Hash;
 
 pub(crate) use known::Known;
@@ -175,25 +173,30 @@ pub(crate) fn look(path: &Path) -> Seen {
 
 /// The same, unless it is not wanted any more.
 fn seen(path: &Path, stop: &AtomicBool) -> Seen {
-    found(path, stop, &[]).and_then(|(seen, _)| seen)
+    marked(path, stop).0
 }
 
-/// What is there now and the hashes of its beginnings; none if one of these is not what is known, which
-/// may take much less time than to look at all of it.
-pub(crate) fn look_unless_other(path: &Path, known: &[Hash]) -> Option<(Seen, Beginnings)> {
-    found(path, &AtomicBool::new(false), known)
+/// What is there now, with what tells soon that it has changed.
+pub(crate) fn look_and_mark(path: &Path) -> (Seen, Marks) {
+    marked(path, &AtomicBool::new(false))
 }
 
-fn found(path: &Path, stop: &AtomicBool, known: &[Hash]) -> Option<(Seen, Beginnings)> {
+fn marked(path: &Path, stop: &AtomicBool) -> (Seen, Marks) {
     if path.is_dir() {
         let entries = fs::read_dir(path).ok();
-        return Some((entries.map(|entries| names_of_libraries(entries.flatten())), vec![]));
+        let names = entries.map(|entries| names_of_libraries(entries.flatten()));
+        return (names, Marks::default());
     }
-    let hash = |(file, length)| hash_unless_other(file, length, MAX_BYTES, stop, known);
-    match open_regular(path, MAX_BYTES).and_then(hash) {
-        Ok(found) => found.map(|(hash, beginnings)| (Some(hash.into()), beginnings)),
-        Err(_) => Some((None, vec![])),
-    }
+    let file = open_regular(path, MAX_BYTES);
+    let found = file.and_then(|(file, length)| hash_whole(file, length, MAX_BYTES, stop));
+    found.map_or_else(|_| (None, Marks::default()), |(hash, marks)| (Some(hash.into()), marks))
+}
+
+/// Whether something else than what has these marks is there now for sure.
+pub(crate) fn has_changed(path: &Path, marks: &Marks) -> bool {
+    let differ = |file| marks.differ(file, MAX_BYTES, &AtomicBool::new(false));
+    let file = open_regular(path, MAX_BYTES).map(|(file, _)| file);
+    file.and_then(differ).unwrap_or(false)
 }
 
 /// Other files come and go in a folder of libraries and concern nobody.

@@ -11,7 +11,7 @@ use std::{fmt, io};
 
 use luxel_sdk::params::Unfinished;
 
-pub use self::whole::{Beginnings, Whole, hash_unless_other, read_whole};
+pub use self::whole::{Marks, Whole, hash_whole, read_whole};
 use crate::scene::Hash;
 
 /// Why a file could not be read.

@@ -1,10 +1,13 @@
 //! Whole files in memory, and their hashes, for as long as they are wanted.
 
+use std::hash::BuildHasher;
 use std::io::{self, Read};
 use std::iter;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use blake3::Hasher;
+use foldhash::quality::FixedState;
 use luxel_sdk::params::{Unfinished, apart};
 
 use super::FileError;
@@ -44,74 +47,93 @@ pub fn read_whole(
     }
 }
 
-/// Hashes of a source's beginnings, each a piece longer than the one before, as far as there are whole
-/// pieces.
-pub type Beginnings = Vec<Hash>;
+/// What a source's pieces are told by, sooner than by hashes that nobody can make alike; of large sources
+/// alone, and within a process.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Marks(Vec<u64>);
 
-/// The hash of all of a source that has at most so many bytes, and of its beginnings; none as soon as one
-/// of these is not what is known: it is another source, whatever comes after that piece.
+impl Marks {
+    fn of(piece: &[u8]) -> u64 {
+        FixedState::default().hash_one(piece)
+    }
+
+    /// Whether a source has other bytes than the one of these marks for sure: known at the first piece that
+    /// is another, whatever comes after it.
+    ///
+    /// # Errors
+    /// As `read_whole`.
+    pub fn differ(&self, from: impl Read, most: u64, stop: &AtomicBool) -> Result<bool, FileError> {
+        if self.0.is_empty() {
+            return Ok(false);
+        }
+        let (mut pieces, mut piece) = (Pieces::new(from, most, stop), vec![0; PIECE]);
+        for mark in &self.0 {
+            let n = pieces.fill(&mut piece, |_| {})?;
+            if Self::of(&piece[..n]) != *mark {
+                return Ok(true);
+            }
+        }
+        Ok(pieces.fill(&mut piece, |_| {})? > 0)
+    }
+}
+
+/// The hash of all of a source that has at most so many bytes, and its marks.
 ///
 /// # Errors
 /// As `read_whole`.
-pub fn hash_unless_other(
+pub fn hash_whole(
     from: impl Read,
     length: usize,
     most: u64,
     stop: &AtomicBool,
-    known: &[Hash],
-) -> Result<Option<(Hash, Beginnings)>, FileError> {
+) -> Result<(Hash, Marks), FileError> {
     // Room for all of a mesh takes the system longer to give than its bytes take to read.
     let mut piece = vec![0; length.clamp(1, PIECE)];
-    let mut pieces = Pieces::new(from, most, stop);
-    let mut beginnings = vec![];
-    while let n @ 1.. = pieces.fill(&mut piece)? {
-        if n == PIECE {
-            let beginning = pieces.hash();
-            if known.get(beginnings.len()).is_some_and(|known| *known != beginning) {
-                return Ok(None);
-            }
-            beginnings.push(beginning);
+    let (mut pieces, mut hasher) = (Pieces::new(from, most, stop), Hasher::new());
+    let mut marks = vec![];
+    while let n @ 1.. = pieces.fill(&mut piece, |some| _ = hasher.update(some))? {
+        if length >= PIECE {
+            marks.push(Marks::of(&piece[..n]));
         }
     }
-    Ok(Some((pieces.whole_hash()?, beginnings)))
+    Ok((pieces.hash(&hasher)?, Marks(marks)))
 }
 
 /// All bytes of a source, most likely so many.
 fn gather(mut pieces: Pieces<'_, impl Read>, length: usize) -> Result<Whole, FileError> {
     #[expect(clippy::manual_repeat_n, reason = "that takes twice as long for 19 MB")]
     let mut bytes: Arc<[u8]> = iter::repeat(0).take(length).collect();
-    let room = Arc::get_mut(&mut bytes).unwrap_or_default();
-    let n = pieces.fill(room)?;
+    let (room, mut hasher) = (Arc::get_mut(&mut bytes).unwrap_or_default(), Hasher::new());
+    let n = pieces.fill(room, |some| _ = hasher.update(some))?;
     if n < length {
         bytes = Arc::from(&bytes[..n]);
     } else {
         // It may have grown since its length was asked for.
         let (mut more, mut piece) = (vec![], vec![0; PIECE.min(length.max(1))]);
-        while let n @ 1.. = pieces.fill(&mut piece)? {
+        while let n @ 1.. = pieces.fill(&mut piece, |some| _ = hasher.update(some))? {
             more.extend_from_slice(&piece[..n]);
         }
         if !more.is_empty() {
             bytes = [&bytes[..], &more].concat().into();
         }
     }
-    Ok((bytes, pieces.whole_hash()?))
+    Ok((bytes, pieces.hash(&hasher)?))
 }
 
-/// A source, hashed as it is read.
+/// A source that is read in pieces.
 struct Pieces<'a, R> {
     from: io::Take<R>,
     most: u64,
-    hasher: blake3::Hasher,
     stop: &'a AtomicBool,
 }
 
 impl<'a, R: Read> Pieces<'a, R> {
     fn new(from: R, most: u64, stop: &'a AtomicBool) -> Self {
-        Self { from: from.take(most.saturating_add(1)), most, hasher: blake3::Hasher::new(), stop }
+        Self { from: from.take(most.saturating_add(1)), most, stop }
     }
 
-    /// Fills some room as far as there are bytes: with how many.
-    fn fill(&mut self, room: &mut [u8]) -> Result<usize, FileError> {
+    /// Fills some room as far as there are bytes, which `each` gets as they come: with how many.
+    fn fill(&mut self, room: &mut [u8], mut each: impl FnMut(&[u8])) -> Result<usize, FileError> {
         let mut n = 0;
         while n < room.len() {
             if self.stop.load(Ordering::Relaxed) {
@@ -121,7 +143,7 @@ impl<'a, R: Read> Pieces<'a, R> {
             match self.from.read(&mut room[n..end]) {
                 Ok(0) => break,
                 Ok(some) => {
-                    self.hasher.update(&room[n..n + some]);
+                    each(&room[n..n + some]);
                     n += some;
                 }
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -131,17 +153,12 @@ impl<'a, R: Read> Pieces<'a, R> {
         Ok(n)
     }
 
-    /// The hash of what was read so far.
-    fn hash(&self) -> Hash {
-        *self.hasher.finalize().as_bytes()
-    }
-
     /// The hash of all that was read, which is all there is.
-    fn whole_hash(self) -> Result<Hash, FileError> {
+    fn hash(self, hasher: &Hasher) -> Result<Hash, FileError> {
         if self.from.limit() == 0 {
             return Err(FileError::TooLarge(self.most));
         }
-        Ok(self.hash())
+        Ok(*hasher.finalize().as_bytes())
     }
 }
 
@@ -155,14 +172,13 @@ mod tests {
         Arc::default()
     }
 
-    fn hash_whole(
+    fn hash(
         from: impl Read,
         length: usize,
         most: u64,
         stop: &AtomicBool,
     ) -> Result<Hash, FileError> {
-        let found = hash_unless_other(from, length, most, stop, &[])?;
-        Ok(found.expect("nothing is known that could differ").0)
+        hash_whole(from, length, most, stop).map(|(hash, _)| hash)
     }
 
     fn bytes(n: usize) -> Vec<u8> {
@@ -173,38 +189,37 @@ mod tests {
     fn all_bytes_come_with_their_hash_whatever_length_was_told() {
         for n in [0, 1, 1000, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE + 7, LARGE, LARGE + 5] {
             let all: &'static [u8] = bytes(n).leak();
-            let hash = *blake3::hash(all).as_bytes();
+            let all_hash = *blake3::hash(all).as_bytes();
             for length in [n, 0, n / 2, n.saturating_sub(1), n + 1, 2 * n] {
                 let (read, own) = read_whole(all, length, u64::MAX, &never()).unwrap();
-                assert!(*read == *all && own == hash, "{n} told as {length}");
-                assert_eq!(hash_whole(all, length, u64::MAX, &never()), Ok(hash));
+                assert!(*read == *all && own == all_hash, "{n} told as {length}");
+                assert_eq!(hash(all, length, u64::MAX, &never()), Ok(all_hash));
             }
         }
     }
 
     #[test]
     fn another_source_is_told_at_the_first_piece_that_differs() {
-        let hash = |from: &[u8], known: &[Hash]| {
-            let mut left = from;
-            let found = hash_unless_other(&mut left, from.len(), u64::MAX, &never(), known);
-            (found.unwrap(), (from.len() - left.len()) / PIECE)
-        };
         let all = bytes(5 * PIECE + 7);
-        let (Some((whole, known)), 5) = hash(&all, &[]) else { panic!("not all is read") };
-        assert_eq!(known.len(), 5);
-        assert_eq!(known[1], *blake3::hash(&all[..2 * PIECE]).as_bytes());
-        assert_eq!(hash(&all, &known), (Some((whole, known.clone())), 5));
-        for i in 0..5 {
+        let (_, marks) = hash_whole(&all[..], all.len(), u64::MAX, &never()).unwrap();
+        let differ = |from: &[u8]| {
+            let mut left = from;
+            let is_other = marks.differ(&mut left, u64::MAX, &never()).unwrap();
+            (is_other, (from.len() - left.len()).div_ceil(PIECE))
+        };
+        assert_eq!(differ(&all), (false, 6));
+        for i in 0..6 {
             let mut other = all.clone();
             other[i * PIECE + 3] ^= 1;
-            assert_eq!(hash(&other, &known), (None, i + 1));
+            assert_eq!(differ(&other), (true, i + 1));
         }
-        // What differs after the last whole piece, in length or in bytes, is told by the hash.
-        for other in [&all[..5 * PIECE], &all[..PIECE], &all[..9], &[&all[..], b"x"].concat()] {
-            let (Some((found, beginnings)), _) = hash(other, &known) else { panic!() };
-            assert_ne!(found, whole);
-            assert!(known.starts_with(&beginnings));
+        for other in [&all[..5 * PIECE], &all[..PIECE], &all[..9], &[], &[&all[..], b"x"].concat()]
+        {
+            assert!(differ(other).0, "{} bytes", other.len());
         }
+        // Small ones are hashed as soon.
+        let (_, none) = hash_whole(&all[..9], 9, u64::MAX, &never()).unwrap();
+        assert_eq!(none.differ(&all[1..], u64::MAX, &never()), Ok(false));
     }
 
     #[test]
@@ -214,7 +229,7 @@ mod tests {
             assert!(read_whole(all, length, 100, &never()).is_ok());
             let refused = FileError::TooLarge(99);
             assert_eq!(read_whole(all, length, 99, &never()), Err(refused.clone()));
-            assert_eq!(hash_whole(all, length, 99, &never()), Err(refused));
+            assert_eq!(hash(all, length, 99, &never()), Err(refused));
         }
     }
 
@@ -244,7 +259,7 @@ mod tests {
                 assert_eq!(read_whole(from, length, 1000, &stop), Err(FileError::Unwanted));
                 let from = unwanted();
                 let stop = from.stop.clone();
-                assert_eq!(hash_whole(from, length, 1000, &stop), Err(FileError::Unwanted));
+                assert_eq!(hash(from, length, 1000, &stop), Err(FileError::Unwanted));
             }
         }
     }

@@ -4,12 +4,11 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use luxel_core::files::Beginnings;
-use luxel_core::scene::Hash;
+use luxel_core::files::Marks;
 
 use super::Seen;
 use super::hear::Heard;
-use crate::files::{Stamp, look_unless_other};
+use crate::files::{Stamp, has_changed, look_and_mark};
 
 /// How files stand, the later the more there is to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,8 +48,8 @@ pub(super) struct File {
     known: Option<Known>,
     /// How long they were when that was last known.
     len: Option<u64>,
-    /// What they begin with, then.
-    beginnings: Beginnings,
+    /// What told them from others, then.
+    marks: Marks,
     /// A stamp under which there were others.
     other: Option<Stamp>,
 }
@@ -64,7 +63,7 @@ struct Known {
 
 impl File {
     pub(super) fn new(seen: Seen) -> Self {
-        Self { seen, known: None, len: None, beginnings: vec![], other: None }
+        Self { seen, known: None, len: None, marks: Marks::default(), other: None }
     }
 
     /// The stamp that alone tells that the contents are the same, if there is one.
@@ -99,15 +98,15 @@ impl File {
         }
         // All of it is read, which takes a while, where somebody may still be writing it.
         let may_go_on = heard.may_go_on(path);
-        let beginnings = if may_go_on { &[][..] } else { &self.beginnings };
-        let Some((stamp, found)) = steady(path, beginnings) else {
+        let marks = Some(&self.marks).filter(|_| !may_go_on);
+        let Some((stamp, found)) = steady(path, marks) else {
             self.known = None;
             return (Standing::Half, None);
         };
         match found {
-            Some((seen, beginnings)) if seen == self.seen => {
+            Some((seen, marks)) if seen == self.seen => {
                 let kept = self.known.take().filter(|known| known.stamp == stamp);
-                (self.len, self.beginnings) = (stamp.len(), beginnings);
+                (self.len, self.marks) = (stamp.len(), marks);
                 let new = || Known { stamp, since: Instant::now(), sure: false };
                 self.known = kept.or_else(|| Some(new()));
                 (Standing::Same, Some(Found::Seen(seen)))
@@ -125,12 +124,13 @@ impl File {
     }
 }
 
-/// What is there, unless it changes again and again while it is read; of another than the one that has
-/// these beginnings, that it is one.
-fn steady(path: &Path, beginnings: &[Hash]) -> Option<(Stamp, Option<(Seen, Beginnings)>)> {
+/// What is there, unless it changes again and again while it is read; nothing, where it surely is not what
+/// has these marks.
+fn steady(path: &Path, marks: Option<&Marks>) -> Option<(Stamp, Option<(Seen, Marks)>)> {
     let mut before = Stamp::of(path);
     for _ in 0..READS {
-        let found = look_unless_other(path, beginnings);
+        let is_other = marks.is_some_and(|marks| has_changed(path, marks));
+        let found = (!is_other).then(|| look_and_mark(path));
         let after = Stamp::of(path);
         if before == after {
             return Some((after, found));

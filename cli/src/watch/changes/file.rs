@@ -50,7 +50,7 @@ pub(super) struct File {
     len: Option<u64>,
     /// What told them from others, then.
     marks: Marks,
-    /// A stamp under which there were others.
+    /// A stamp under which there were others a moment ago.
     other: Option<Stamp>,
 }
 
@@ -69,6 +69,11 @@ impl File {
     /// The stamp that alone tells that the contents are the same, if there is one.
     pub(super) fn sure(&self) -> Option<&Stamp> {
         self.known.as_ref().filter(|known| known.sure).map(|known| &known.stamp)
+    }
+
+    /// What comes now is another save.
+    pub(super) fn begin(&mut self) {
+        self.other = None;
     }
 
     /// How the file stands, and what was found there if it has been looked at.
@@ -143,4 +148,25 @@ fn steady(path: &Path, marks: Option<&Marks>) -> Option<(Stamp, Option<(Seen, Ma
 /// The last part of a path.
 pub(super) fn name(path: &Path) -> OsString {
     path.file_name().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::look;
+    use crate::testing::Folder;
+
+    #[test]
+    fn what_was_another_under_a_stamp_is_so_for_one_save_alone() {
+        let folder = Folder::new("watch-other");
+        folder.write("a", b"one");
+        let path = folder.path("a");
+        let mut file = File::new(look(&path));
+        // Written back within the same tick of a coarse clock.
+        file.other = Some(Stamp::of(&path));
+        let standing = |file: &mut File| file.check(&path, &Heard::default(), true).0;
+        assert_eq!(standing(&mut file), Standing::Whole);
+        file.begin();
+        assert_eq!(standing(&mut file), Standing::Same);
+    }
 }

@@ -262,6 +262,7 @@ impl Changes {
     fn decide(&mut self) -> Noticed {
         let since = Instant::now();
         let mut heard = Heard::default();
+        self.files.values_mut().for_each(File::begin);
         loop {
             // Before the look: what is half in the end is so after all the patience.
             let waited = since.elapsed();

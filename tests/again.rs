@@ -394,7 +394,7 @@ fn what_a_call_is_depends_on_what_stands_elsewhere() {
     let mut edited = Edited::new(Settings::default());
     let mut lines = vec![
         "fn twice(x: length) = 2 * x".to_owned(),
-        "shape sphere { radius = 1 m twice(3 m) }".to_owned(),
+        "shape sphere { radius = 1 m, twice(3 m) }".to_owned(),
         CAMERA.to_owned(),
     ];
     assert!(is_good(&edited.load(&text_of(&lines), "a call that gives a value")));

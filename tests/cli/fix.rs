@@ -83,8 +83,9 @@ fn more_mistakes_than_are_told_at_once_are_mended_in_one_run() {
 
 #[test]
 fn mends_that_come_one_after_another_end_and_may_be_gone_on_with() {
-    // Of several missing commas the first is told.
-    let wrong = format!("{SCENE}let a = [1{}]\n", " 1".repeat(300));
+    // Of several missing commas in a statement of more than 64 KiB the first is told.
+    let (blanks, numbers) = (" ".repeat(1 << 16), " 1".repeat(300));
+    let wrong = format!("{SCENE}let a = [1{blanks}{numbers}]\n");
     let folder = Folder::new("fix-rounds").with("a.scene", &wrong);
     let done = folder.luxel(&["check", "a.scene", "--fix"]);
     assert!(done.code == 1 && done.err.contains("a.scene: mended 256 times over; run it again"));

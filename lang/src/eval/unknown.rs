@@ -123,9 +123,7 @@ impl Resolver<'_> {
         }
         found
     }
-}
 
-impl Resolver<'_> {
     /// The unit behind a number of which a name is a part, and how it is written: `W/m2/sr`.
     fn unit_without_powers(&self, name: Span) -> Option<(Span, String)> {
         let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'/';

@@ -416,7 +416,7 @@ impl Builder<'_> {
         if matches!(text, "px" | "pixel" | "pixels") {
             let before = &pair.get_input()[..pair.as_span().start()];
             let gap = before.len() - before.trim_end_matches([' ', '\t']).len();
-            let all = Span::new(span.source, span.range().start - gap, span.range().end);
+            let all = self.written(before.len() - gap..pair.as_span().end());
             let message = format!("there is no unit `{text}`: pixels are counted");
             let found = Diagnostic::error("E0204", span, message);
             self.sink.push(found.fix(all, ""));

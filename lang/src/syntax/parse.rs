@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
 use pest::Parser;
-use pest::error::InputLocation;
 
 use super::around::Place;
 use super::build::Builder;
@@ -16,6 +15,7 @@ use super::fault;
 use super::gaps::Gaps;
 use super::habits::COMMENTS;
 use super::lex::{Token, TokenKind, tokens};
+use super::recover::stopped;
 use super::tree::{Expr, ExprNode, Stmt};
 use super::unopened::unopened;
 use super::weigh::too_large;
@@ -433,13 +433,12 @@ impl Reader<'_> {
                 self.out.stmts.extend(stmts);
             }
             Err(error) => {
-                let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
-                if let Some(line) = self.whole_before(chunk.start + at, &chunk) {
+                let at = chunk.start + stopped(&error);
+                if let Some(line) = self.whole_before(at, &chunk) {
                     self.chunk(chunk.start..line, place);
                     self.chunk(line..chunk.end, place);
                     return;
                 }
-                let at = chunk.start + at;
                 if self.mended(at, &chunk, place) {
                     return;
                 }

@@ -23,11 +23,15 @@ const REPAIRED: usize = 1 << 18;
 /// In how many enclosing blocks statements after a mistake are still looked at.
 const BLOCKS_LOOKED_AT: usize = 8;
 
+/// The byte at which reading stopped.
+pub(super) fn stopped(error: &pest::error::Error<Rule>) -> usize {
+    let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
+    at
+}
+
 /// Where a statement cannot be read further, if it cannot.
 fn fault(text: &str) -> Option<usize> {
-    let error = SceneParser::parse(Rule::one_stmt, text).err()?;
-    let (InputLocation::Pos(at) | InputLocation::Span((at, _))) = error.location;
-    Some(at)
+    SceneParser::parse(Rule::one_stmt, text).err().map(|error| stopped(&error))
 }
 
 impl Reader<'_> {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::compact::IsOver;
 use super::gather::in_parts;
-use super::{Argument, Arguments, Hash, Node, NodeId, Scene, Value, own_hash, value};
+use super::{Argument, Arguments, Hash, Node, NodeId, Scene, Value, hash, own_hash};
 
 /// Another value for a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,7 +93,7 @@ impl Scene {
             let new = (id.0 as usize).checked_sub(start).and_then(|i| new.get(i));
             new.map_or_else(|| self.node(id).hash, |(hash, _)| *hash)
         };
-        let hash = value::hash_node(node, child);
+        let hash = hash::hash_node(node, child);
         (hash, own_hash(node, hash, child))
     }
 }

@@ -1,6 +1,6 @@
 //! A scene without what nothing refers to, in the order in which it is met from the world on.
 
-use super::{GroupId, NodeId, Placed, Scene, Target, Value, value};
+use super::{GroupId, NodeId, Placed, Scene, Target, Value, hash};
 
 /// The number of what was not met.
 pub(super) const UNMET: u32 = u32::MAX;
@@ -62,7 +62,7 @@ impl Scene {
         for at in inner {
             self.hash_from(at, first, is_hashed);
         }
-        self.nodes[i].hash = value::hash_node(&self.nodes[i], |id| self.node(id).hash);
+        self.nodes[i].hash = hash::hash_node(&self.nodes[i], |id| self.node(id).hash);
     }
 
     /// Gives what is referred to its new number.

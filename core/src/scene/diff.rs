@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
 use std::path::Path;
 
+use super::hash::{Hash, group_hashes, hash_item};
 use super::print::in_line;
-use super::value::{Hash, group_hashes, hash_item};
 use super::{Group, Node, NodeId, Placed, Scene, Target, Value};
 use crate::diag::Span;
 

@@ -13,6 +13,7 @@ mod diff;
 mod expect;
 mod feature;
 mod gather;
+mod hash;
 mod pose;
 mod print;
 mod setting;
@@ -38,10 +39,11 @@ pub use conform::{
 pub use diff::{Change, Difference, How, called, diff, diff_in};
 pub use expect::{Area, Claim, Expectation, Expected};
 pub use feature::Feature;
+pub use hash::Hash;
 pub use pose::{Key, Pose, Step};
 pub use print::print;
 pub use setting::Setting;
-pub use value::{Hash, Value};
+pub use value::Value;
 
 /// Most placements that a scene may come to, if nobody allows more: each takes half a kilobyte.
 pub const MOST_INSTANCES: usize = 2_000_000;
@@ -263,10 +265,10 @@ impl Scene {
 
     /// Hashes of the scene: what stands in it, which takes nearly all of the time, is hashed once.
     pub fn hashes(&self) -> Hashes {
-        let content = value::hash_content(self);
+        let content = hash::hash_content(self);
         let film = |left_out| self.without(self.film, left_out);
         let sampler = |left_out| self.without(self.sampler, left_out);
-        let hash = |film, sampler| value::hash_scene(self, &content, film, sampler);
+        let hash = |film, sampler| hash::hash_scene(self, &content, film, sampler);
         Hashes {
             shown: hash(film(&[]), sampler(&[])),
             measured: hash(film(&SHOWN), sampler(&[])),
@@ -280,7 +282,7 @@ impl Scene {
         if !node.params.iter().any(|argument| names.contains(&argument.name)) {
             return Some(node.hash);
         }
-        Some(value::hash_params(node, |name| !names.contains(&name), |id| self.node(id).hash))
+        Some(hash::hash_params(node, |name| !names.contains(&name), |id| self.node(id).hash))
     }
 
     /// Hash of a node without the parameters that the host adds to its kind: equal where the object
@@ -298,7 +300,7 @@ impl Scene {
     /// # Panics
     /// From 2³² nodes on: the budget is far below.
     pub fn add(&mut self, mut node: Node) -> NodeId {
-        node.hash = value::hash_node(&node, |id| self.node(id).hash);
+        node.hash = hash::hash_node(&node, |id| self.node(id).hash);
         let own = self.new_own_hash(&node);
         self.add_hashed(node, own)
     }
@@ -317,7 +319,7 @@ fn own_hash(node: &Node, hash: Hash, child: impl Fn(NodeId) -> Hash) -> Hash {
     if node.params.iter().all(|argument| is_own(argument.name)) {
         return hash;
     }
-    value::hash_params(node, is_own, child)
+    hash::hash_params(node, is_own, child)
 }
 
 #[cfg(test)]

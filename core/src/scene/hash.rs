@@ -1,0 +1,229 @@
+//! Hashes of nodes, of what stands in places, and of whole scenes.
+
+use arrayvec::ArrayVec;
+
+use super::{Group, Node, NodeId, Placed, Pose, Scene, Step, Target, Value};
+
+/// A content hash (BLAKE3).
+pub type Hash = [u8; 32];
+
+/// Bytes that are hashed at a time: those of most nodes.
+const PIECE: usize = 1 << 10;
+
+/// Hashes bytes that come a few at a time: many at once take a fraction of the time.
+#[derive(Default)]
+struct Hashing {
+    bytes: ArrayVec<u8, PIECE>,
+    /// Has what came before these.
+    hasher: Option<blake3::Hasher>,
+}
+
+impl Hashing {
+    fn update(&mut self, bytes: &[u8]) -> &mut Self {
+        if self.bytes.try_extend_from_slice(bytes).is_err() {
+            let hasher = self.hasher.get_or_insert_default();
+            hasher.update(&self.bytes).update(bytes);
+            self.bytes.clear();
+        }
+        self
+    }
+
+    fn finish(mut self) -> Hash {
+        match &mut self.hasher {
+            Some(hasher) => *hasher.update(&self.bytes).finalize().as_bytes(),
+            None => *blake3::hash(&self.bytes).as_bytes(),
+        }
+    }
+}
+
+/// The hash of a node, its children by theirs. Label and place in the file do not count.
+pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
+    hash_params(node, |_| true, child)
+}
+
+/// The same with some of its parameters alone.
+pub(super) fn hash_params(
+    node: &Node,
+    counts: impl Fn(&str) -> bool,
+    child: impl Fn(NodeId) -> Hash,
+) -> Hash {
+    let mut hasher = Hashing::default();
+    text(&mut hasher, node.kind.word());
+    text(&mut hasher, &node.class);
+    let mut params: Vec<_> = node.params.iter().filter(|argument| counts(argument.name)).collect();
+    params.sort_by_key(|argument| argument.name);
+    for argument in params {
+        text(&mut hasher, argument.name);
+        hash_value(&mut hasher, &argument.value, &child);
+    }
+    for (name, material) in &node.overrides {
+        text(&mut hasher, name);
+        hasher.update(&child(*material));
+    }
+    hasher.finish()
+}
+
+/// The hash of what stands in the places of a scene.
+pub(super) fn hash_content(scene: &Scene) -> Hash {
+    hash_group(scene, &scene.root, &group_hashes(scene))
+}
+
+/// The hash of a scene: of what stands in its places, and of its settings, among them the film and the
+/// sampler as they are given here.
+pub(super) fn hash_scene(
+    scene: &Scene,
+    content: &Hash,
+    film: Option<Hash>,
+    sampler: Option<Hash>,
+) -> Hash {
+    let mut hasher = Hashing::default();
+    hasher.update(content);
+    hash_pose(&mut hasher, &scene.camera_pose);
+    let Scene { camera, integrator, filter, medium, .. } = scene;
+    let of = |id: &Option<NodeId>| id.map(|id| scene.node(id).hash);
+    for setting in [of(camera), film, of(integrator), sampler, of(filter), of(medium)] {
+        hasher.update(&setting.unwrap_or([0; 32]));
+    }
+    for feature in scene.left_out() {
+        hasher.update(feature.name().as_bytes()).update(&[0]);
+    }
+    hasher.finish()
+}
+
+/// The hashes of a scene's groups.
+pub(super) fn group_hashes(scene: &Scene) -> Vec<Hash> {
+    let mut groups: Vec<Hash> = Vec::with_capacity(scene.groups.len());
+    for group in &scene.groups {
+        groups.push(hash_group(scene, group, &groups));
+    }
+    groups
+}
+
+/// `before` holds the hashes of the groups that may stand in this one.
+fn hash_group(scene: &Scene, group: &Group, before: &[Hash]) -> Hash {
+    let mut hasher = Hashing::default();
+    for item in &group.items {
+        update_item(&mut hasher, scene, item, before);
+    }
+    hasher.finish()
+}
+
+/// The hash of what stands in a place, and of the place; `groups` holds those of the groups that may
+/// stand there.
+pub(super) fn hash_item(scene: &Scene, item: &Placed, groups: &[Hash]) -> Hash {
+    let mut hasher = Hashing::default();
+    update_item(&mut hasher, scene, item, groups);
+    hasher.finish()
+}
+
+fn update_item(hasher: &mut Hashing, scene: &Scene, item: &Placed, groups: &[Hash]) {
+    match item.target {
+        Target::Node(id) => hasher.update(&[0]).update(&scene.node(id).hash),
+        Target::Group(id) => {
+            hasher.update(&[1]).update(groups.get(id.0 as usize).unwrap_or(&[0; 32]))
+        }
+    };
+    hash_pose(hasher, &item.pose);
+    hasher.update(&item.material.map_or([0; 32], |id| scene.node(id).hash));
+}
+
+fn hash_pose(hasher: &mut Hashing, pose: &Pose) {
+    let steps = pose.steps();
+    hasher.update(&steps.len().to_le_bytes());
+    for step in steps {
+        match step {
+            Step::Fixed(transform) => numbers(hasher, &transform.to_cols_array()),
+            Step::Keys(keys) => {
+                let flat = keys
+                    .iter()
+                    .flat_map(|key| [key.time].into_iter().chain(key.transform.to_cols_array()));
+                numbers(hasher, &flat.collect::<Vec<_>>());
+            }
+            Step::Spin { axis, rate } => numbers(hasher, &[axis.x, axis.y, axis.z, rate]),
+        }
+    }
+}
+
+fn text(hasher: &mut Hashing, text: &str) {
+    hasher.update(&text.len().to_le_bytes());
+    hasher.update(text.as_bytes());
+}
+
+fn numbers(hasher: &mut Hashing, numbers: &[f64]) {
+    hasher.update(&numbers.len().to_le_bytes());
+    for x in numbers {
+        hasher.update(&x.to_bits().to_le_bytes());
+    }
+}
+
+fn hash_value(hasher: &mut Hashing, value: &Value, child: &impl Fn(NodeId) -> Hash) {
+    match value {
+        Value::Bool(b) => {
+            hasher.update(&[0, u8::from(*b)]);
+        }
+        Value::Number(x, dimension) => {
+            hasher.update(&[1]);
+            numbers(hasher, &[*x]);
+            hasher.update(&dimension.0.map(i8::cast_unsigned));
+        }
+        Value::Vector(v) => {
+            hasher.update(&[2]);
+            numbers(hasher, v);
+        }
+        Value::Text(t) => {
+            hasher.update(&[3]);
+            text(hasher, t);
+        }
+        Value::Path(path) => {
+            hasher.update(&[4]);
+            text(hasher, &path.to_string_lossy());
+        }
+        Value::Bytes(name, bytes) => {
+            hasher.update(&[5]);
+            text(hasher, name);
+            hasher.update(blake3::hash(bytes).as_bytes());
+        }
+        Value::Table(table) => {
+            hasher.update(&[6]);
+            numbers(hasher, table);
+        }
+        Value::Color(color, dimension) => {
+            hasher.update(&[7]);
+            text(hasher, &format!("{color:?}"));
+            hasher.update(&dimension.0.map(i8::cast_unsigned));
+        }
+        Value::Look(look) => {
+            hasher.update(&[8]);
+            let points = [look.from, look.to, look.up].map(|p| p.to_array());
+            numbers(hasher, points.as_flattened());
+        }
+        Value::Node(id) => {
+            hasher.update(&[9]);
+            hasher.update(&child(*id));
+        }
+        Value::Moved(id, transform) => {
+            hasher.update(&[10]);
+            hasher.update(&child(*id));
+            numbers(hasher, &transform.to_cols_array());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_hashed_alike_however_many_come_at_a_time() {
+        let all: Vec<u8> = (0..=255).cycle().take(5 * PIECE).collect();
+        for n in [0, 1, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE, 5 * PIECE] {
+            for piece in [1, 7, 8, PIECE - 1, PIECE, PIECE + 1, 2 * PIECE + 3] {
+                let mut hashing = Hashing::default();
+                for bytes in all[..n].chunks(piece) {
+                    hashing.update(bytes);
+                }
+                assert_eq!(hashing.finish(), *blake3::hash(&all[..n]).as_bytes(), "{n} by {piece}");
+            }
+        }
+    }
+}

@@ -17,13 +17,41 @@ pub struct Arguments {
 impl Arguments {
     /// Runs of a list, which follow one another and have these lengths.
     pub(super) fn runs(all: Vec<Argument>, lengths: Vec<u32>) -> impl Iterator<Item = Self> {
-        let all = Arc::new(all);
         let mut end = 0;
-        lengths.into_iter().map(move |length| {
+        let range = move |length| {
             let start = end;
             end += length;
-            Self { all: all.clone(), range: start..end }
-        })
+            start..end
+        };
+        Self::of_one(all, lengths.into_iter().map(range))
+    }
+
+    /// These runs of a list.
+    pub(super) fn of_one(
+        all: Vec<Argument>,
+        ranges: impl IntoIterator<Item = Range<u32>>,
+    ) -> impl Iterator<Item = Self> {
+        let all = Arc::new(all);
+        ranges.into_iter().map(move |range| Self { all: all.clone(), range })
+    }
+
+    /// Whether both are runs of one list.
+    pub(super) fn is_beside(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.all, &other.all)
+    }
+
+    /// Takes runs of one list: the list, which is copied only if there are others, and where they are.
+    pub(super) fn taken<'a>(
+        runs: impl Iterator<Item = &'a mut Self>,
+    ) -> (Vec<Argument>, Vec<Range<u32>>) {
+        let (mut all, nothing) = (Arc::default(), Self::default());
+        let mut ranges = vec![];
+        for run in runs {
+            let taken = std::mem::replace(run, nothing.clone());
+            all = taken.all;
+            ranges.push(taken.range);
+        }
+        (Arc::unwrap_or_clone(all), ranges)
     }
 
     /// A list of its own, to be changed.
@@ -103,5 +131,20 @@ mod tests {
         assert_eq!(runs[2], Arguments::from(vec![argument("c")]));
         assert_ne!(runs[2], runs[1]);
         assert_eq!(Arguments::default().to_mut().len(), 0);
+    }
+
+    #[test]
+    fn runs_are_taken_and_put_back_without_a_copy_unless_others_have_some() {
+        let all: Vec<_> = ["a", "b", "c"].map(argument).into();
+        let at = all.as_ptr();
+        let mut runs: Vec<_> = Arguments::runs(all, vec![2, 0, 1]).collect();
+        let same = runs.clone();
+        assert!(runs[0].is_beside(&runs[2]) && !runs[0].is_beside(&Arguments::default()));
+        let (all, ranges) = Arguments::taken(runs.iter_mut());
+        assert!(all.as_ptr() != at && runs.iter().all(|run| run.is_empty()));
+        let at = all.as_ptr();
+        runs = Arguments::of_one(all, ranges).collect();
+        assert_eq!(runs, same);
+        assert_eq!(Arguments::taken(runs.iter_mut()).0.as_ptr(), at);
     }
 }

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::compact::IsOver;
-use super::gather::in_parts;
-use super::{Argument, Arguments, Hash, Node, NodeId, Scene, Value, hash, own_hash};
+use super::compact::{IsOver, STRIDE, look};
+use super::terms::{Sum, Terms, is_own};
+use super::{Arguments, NodeId, Scene, Value};
 
 /// Another value for a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,84 +17,87 @@ pub struct Changed {
     pub value: u32,
 }
 
-/// Nodes that follow one another, and what changes of them.
-type Part<'a> = (&'a Range<usize>, &'a [Changed]);
+/// The values of parameters before and after, hashed.
+#[derive(Default)]
+struct Said {
+    before: Terms,
+    after: Terms,
+}
 
 impl Scene {
     /// Gives parameters other values, in a scene whose nodes are hashed.
     ///
     /// `changes` go by node and parameter, and all lie in `runs` of nodes, which follow one another. No node
-    /// but those behind it in its run refers to one of a run. `None`, and a scene of no use, once it is over.
+    /// but those behind it in its run refers to one of a run, and no value to a node of one. `None`, and a
+    /// scene of no use, once it is over.
     pub fn change(
         &mut self,
         runs: &[Range<usize>],
         (changes, values): (&[Changed], &[Value]),
         is_over: IsOver<'_>,
     ) -> Option<()> {
-        let (mut parts, mut left): (Vec<Part<'_>>, _) = (vec![], changes);
-        for run in runs {
-            let n = left.partition_point(|change| (change.node as usize) < run.end);
+        let mut said = Said::default();
+        let beside = self.nodes.chunk_by(|one, other| one.params.is_beside(&other.params));
+        let lengths: Vec<usize> = beside.map(<[_]>::len).collect();
+        let (mut start, mut left) = (0, changes);
+        for length in lengths {
+            let end = start + length;
+            let n = left.iter().take_while(|change| (change.node as usize) < end).count();
             let (own, others) = left.split_at(n);
-            parts.push((run, own));
-            left = others;
+            if !own.is_empty() {
+                self.change_beside(start..end, (own, values), &mut said, is_over)?;
+            }
+            (start, left) = (end, others);
         }
-        let changed =
-            |parts: &[Part<'_>], out: &mut Vec<_>| out.extend(self.changed(parts, values));
-        let params = in_parts(&parts, is_over, &changed)?;
-        let nodes = || runs.iter().cloned().flatten();
-        for (i, params) in nodes().zip(params) {
-            self.nodes[i].params = params;
+        self.hash_outer(runs);
+        Some(())
+    }
+
+    /// The same of neighbours whose parameters are one piece of memory; what refers to them is as it was.
+    fn change_beside(
+        &mut self,
+        nodes: Range<usize>,
+        (changes, values): (&[Changed], &[Value]),
+        said: &mut Said,
+        is_over: IsOver<'_>,
+    ) -> Option<()> {
+        let lists = self.nodes[nodes.clone()].iter_mut().map(|node| &mut node.params);
+        let (mut all, ranges) = Arguments::taken(lists);
+        for few in changes.chunks(STRIDE) {
+            look(is_over)?;
+            for change in few {
+                let (i, k) = (change.node as usize, change.argument as usize);
+                let argument = &mut all[ranges[i - nodes.start].start as usize + k];
+                let value = &values[change.value as usize];
+                let child = |id: NodeId| self.node(id).hash;
+                let before = said.before.param((k, argument.name), &argument.value, child);
+                let after = said.after.param((k, argument.name), value, child);
+                argument.value = value.clone();
+                let node = &mut self.nodes[i];
+                let is_own = is_own(node.kind, argument.name);
+                for hash in [&mut node.hash].into_iter().chain(is_own.then_some(&mut self.own[i])) {
+                    *hash = Sum::of(hash).minus(before).plus(after).hash();
+                }
+            }
         }
-        let hashes = in_parts(runs, is_over, &|runs, out| self.hashes_of(runs, out))?;
-        for (i, (hash, own)) in nodes().zip(hashes) {
-            (self.nodes[i].hash, self.own[i]) = (hash, own);
+        for (node, params) in self.nodes[nodes].iter_mut().zip(Arguments::of_one(all, ranges)) {
+            node.params = params;
         }
         Some(())
     }
 
-    /// The parameters of nodes after changes.
-    fn changed(&self, parts: &[Part<'_>], values: &[Value]) -> impl Iterator<Item = Arguments> {
-        let (mut all, mut lengths) = (vec![], vec![]);
-        for (run, changes) in parts {
-            let mut changes = changes.iter().peekable();
-            for i in (*run).clone() {
-                let params = &self.nodes[i].params;
-                lengths.push(u32::try_from(params.len()).unwrap_or(u32::MAX));
-                for (k, argument) in params.iter().enumerate() {
-                    let is_it = |change: &&Changed| {
-                        change.node as usize == i && change.argument as usize == k
-                    };
-                    all.push(match changes.next_if(is_it) {
-                        Some(change) => {
-                            let value = values[change.value as usize].clone();
-                            Argument { value, ..*argument }
-                        }
-                        None => argument.clone(),
-                    });
+    /// Hashes the nodes of runs that refer to others of their run.
+    fn hash_outer(&mut self, runs: &[Range<usize>]) {
+        let mut terms = Terms::default();
+        for run in runs.iter().filter(|run| run.len() > 1) {
+            for i in run.clone() {
+                let node = &self.nodes[i];
+                if node.children().any(|id| run.contains(&(id.0 as usize))) {
+                    let hashes = terms.hashes(node, |id| self.node(id).hash);
+                    [self.nodes[i].hash, self.own[i]] = hashes;
                 }
             }
         }
-        Arguments::runs(all, lengths)
-    }
-
-    /// Adds the hashes of nodes in runs, of which only nodes behind them in the same run refer to them.
-    fn hashes_of(&self, runs: &[Range<usize>], out: &mut Vec<(Hash, Hash)>) {
-        for run in runs {
-            let first = out.len();
-            for node in &self.nodes[run.clone()] {
-                out.push(self.hashes_in(node, run.start, &out[first..]));
-            }
-        }
-    }
-
-    /// The hashes of a node, where those of the nodes from `start` on are new.
-    fn hashes_in(&self, node: &Node, start: usize, new: &[(Hash, Hash)]) -> (Hash, Hash) {
-        let child = |id: NodeId| {
-            let new = (id.0 as usize).checked_sub(start).and_then(|i| new.get(i));
-            new.map_or_else(|| self.node(id).hash, |(hash, _)| *hash)
-        };
-        let hash = hash::hash_node(node, child);
-        (hash, own_hash(node, hash, child))
     }
 }
 
@@ -102,6 +105,7 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::scene::compact::tests::node;
+    use crate::scene::{Argument, Node};
 
     #[test]
     fn what_is_changed_is_what_has_these_values_from_the_first() {

@@ -1,6 +1,7 @@
 //! A scene without what nothing refers to, in the order in which it is met from the world on.
 
-use super::{GroupId, NodeId, Placed, Scene, Target, Value, hash};
+use super::terms::Terms;
+use super::{GroupId, Hash, NodeId, Placed, Scene, Target, Value};
 
 /// The number of what was not met.
 pub(super) const UNMET: u32 = u32::MAX;
@@ -38,31 +39,35 @@ impl Scene {
     /// only some of them, once it is over.
     pub(super) fn hash_more(&mut self, is_over: IsOver<'_>) -> Option<()> {
         let first = self.own.len();
-        let look_at = |i: usize| if i.is_multiple_of(STRIDE) { look(is_over) } else { Some(()) };
-        let mut is_hashed = vec![false; self.nodes.len() - first];
+        let mut hashing = HashFrom {
+            first,
+            is_hashed: vec![false; self.nodes.len() - first],
+            terms: Terms::default(),
+        };
+        self.own.resize(self.nodes.len(), Hash::default());
         for i in first..self.nodes.len() {
-            look_at(i)?;
-            self.hash_from(i, first, &mut is_hashed);
-        }
-        for i in first..self.nodes.len() {
-            look_at(i)?;
-            let own = self.new_own_hash(&self.nodes[i]);
-            self.own.push(own);
+            if i.is_multiple_of(STRIDE) {
+                look(is_over)?;
+            }
+            self.hash_from(i, &mut hashing);
         }
         Some(())
     }
 
-    /// Computes a node's hash after those of what it refers to; those before `first` are there.
-    fn hash_from(&mut self, i: usize, first: usize, is_hashed: &mut [bool]) {
-        if std::mem::replace(&mut is_hashed[i - first], true) {
+    /// Computes a node's hashes after those of what it refers to.
+    fn hash_from(&mut self, i: usize, hashing: &mut HashFrom) {
+        let first = hashing.first;
+        if std::mem::replace(&mut hashing.is_hashed[i - first], true) {
             return;
         }
         let inner = self.nodes[i].children().map(|id| id.0 as usize);
-        let inner: Vec<_> = inner.filter(|at| *at >= first && !is_hashed[at - first]).collect();
+        let inner: Vec<_> =
+            inner.filter(|at| *at >= first && !hashing.is_hashed[at - first]).collect();
         for at in inner {
-            self.hash_from(at, first, is_hashed);
+            self.hash_from(at, hashing);
         }
-        self.nodes[i].hash = hash::hash_node(&self.nodes[i], |id| self.node(id).hash);
+        let hashes = hashing.terms.hashes(&self.nodes[i], |id| self.node(id).hash);
+        [self.nodes[i].hash, self.own[i]] = hashes;
     }
 
     /// Gives what is referred to its new number.
@@ -91,6 +96,14 @@ impl Scene {
             slot.iter_mut().for_each(node);
         }
     }
+}
+
+/// What is being hashed.
+struct HashFrom {
+    /// Nodes before this one are.
+    first: usize,
+    is_hashed: Vec<bool>,
+    terms: Terms,
 }
 
 /// New numbers, by the old ones.

@@ -1,10 +1,10 @@
-//! Hashes of nodes, of what stands in places, and of whole scenes.
+//! Hashes of values, of what stands in places, and of whole scenes.
 
 use arrayvec::ArrayVec;
 
-use super::{Group, Node, NodeId, Placed, Pose, Scene, Step, Target, Value};
+use super::{Group, NodeId, Placed, Pose, Scene, Step, Target, Value};
 
-/// A content hash (BLAKE3).
+/// A content hash (BLAKE3, or a sum of such).
 pub type Hash = [u8; 32];
 
 /// Bytes that are hashed at a time: those of most nodes.
@@ -12,14 +12,14 @@ const PIECE: usize = 1 << 10;
 
 /// Hashes bytes that come a few at a time: many at once take a fraction of the time.
 #[derive(Default)]
-struct Hashing {
+pub(super) struct Hashing {
     bytes: ArrayVec<u8, PIECE>,
     /// Has what came before these.
     hasher: Option<blake3::Hasher>,
 }
 
 impl Hashing {
-    fn update(&mut self, bytes: &[u8]) -> &mut Self {
+    pub(super) fn update(&mut self, bytes: &[u8]) -> &mut Self {
         if self.bytes.try_extend_from_slice(bytes).is_err() {
             let hasher = self.hasher.get_or_insert_default();
             hasher.update(&self.bytes).update(bytes);
@@ -28,39 +28,12 @@ impl Hashing {
         self
     }
 
-    fn finish(mut self) -> Hash {
+    pub(super) fn finish(mut self) -> Hash {
         match &mut self.hasher {
             Some(hasher) => *hasher.update(&self.bytes).finalize().as_bytes(),
             None => *blake3::hash(&self.bytes).as_bytes(),
         }
     }
-}
-
-/// The hash of a node, its children by theirs. Label and place in the file do not count.
-pub(super) fn hash_node(node: &Node, child: impl Fn(NodeId) -> Hash) -> Hash {
-    hash_params(node, |_| true, child)
-}
-
-/// The same with some of its parameters alone.
-pub(super) fn hash_params(
-    node: &Node,
-    counts: impl Fn(&str) -> bool,
-    child: impl Fn(NodeId) -> Hash,
-) -> Hash {
-    let mut hasher = Hashing::default();
-    text(&mut hasher, node.kind.word());
-    text(&mut hasher, &node.class);
-    let mut params: Vec<_> = node.params.iter().filter(|argument| counts(argument.name)).collect();
-    params.sort_by_key(|argument| argument.name);
-    for argument in params {
-        text(&mut hasher, argument.name);
-        hash_value(&mut hasher, &argument.value, &child);
-    }
-    for (name, material) in &node.overrides {
-        text(&mut hasher, name);
-        hasher.update(&child(*material));
-    }
-    hasher.finish()
 }
 
 /// The hash of what stands in the places of a scene.
@@ -144,7 +117,7 @@ fn hash_pose(hasher: &mut Hashing, pose: &Pose) {
     }
 }
 
-fn text(hasher: &mut Hashing, text: &str) {
+pub(super) fn text(hasher: &mut Hashing, text: &str) {
     hasher.update(&text.len().to_le_bytes());
     hasher.update(text.as_bytes());
 }
@@ -156,7 +129,7 @@ fn numbers(hasher: &mut Hashing, numbers: &[f64]) {
     }
 }
 
-fn hash_value(hasher: &mut Hashing, value: &Value, child: &impl Fn(NodeId) -> Hash) {
+pub(super) fn hash_value(hasher: &mut Hashing, value: &Value, child: &impl Fn(NodeId) -> Hash) {
     match value {
         Value::Bool(b) => {
             hasher.update(&[0, u8::from(*b)]);

@@ -17,6 +17,7 @@ mod hash;
 mod pose;
 mod print;
 mod setting;
+mod terms;
 mod value;
 mod world;
 
@@ -25,8 +26,8 @@ use std::sync::Arc;
 
 use luxel_sdk::kind::Kind;
 
+use self::terms::{Sum, Terms};
 use crate::diag::Span;
-use crate::registry::common_params;
 
 pub use arguments::Arguments;
 pub use changed::Changed;
@@ -78,7 +79,7 @@ pub struct Node {
     pub overrides: Vec<(Arc<str>, NodeId)>,
     /// Where it is written.
     pub span: Span,
-    /// Hash of kind, class and parameters, children by their hash.
+    /// Hash of kind, class and parameters, children by their hash: a sum, of one hash for each.
     pub hash: Hash,
 }
 
@@ -279,10 +280,8 @@ impl Scene {
     /// The hash of a setting without some of its parameters.
     fn without(&self, setting: Option<NodeId>, names: &[&str]) -> Option<Hash> {
         let node = self.node(setting?);
-        if !node.params.iter().any(|argument| names.contains(&argument.name)) {
-            return Some(node.hash);
-        }
-        Some(hash::hash_params(node, |name| !names.contains(&name), |id| self.node(id).hash))
+        let those = terms::of_params(node, names, |id| self.node(id).hash);
+        Some(Sum::of(&node.hash).minus(those).hash())
     }
 
     /// Hash of a node without the parameters that the host adds to its kind: equal where the object
@@ -291,17 +290,13 @@ impl Scene {
         self.own[id.0 as usize]
     }
 
-    fn new_own_hash(&self, node: &Node) -> Hash {
-        own_hash(node, node.hash, |id| self.node(id).hash)
-    }
-
     /// Adds a node whose children are already here; its hash is computed.
     ///
     /// # Panics
     /// From 2³² nodes on: the budget is far below.
     pub fn add(&mut self, mut node: Node) -> NodeId {
-        node.hash = hash::hash_node(&node, |id| self.node(id).hash);
-        let own = self.new_own_hash(&node);
+        let [hash, own] = Terms::default().hashes(&node, |id| self.node(id).hash);
+        node.hash = hash;
         self.add_hashed(node, own)
     }
 
@@ -311,15 +306,6 @@ impl Scene {
         self.own.push(own);
         NodeId(u32::try_from(self.nodes.len() - 1).expect("the node budget is far below 2^32"))
     }
-}
-
-/// The hash of a node that has this one, without the parameters that the host adds to its kind.
-fn own_hash(node: &Node, hash: Hash, child: impl Fn(NodeId) -> Hash) -> Hash {
-    let is_own = |name: &str| common_params(node.kind).iter().all(|param| param.name != name);
-    if node.params.iter().all(|argument| is_own(argument.name)) {
-        return hash;
-    }
-    hash::hash_params(node, is_own, child)
 }
 
 #[cfg(test)]

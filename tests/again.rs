@@ -293,6 +293,18 @@ fn what_only_hands_a_value_on_is_not_evaluated() {
         assert_eq!(n(&lines), (1, true));
         lines[1] = "let grey = material conductor { eta = metal(\"Au\") }".to_owned();
         assert_eq!(n(&lines), (1, true));
+        // Also what was written since, of which a part of a part and the whole hand the same on.
+        let both = "material mix { a = grey, b = grey, weight = 0.2 }";
+        let ball = format!(
+            "shape sphere {{ radius = r, material = material mix {{ a = grey, b = {both}, weight = 0.1 }} }}"
+        );
+        lines.insert(20, ball);
+        // With what it uses, and the next one, which begins alike.
+        assert_eq!(n(&lines), (4, true));
+        lines[1] = "let grey = material diffuse { reflectance = 0.3 }".to_owned();
+        assert_eq!(n(&lines), (1, true));
+        lines[0] = "let r = 7.5 cm".to_owned();
+        assert_eq!(n(&lines), (1, true));
         // One that does more than that is evaluated, with what it uses.
         lines[9] = lines[9].replace("(1, 2, 3) m", "(r, 2 * r, r)");
         assert_eq!(n(&lines), (3, true));

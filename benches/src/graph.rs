@@ -49,50 +49,26 @@ pub(crate) fn run() -> Result<(), String> {
     let told = format!("{objects}set one.radius = 30 cm\nmaterial dielectric {{ }}\n")
         .replacen("ball 3", "one", 1);
     let reckoning = objects.replace("radius = r,", "radius = r / 2,");
+    let moving = objects.replace("(1.2, 0.5, -3.25) m", "(1.2 m, r, -3.25 m)");
     let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
-    let case = |name, text: &str, from, to| Case { name, text: text.to_owned(), from, to };
+    let case = |name, text: &str, (from, to)| Case { name, text: text.to_owned(), from, to };
+    let number = ("ball 50001\" { center = (1.2", "ball 50001\" { center = (1.3");
+    let one_more = ("shape sphere \"ball 50001", "place ball\nshape sphere \"ball 50001");
+    let length = ("r = 50 cm", "r = 40 cm");
+    let rare = ("reflectance = 0.2", "reflectance = 0.3");
     let cases = [
-        case(
-            "objects, a number",
-            &objects,
-            "ball 50001\" { center = (1.2",
-            "ball 50001\" { center = (1.3",
-        ),
-        case(
-            "objects, one more",
-            &objects,
-            "shape sphere \"ball 50001",
-            "place ball\nshape sphere \"ball 50001",
-        ),
-        case("objects, the camera", &objects, "fov = 40", "fov = 35"),
-        case(
-            "objects, a material of one in a thousand",
-            &objects,
-            "reflectance = 0.2",
-            "reflectance = 0.3",
-        ),
-        case("objects, a length that all hand on", &objects, "r = 50 cm", "r = 40 cm"),
-        case(
-            "objects, a material of nearly all",
-            &objects,
-            "reflectance = 0.5",
-            "reflectance = 0.4",
-        ),
-        case("objects, a length that all reckon with", &reckoning, "r = 50 cm", "r = 40 cm"),
-        case(
-            "objects, a mistake",
-            &objects,
-            "ball 50001\" { center = (1.2",
-            "ball 50001\" { center = (1.2 s",
-        ),
-        case(
-            "objects, a number beside a `set` and a warning",
-            &told,
-            "ball 50001\" { center = (1.2",
-            "ball 50001\" { center = (1.3",
-        ),
-        case("objects, what is `set`", &told, "radius = 30 cm", "radius = 20 cm"),
-        case("placements, a number", &placements, "move((50001, 0.5", "move((50001, 0.25"),
+        case("objects, a number", &objects, number),
+        case("objects, one more", &objects, one_more),
+        case("objects, the camera", &objects, ("fov = 40", "fov = 35")),
+        case("objects, a material of one in a thousand", &objects, rare),
+        case("objects, a length that all hand on", &objects, length),
+        case("objects, a material of nearly all", &objects, ("e = 0.5", "e = 0.4")),
+        case("objects, a length that all reckon with", &reckoning, length),
+        case("objects, a length in vectors of all", &moving, length),
+        case("objects, a mistake", &objects, (number.0, "ball 50001\" { center = (1.2 s")),
+        case("objects, a number beside a `set` and a warning", &told, number),
+        case("objects, what is `set`", &told, ("radius = 30 cm", "radius = 20 cm")),
+        case("placements, a number", &placements, ("move((50001, 0.5", "move((50001, 0.25")),
     ];
     let registry = linked();
     cases.iter().try_for_each(|case| report(case, &registry))

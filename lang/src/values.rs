@@ -35,11 +35,8 @@ impl Values {
     pub fn at(&self, source: SourceId, byte: usize) -> Option<&str> {
         let (place, byte) = self.in_statement(source, byte);
         let at = u32::try_from(byte).ok()?;
-        let notes = self.own.of(place).unwrap_or_default();
-        match notes.binary_search_by_key(&at, |note| note.0) {
-            Ok(i) => Some(&*notes[i].1),
-            Err(_) => self.others.get(&(place, at)).map(|(_, value)| &**value),
-        }
+        let elsewhere = || self.others.get(&(place, at)).map(|(_, value)| &**value);
+        self.own.value(place, at).or_else(elsewhere)
     }
 
     /// A place in the root file as one in its statement.
@@ -63,7 +60,8 @@ impl Values {
         let others = others.map(|((source, at), (_, value))| (placed(*source, *at), &**value));
         let own = self.stmts.iter().flat_map(|(_, id)| {
             let notes = self.own.of(*id).unwrap_or_default().iter();
-            notes.map(|(at, value)| (placed(*id, *at), &**value))
+            let value = |at: u32| Some((placed(*id, at), self.own.value(*id, at)?));
+            notes.filter_map(move |(at, _)| value(*at))
         });
         others.chain(own).collect()
     }
@@ -71,12 +69,23 @@ impl Values {
 
 /// What was noted of statements by one load after the other: the newest of each counts.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Layers(Vec<Arc<Layer>>);
+pub(crate) struct Layers {
+    notes: Vec<Arc<Layer>>,
+    /// Newer than what was noted.
+    handed: Arc<HandedOn>,
+}
 
 impl Layers {
-    /// What was noted of a statement, if it was evaluated.
+    /// What was noted of a statement, if it was evaluated; its names may have been handed other values since.
     pub(crate) fn of(&self, statement: SourceId) -> Option<&Notes> {
-        self.0.iter().rev().find_map(|layer| layer.get(&statement)).map(|notes| &**notes)
+        self.notes.iter().rev().find_map(|layer| layer.get(&statement)).map(|notes| &**notes)
+    }
+
+    /// The value of the name that stands there in a statement.
+    fn value(&self, statement: SourceId, at: u32) -> Option<&str> {
+        let notes = self.of(statement)?;
+        let i = notes.binary_search_by_key(&at, |note| note.0).ok()?;
+        Some(self.handed.value((statement, at)).unwrap_or(&notes[i].1))
     }
 
     /// Puts newer ones on top. Each layer has less than half as many as the one below: there are few.
@@ -84,11 +93,91 @@ impl Layers {
         if newer.is_empty() {
             return;
         }
-        while let Some(older) = self.0.pop_if(|older| newer.len() * 2 > older.len()) {
+        if !self.handed.0.is_empty() {
+            self.handed = Arc::new(self.handed.without(&newer));
+        }
+        while let Some(older) = self.notes.pop_if(|older| newer.len() * 2 > older.len()) {
             let mut both = Layer::clone(&older);
             both.append(&mut newer);
             newer = both;
         }
-        self.0.push(Arc::new(newer));
+        self.notes.push(Arc::new(newer));
+    }
+
+    /// Gives names other values, as far as something was noted of them.
+    pub(crate) fn hand_on(&mut self, newer: Vec<(Place, Arc<str>)>) {
+        if !newer.is_empty() {
+            self.handed = Arc::new(self.handed.with(newer));
+        }
+    }
+}
+
+/// Values that names got without their statements being evaluated, in order.
+#[derive(Debug, Default)]
+pub(crate) struct HandedOn(Vec<(Place, Arc<str>)>);
+
+impl HandedOn {
+    fn value(&self, place: Place) -> Option<&str> {
+        let i = self.0.binary_search_by_key(&place, |(place, _)| *place).ok()?;
+        Some(&self.0[i].1)
+    }
+
+    /// With newer ones.
+    fn with(&self, newer: Vec<(Place, Arc<str>)>) -> Self {
+        let mut all: Vec<_> = self.0.iter().cloned().chain(newer).collect();
+        // Finds that there are two runs, and keeps the newer of two behind the older.
+        all.sort_by_key(|(place, _)| *place);
+        all.dedup_by(|next, one| {
+            let is_older = next.0 == one.0;
+            if is_older {
+                std::mem::swap(next, one);
+            }
+            is_older
+        });
+        Self(all)
+    }
+
+    /// Without those of statements that have been evaluated.
+    fn without(&self, newer: &Layer) -> Self {
+        let is_older = |((statement, _), _): &&(Place, _)| !newer.contains_key(statement);
+        Self(self.0.iter().filter(is_older).cloned().collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layer(notes: &[(u32, &[(u32, &str)])]) -> Layer {
+        let of = |notes: &[(u32, &str)]| {
+            notes.iter().map(|(at, value)| (*at, (*value).into())).collect()
+        };
+        notes.iter().map(|(id, notes)| (SourceId(*id), of(notes))).collect()
+    }
+
+    fn handed(values: &[(u32, u32, &str)]) -> Vec<(Place, Arc<str>)> {
+        let one = |(id, at, value): &(u32, u32, &str)| ((SourceId(*id), *at), (*value).into());
+        values.iter().map(one).collect()
+    }
+
+    #[test]
+    fn of_what_is_noted_and_handed_on_the_newest_counts() {
+        let mut layers = Layers::default();
+        let all = |layers: &Layers| {
+            let value = |id, at| layers.value(SourceId(id), at).map(str::to_owned);
+            [value(1, 4), value(1, 9), value(2, 4), value(3, 4)].map(Option::unwrap_or_default)
+        };
+        layers.push(layer(&[(1, &[(4, "a"), (9, "b")]), (2, &[(4, "c")])]));
+        assert_eq!(all(&layers), ["a", "b", "c", ""]);
+        // The last is of a statement of which nothing was noted.
+        layers.hand_on(handed(&[(2, 4, "d"), (1, 4, "e"), (3, 4, "e")]));
+        assert_eq!(all(&layers), ["e", "b", "d", ""]);
+        layers.hand_on(handed(&[(1, 9, "f"), (1, 4, "f")]));
+        assert_eq!(all(&layers), ["f", "f", "d", ""]);
+        assert_eq!(layers.handed.0.len(), 4, "what is older is given back");
+        layers.push(layer(&[(1, &[(4, "g"), (9, "h")])]));
+        assert_eq!(all(&layers), ["g", "h", "d", ""]);
+        layers.hand_on(handed(&[(1, 9, "i")]));
+        assert_eq!(all(&layers), ["g", "i", "d", ""]);
     }
 }

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{State, source_of};
+use super::source_of;
 use crate::Budgets;
+use crate::eval::numbered::Known;
 use crate::sink::Sink;
 use crate::syntax::{Expr, ExprNode, Op, parse_expr};
 
@@ -21,14 +22,14 @@ pub(super) struct Formula {
 
 impl Formula {
     /// A text as one; `None` of any other.
-    pub(super) fn of(text: &str, state: &State) -> Option<Self> {
-        let expr = read(text, &state.settings.budgets)?;
+    pub(super) fn of(text: &str, budgets: &Budgets, known: &Known) -> Option<Self> {
+        let expr = read(text, budgets)?;
         let mut words = vec![];
         if !is_reckoned(&expr, &mut words) {
             return None;
         }
         let mut names: Vec<(u32, u32)> = vec![];
-        for number in words.iter().filter_map(|word| state.names.of(word)) {
+        for number in words.iter().filter_map(|word| known.of(word)) {
             match names.iter_mut().find(|(name, _)| *name == number) {
                 Some((_, times)) => *times += 1,
                 None => names.push((number, 1)),

@@ -15,6 +15,7 @@ mod asked;
 mod edit;
 mod formula;
 mod handed;
+mod handing;
 mod made;
 mod plan;
 mod put;
@@ -37,6 +38,7 @@ use luxel_core::scene::{Pose, Scene};
 use luxel_sdk::params::leave;
 
 use self::asked::{Questions, Remembering};
+use self::handing::{Handing, Hands};
 use self::made::{Cost, Made};
 pub(super) use self::record::Record;
 use self::values::KeptValues;
@@ -74,6 +76,7 @@ struct Statement {
     shadows: bool,
     /// Where it hands a value on, its objects need not be made anew.
     is_plain: bool,
+    hands: Hands,
 }
 
 /// What is kept of a load.
@@ -95,6 +98,8 @@ pub(crate) struct State {
     n_ids: usize,
     /// All nodes and groups of all statements, those that are gone too; hashed, in no order.
     scene: Scene,
+    /// What of it is handed on, by nodes of that scene.
+    handing: Handing,
     /// Nodes and groups when nothing was gone.
     n_kept: usize,
     sources: Sources,

@@ -8,6 +8,7 @@ use luxel_core::scene::{NodeId, Placed};
 
 use super::State;
 use super::handed::Fitted;
+use super::handing::Written;
 use super::made::Made;
 use super::plan::Plan;
 use crate::eval::Evaluator;
@@ -48,11 +49,20 @@ impl State {
         }
         self.n_ids += fresh.len();
         self.stmts.splice(gone, fresh);
-        for (task, made) in tasks.into_iter().zip(made).filter(|(task, _)| task.is_new) {
-            self.stmts[task.i].made = made;
-        }
         self.sources.replace(SourceId(0), text.clone());
         self.text = text;
+        let written = Written {
+            text: &self.text,
+            nodes: &self.scene.nodes,
+            names: &self.names,
+            budgets: &self.settings.budgets,
+            n_shadows: self.n_shadows,
+        };
+        for (task, made) in tasks.into_iter().zip(made).filter(|(task, _)| task.is_new) {
+            let stmt = &mut self.stmts[task.i];
+            stmt.made = made;
+            stmt.hands = self.handing.add(stmt, &written);
+        }
         self.is_broken = false;
         Some(())
     }

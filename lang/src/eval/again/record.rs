@@ -9,7 +9,7 @@ use luxel_core::diag::{SourceId, Span};
 use luxel_sdk::params::leave;
 
 use super::asked::Questions;
-use super::handed::is_plain;
+use super::handing::{Handing, Hands, Written, is_plain};
 use super::made::{Cost, Made};
 use super::sets::set_label;
 use super::values::KeptValues;
@@ -71,7 +71,8 @@ impl Statement {
         let declares = matches!(stmt.node, StmtNode::Units(_) | StmtNode::Param(_));
         let shadows = facts.defines.iter().any(|name| builtins::begins(&name.text));
         let is_plain = is_plain(stmt);
-        Self { id, range, names, made: Made::default(), set, declares, shadows, is_plain }
+        let (made, hands) = (Made::default(), Hands::default());
+        Self { id, range, names, made, set, declares, shadows, is_plain, hands }
     }
 
     /// What it concerns is not known from its names.
@@ -179,13 +180,18 @@ impl Evaluator<'_> {
         let mut scene = std::mem::take(&mut self.scene);
         scene.root = std::mem::take(&mut self.open_groups).pop().unwrap_or_default().group;
         let Record { from, names, mut stmts, around, .. } = record;
-        let tables = scene.prepare(&place, &is_over).map(|()| {
+        let text: Arc<str> = self.sources.shared(SourceId(0));
+        let n_shadows = stmts.iter().filter(|stmt| stmt.shadows).count();
+        let found = scene.prepare(&place, &is_over).map(|()| {
             let moved = stmts.iter_mut().take_while(|_| !is_over());
             moved.for_each(|stmt| stmt.names.move_together());
             let all = stmts.iter().take_while(|_| !is_over());
-            Tables::of(&names, all.map(|stmt| &stmt.names)).0
+            let tables = Tables::of(&names, all.map(|stmt| &stmt.names)).0;
+            let (nodes, budgets) = (&scene.nodes, &settings.budgets);
+            let written = Written { text: &text, nodes, names: &names, budgets, n_shadows };
+            (tables, Handing::of(&mut stmts, &written, &is_over))
         });
-        let Some(tables) = tables.filter(|_| !is_over()) else {
+        let Some((tables, handing)) = found.filter(|_| !is_over()) else {
             leave((scene, stmts, names));
             return None;
         };
@@ -197,7 +203,6 @@ impl Evaluator<'_> {
         for param in &mut params {
             param.span = place(param.span);
         }
-        let text: Arc<str> = self.sources.shared(SourceId(0));
         Some(State {
             path: path.to_owned(),
             settings: Settings { stop: None, ..settings.clone() },
@@ -205,7 +210,7 @@ impl Evaluator<'_> {
             names,
             tables,
             n_names: stmts.iter().map(|stmt| stmt.names.defines().len()).sum(),
-            n_shadows: stmts.iter().filter(|stmt| stmt.shadows).count(),
+            n_shadows,
             set_labels,
             spent: stmts.iter().fold(around, |sum, stmt| sum.plus(stmt.made.cost)),
             n_ids: stmts.len(),
@@ -213,6 +218,7 @@ impl Evaluator<'_> {
             n_evaluated: stmts.len(),
             stmts,
             scene,
+            handing,
             sources: self.sources.clone(),
             params,
             asked: Questions::default(),

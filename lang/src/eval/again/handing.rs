@@ -1,0 +1,274 @@
+//! Where statements hand names on, as `radius = r` and `radius = r / 2` do: which parameters of which nodes
+//! these are is found when the statements are evaluated, so that a name that all of them hand on has its
+//! new value everywhere soon.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use luxel_core::scene::{self, IsOver, Node, NodeId};
+use luxel_sdk::kind::Kind;
+
+use super::formula::Formula;
+use super::{Statement, source_of};
+use crate::Budgets;
+use crate::eval::numbered::Known;
+use crate::eval::object::stands_somewhere;
+use crate::shares;
+use crate::syntax::{Expr, ExprNode, Object, Stmt, StmtNode, children};
+
+/// Texts that are looked at, at most, by each thread: what is reckoned with others is evaluated.
+const TEXTS: usize = 1 << 12;
+
+/// What values are handed on, and where.
+#[derive(Debug, Default)]
+pub(super) struct Handing {
+    /// By statement; also of statements that are gone.
+    pub(super) places: Vec<Place>,
+    pub(super) formulas: Vec<Formula>,
+    /// Which of those a text is, if it is one.
+    of_texts: HashMap<Arc<str>, Option<u32>>,
+    pub(super) wanted: Vec<Wanted>,
+    /// Which of those each formula is.
+    of_formulas: Vec<Vec<u32>>,
+}
+
+/// A parameter that a value is handed on to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Where in its statement the parameter's name stands.
+    pub(super) field: u32,
+    /// Of which node, and which of its parameters.
+    pub(super) node: u32,
+    pub(super) argument: u32,
+    /// What is wanted there.
+    pub(super) wanted: u32,
+}
+
+/// What the value of a formula is for a parameter of a class.
+#[derive(Debug, PartialEq)]
+pub(super) struct Wanted {
+    pub(super) formula: u32,
+    pub(super) kind: Kind,
+    pub(super) class: Arc<str>,
+    pub(super) param: &'static str,
+    /// It was an object.
+    pub(super) is_node: bool,
+}
+
+/// What a statement hands on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hands {
+    places: Range<u32>,
+    /// Of the names that it uses, in their order, those that it only hands on: a bit each.
+    names: u32,
+}
+
+impl Hands {
+    pub(super) fn places(&self) -> Range<usize> {
+        self.places.start as usize..self.places.end as usize
+    }
+
+    /// Whether it only hands on the name that is the `i`th of those it uses.
+    pub(super) fn only_hands_on(&self, i: usize) -> bool {
+        u32::try_from(i)
+            .ok()
+            .and_then(|i| self.names.checked_shr(i))
+            .is_some_and(|rest| rest & 1 > 0)
+    }
+}
+
+/// What statements are written as, and what they came to.
+pub(super) struct Written<'a> {
+    pub(super) text: &'a str,
+    pub(super) nodes: &'a [Node],
+    pub(super) names: &'a Known,
+    pub(super) budgets: &'a Budgets,
+    /// How many statements define names that every scene has, which may stand for others further down.
+    pub(super) n_shadows: usize,
+}
+
+/// Whether a statement is an object whose fields are objects, or come to the same wherever they are
+/// evaluated and however often.
+pub(super) fn is_plain(stmt: &Stmt) -> bool {
+    matches!(&stmt.node, StmtNode::Object(object) if stmt.attrs.is_empty() && is_plain_object(object))
+}
+
+fn is_plain_object(object: &Object) -> bool {
+    object.body.stmts.iter().all(|stmt| match &stmt.node {
+        StmtNode::Field(field) if stmt.attrs.is_empty() => match &field.value.node {
+            ExprNode::Object(inner) => is_plain_object(inner),
+            _ => has_no_object(&field.value),
+        },
+        _ => false,
+    })
+}
+
+fn has_no_object(expr: &Expr) -> bool {
+    use ExprNode::{Broken, Comp, If, With};
+    let has_one = |node: &ExprNode| {
+        matches!(node, Broken | Comp(_) | If { .. } | ExprNode::Object(_) | With { .. })
+    };
+    let mut is_so = !has_one(&expr.node);
+    children(expr, &mut |child| is_so &= has_no_object(child));
+    is_so
+}
+
+/// Whether a parameter's value is one that stands for itself: it costs nothing to fit, and nothing but
+/// the parameter depends on it.
+pub(super) fn is_simple(value: &scene::Value, nodes: &[Node]) -> bool {
+    use scene::Value::{Bool, Color, Node, Number, Path, Text};
+    match value {
+        Node(NodeId(id)) => !stands_somewhere(nodes[*id as usize].kind),
+        value => matches!(value, Bool(_) | Color(..) | Number(..) | Path(_) | Text(_)),
+    }
+}
+
+impl Handing {
+    /// What statements hand on, each of which is told so; incomplete once it is over.
+    pub(super) fn of(stmts: &mut [Statement], written: &Written<'_>, is_over: IsOver<'_>) -> Self {
+        let some = |stmts: &[Statement]| {
+            let mut handing = Self::default();
+            let hands = stmts.iter().take_while(|_| !is_over());
+            let hands: Vec<Hands> = hands.map(|stmt| handing.add(stmt, written)).collect();
+            (handing, hands)
+        };
+        let mut all = Self::default();
+        let mut each = vec![];
+        for (handing, hands) in shares::map(stmts, |stmt| stmt.range.len(), some) {
+            let first = narrow(all.places.len());
+            let later = |Hands { places, names }: Hands| Hands {
+                places: first + places.start..first + places.end,
+                names,
+            };
+            each.extend(hands.into_iter().map(later));
+            all = all.with(handing);
+        }
+        for (stmt, hands) in stmts.iter_mut().zip(each) {
+            stmt.hands = hands;
+        }
+        all
+    }
+
+    /// With those of later statements.
+    fn with(mut self, other: Self) -> Self {
+        let mut formulas = vec![];
+        for formula in other.formulas {
+            let text = formula.text.clone();
+            let known = self.of_texts.get(&text).copied().flatten();
+            let i = known.unwrap_or_else(|| self.put(formula));
+            self.of_texts.insert(text, Some(i));
+            formulas.push(i);
+        }
+        let number = |Wanted { formula, kind, class, param, is_node }: &Wanted| {
+            self.number(formulas[*formula as usize], (*kind, class), (param, *is_node))
+        };
+        let numbers: Vec<u32> = other.wanted.iter().map(number).collect();
+        let renamed = |place: Place| Place { wanted: numbers[place.wanted as usize], ..place };
+        self.places.extend(other.places.into_iter().map(renamed));
+        self
+    }
+
+    /// Adds what a statement hands on, if it does nothing but make objects that nobody names.
+    pub(super) fn add(&mut self, stmt: &Statement, written: &Written<'_>) -> Hands {
+        let first = self.places.len();
+        let makes = stmt.is_plain && stmt.made.rare.is_none() && stmt.names.defines().is_empty();
+        let uses: Vec<(u32, u32)> = stmt.names.uses().take(u32::BITS as usize).collect();
+        let mut left: Vec<Option<u32>> = uses.iter().map(|(_, times)| Some(*times)).collect();
+        if makes && !uses.is_empty() {
+            for node in stmt.made.nodes.clone() {
+                self.add_node((stmt, node), written, (&uses, &mut left));
+            }
+        }
+        let names = left.iter().rev().fold(0, |bits, left| bits << 1 | u32::from(*left == Some(0)));
+        Hands { places: narrow(first)..narrow(self.places.len()), names }
+    }
+
+    /// Adds the parameters of a node whose values are reckoned from names that are used. Of each of these is
+    /// known how often it is used elsewhere; nothing, once it was met more often.
+    fn add_node(
+        &mut self,
+        (stmt, node): (&Statement, usize),
+        written: &Written<'_>,
+        (uses, left): (&[(u32, u32)], &mut [Option<u32>]),
+    ) {
+        let text = &written.text[stmt.range.clone()];
+        let it = &written.nodes[node];
+        for (argument, k) in it.params.iter().zip(0..) {
+            let range = argument.span.range();
+            let is_here = argument.span.source == source_of(stmt.id);
+            if !is_here || !is_simple(&argument.value, written.nodes) {
+                continue;
+            }
+            let Some(value) = text.get(range.clone()) else { continue };
+            let may_reckon =
+                matches!(argument.value, scene::Value::Number(..)) && written.n_shadows == 0;
+            let is_used = |(name, _): &(u32, u32)| {
+                let word = written.names.name(*name);
+                value == word || may_reckon && value.contains(word)
+            };
+            if !uses.iter().any(is_used) {
+                continue;
+            }
+            let before = text[..range.start].trim_end().strip_suffix('=');
+            let before = before.and_then(|before| before.trim_end().strip_suffix(argument.name));
+            let Some(before) = before else { continue };
+            let Some(formula) = self.formula(value, written) else { continue };
+            for (name, times) in self.formulas[formula as usize].names() {
+                let met = uses.iter().zip(left.iter_mut()).find(|((used, _), _)| *used == name);
+                if let Some((_, left)) = met {
+                    *left = left.and_then(|left| left.checked_sub(times));
+                }
+            }
+            let is_node = matches!(argument.value, scene::Value::Node(_));
+            let wanted = self.number(formula, (it.kind, &it.class), (argument.name, is_node));
+            let field = narrow(before.len());
+            self.places.push(Place { field, node: narrow(node), argument: k, wanted });
+        }
+    }
+
+    /// Which of the formulas a text is, if it is one.
+    fn formula(&mut self, text: &str, written: &Written<'_>) -> Option<u32> {
+        if let Some(known) = self.of_texts.get(text) {
+            return *known;
+        }
+        if self.of_texts.len() >= TEXTS {
+            return None;
+        }
+        let found = Formula::of(text, written.budgets, written.names);
+        let found = found.map(|formula| self.put(formula));
+        self.of_texts.insert(text.into(), found);
+        found
+    }
+
+    fn put(&mut self, formula: Formula) -> u32 {
+        self.formulas.push(formula);
+        self.of_formulas.push(vec![]);
+        narrow(self.formulas.len() - 1)
+    }
+
+    /// Which of those that are wanted the value of a formula is, or an object, for a parameter of a class.
+    fn number(
+        &mut self,
+        formula: u32,
+        (kind, class): (Kind, &Arc<str>),
+        (param, is_node): (&'static str, bool),
+    ) -> u32 {
+        let is_it = |i: &&u32| {
+            let it = &self.wanted[**i as usize];
+            it.param == param && it.is_node == is_node && it.kind == kind && it.class == *class
+        };
+        let known = &mut self.of_formulas[formula as usize];
+        if let Some(i) = known.iter().find(is_it) {
+            return *i;
+        }
+        let i = narrow(self.wanted.len());
+        known.push(i);
+        self.wanted.push(Wanted { formula, kind, class: class.clone(), param, is_node });
+        i
+    }
+}
+
+fn narrow(n: usize) -> u32 {
+    u32::try_from(n).unwrap_or(u32::MAX)
+}

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use luxel_core::diag::Diagnostic;
 
+use super::closing::{Closing, closing, indent};
 use crate::prescan::{Fault, scan_until};
 
 /// How often reading goes on after a brace that never closes.
@@ -41,8 +42,8 @@ pub(super) struct Region {
     pub(super) unclosed: Option<usize>,
     /// A fault stands before the first statement.
     pub(super) junk_told: bool,
-    /// Before which line a brace that never closes most likely does.
-    pub(super) resume: Option<usize>,
+    /// Before which lines braces that never close most likely do.
+    pub(super) closes: Vec<(usize, usize)>,
     /// Where to go on.
     pub(super) next: Option<usize>,
     /// The start that was known, which ended the region.
@@ -62,7 +63,17 @@ pub(super) fn region(
         _ => None,
     };
     let unclosed = found.faults.iter().filter_map(open).min();
-    let resume = found.faults.iter().filter_map(open).find_map(|open| likely_end(text, open));
+    let start = unclosed.map(|open| found.starts.partition_point(|start| *start <= open));
+    let start = start.map(|i| i.checked_sub(1).map_or(from, |i| found.starts[i]));
+    let closing = start.and_then(|start| closing(text, start, limit));
+    let (closes, resume) = match closing {
+        Some(Closing { braces, end }) => (braces, Some(end).filter(|end| *end < text.len())),
+        None => {
+            let likely = |open: usize| Some((open, likely_end(text, open)?));
+            let likely = found.faults.iter().filter_map(open).find_map(likely);
+            (likely.into_iter().collect(), likely.map(|(_, end)| end))
+        }
+    };
     let end = resume.or(found.met).unwrap_or(text.len());
     let too_deep = found.faults.iter().any(|f| matches!(f, Fault::TooDeep { .. }));
     let first = found.starts.first().copied().unwrap_or(end);
@@ -80,21 +91,21 @@ pub(super) fn region(
         Cut { faulty: holds(&range), range }
     });
     let pieces: Vec<Cut> = pieces.collect();
-    let mut told_unclosed = false;
-    let mut faults = found.faults;
-    faults.retain(|fault| match fault {
-        Fault::Unclosed { .. } => !std::mem::replace(&mut told_unclosed, true),
-        other => resume.is_none_or(|resume| other.at() < resume),
-    });
+    let told =
+        |fault: &Fault| open(fault).is_none() && resume.is_none_or(|resume| fault.at() < resume);
+    let mut faults: Vec<Fault> = found.faults.into_iter().filter(told).collect();
+    let alone = unclosed.filter(|_| closes.is_empty());
+    let together = closes.chunk_by(|(_, one), (_, other)| one == other);
+    let opens = together.map(|braces| braces[0].0).chain(alone);
+    faults.extend(opens.map(|open| Fault::Unclosed { open }));
     let next = resume.filter(|_| !too_deep);
-    Region { first, pieces, faults, unclosed, junk_told, resume, next, met: found.met }
+    Region { first, pieces, faults, unclosed, junk_told, closes, next, met: found.met }
 }
 
-/// Where a block that never closes most likely ends: before the first line that is indented no
+/// Where a block that never closes may end, where nothing else tells: before the first line that is indented no
 /// more than the line of its brace.
 fn likely_end(text: &str, open: usize) -> Option<usize> {
     let line_start = text[..open].rfind('\n').map_or(0, |at| at + 1);
-    let indent = |line: &str| line.len() - line.trim_start_matches([' ', '\t']).len();
     let limit = indent(&text[line_start..open]);
     let mut at = open + text[open..].find('\n')? + 1;
     for line in text[at..].split_inclusive('\n') {

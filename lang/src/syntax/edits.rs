@@ -28,6 +28,12 @@ impl Edits {
         Self { base, edits: vec![] }
     }
 
+    /// Bytes that stand now where nothing was written at byte `at` of the text, behind all others.
+    pub(super) fn insert(&mut self, at: usize, new: Range<usize>) {
+        let at = self.base + at;
+        self.edits.push(Edit { old: at..at, new });
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.edits.is_empty()
     }

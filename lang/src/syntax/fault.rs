@@ -4,19 +4,26 @@ use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
 
+use super::closing::indent;
 use crate::prescan::Fault;
 
 /// Brackets that a message shows.
 const SHOWN: usize = 8;
 
+/// The blanks with which the line of a byte begins.
+fn indent_of(text: &str, at: usize) -> &str {
+    let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    &text[line..line + indent(&text[line..])]
+}
+
 /// What is told of a bracket, text or comment that does not close; `limit` is how deep brackets may
-/// nest, and a block that never closes most likely does before `resume`.
+/// nest, and blocks that never close most likely do before the bytes of `closes`.
 pub(super) fn told(
     text: &str,
     source: SourceId,
     limit: usize,
     fault: &Fault,
-    resume: Option<usize>,
+    closes: &[(usize, usize)],
 ) -> Diagnostic {
     let span = |range: Range<usize>| Span::new(source, range.start, range.end);
     let byte = |at: usize| char::from(text.as_bytes()[at]);
@@ -29,10 +36,20 @@ pub(super) fn told(
         Fault::Unclosed { open } => {
             let message = format!("this `{}` is never closed", byte(*open));
             let found = Diagnostic::error("E0008", span(*open..open + 1), message);
-            match resume.filter(|at| at > open) {
-                Some(at) => found.label(span(at..at), "it most likely closes before this"),
-                None => found,
+            let Some(at) = closes.iter().find_map(|(one, at)| (one == open).then_some(*at)) else {
+                return found;
+            };
+            let found = found.label(span(at..at), "it most likely closes before this");
+            let mut braces = String::from(if text[..at].ends_with('\n') { "" } else { "\n" });
+            let all = closes.iter().filter(|(_, other)| *other == at).map(|(one, _)| *one);
+            for one in all.clone() {
+                braces.push_str(indent_of(text, one));
+                braces.push_str("}\n");
             }
+            let others = all.filter(|one| one != open);
+            let found =
+                others.fold(found, |found, one| found.label(span(one..one + 1), "nor is this"));
+            found.guess(span(at..at), braces)
         }
         Fault::Mismatch { open, at } => {
             let message = format!("`{}` is closed by `{}`", byte(*open), byte(*at));

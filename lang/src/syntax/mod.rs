@@ -6,6 +6,7 @@ mod around;
 mod build;
 #[cfg(any(test, feature = "fuzz"))]
 pub(crate) mod check;
+mod closing;
 mod cut;
 mod defined;
 mod direct;

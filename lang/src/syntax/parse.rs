@@ -134,7 +134,7 @@ pub(crate) fn read_piece(
     let mut sink = Sink::new(budgets.diagnostics);
     let mut reader = Reader::new(text, source, budgets, &mut sink);
     if faulty {
-        reader.broken(0..text.len());
+        reader.unclosed(0..text.len());
     } else {
         reader.chunk(0..text.len(), Place::File);
     }
@@ -361,10 +361,10 @@ impl Reader<'_> {
             if self.sink.is_full() {
                 return;
             }
+            self.again = AGAIN;
             if piece.faulty {
-                self.broken(piece.range.clone());
+                self.unclosed(piece.range.clone());
             } else {
-                self.again = AGAIN;
                 self.chunk(piece.range.clone(), Place::File);
             }
         }
@@ -374,7 +374,7 @@ impl Reader<'_> {
     fn region_faults(&mut self, from: usize, found: &Region) {
         for fault in &found.faults {
             let limit = self.budgets.brackets;
-            let told = fault::told(self.text, self.source, limit, fault, found.resume);
+            let told = fault::told(self.text, self.source, limit, fault, &found.closes);
             self.sink.push(told);
         }
         if !found.junk_told {

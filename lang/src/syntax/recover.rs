@@ -7,6 +7,7 @@ use pest::error::InputLocation;
 
 use super::around::Place;
 use super::build::Builder;
+use super::closing::closed;
 use super::defined::perhaps_defined;
 use super::edits::{Edits, Mended};
 use super::explain::explain;
@@ -92,18 +93,36 @@ impl Reader<'_> {
         for found in told {
             self.sink.push(found);
         }
+        self.read_mended(mended, part, place);
+        if place != Place::File {
+            self.wrong.push(chunk.clone());
+        }
+        true
+    }
+
+    /// Reads a part of what mends made of a statement.
+    fn read_mended(&mut self, Mended { text, edits }: Mended, part: Range<usize>, place: Place) {
         let (mut sink, again) = (self.sink.like(), self.again);
-        let Mended { text, edits } = mended;
         let read = Reader::new(&text, self.source, self.budgets, &mut sink);
         let mut reader = Reader { direct: None, edits, again, ..read };
         reader.chunk(part, place);
         self.again = reader.again;
         self.out.stmts.append(&mut reader.out.stmts);
-        if place != Place::File {
-            self.wrong.push(chunk.clone());
-        }
         self.sink.absorb(sink);
-        true
+    }
+
+    /// Reads a statement with whose brackets something is wrong, which has been told: closed where it most
+    /// likely does, if only that is missing.
+    pub(super) fn unclosed(&mut self, chunk: Range<usize>) {
+        let is_worth = chunk.len() <= REPAIRED && !self.sink.is_full();
+        let piece = Some(&self.text[chunk.clone()]).filter(|_| is_worth);
+        match piece.and_then(|piece| closed(piece, chunk.start, self.budgets.brackets)) {
+            Some(mended) => {
+                let whole = 0..mended.text.len();
+                self.read_mended(mended, whole, Place::File);
+            }
+            None => self.broken(chunk),
+        }
     }
 
     /// Explains a mistake near byte `at` and reads the statements after it, in its block and in those

@@ -1,0 +1,179 @@
+//! Braces that never close: where they most likely do, by how far lines are indented.
+
+use super::edits::{Edits, Mended};
+use super::lex::{TokenKind, tokens};
+use crate::prescan::{Fault, scan, scan_until};
+
+/// How a statement most likely ends in which braces never close.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Closing {
+    /// Which braces, and before which byte each closes; these bytes are in order.
+    pub(super) braces: Vec<(usize, usize)>,
+    /// Where the next statement begins, or the text ends.
+    pub(super) end: usize,
+}
+
+/// A bracket that is open.
+struct Open {
+    at: usize,
+    /// How far the line is indented on which it stands.
+    indent: usize,
+    is_brace: bool,
+    /// Whether its first line is indented further, once that has been met.
+    holds_indented: Option<bool>,
+}
+
+impl Open {
+    /// Whether a line that is indented so far stands behind the block.
+    fn ends_before(&mut self, indent: usize) -> bool {
+        let holds = *self.holds_indented.get_or_insert(indent > self.indent);
+        self.is_brace && holds && indent <= self.indent
+    }
+}
+
+/// How the statement that begins at `start` most likely closes; `None` if its lines do not tell.
+///
+/// A block whose lines are indented ends before the first line that is indented no more than that of its
+/// brace, or with the text.
+pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing> {
+    let braces = braces(text, start)?;
+    let closed = closed_by(&text[start..], [start, start], &braces);
+    let next = scan_until(&closed.text, 0..closed.text.len(), 0, limit, &mut |at| at > 0).met;
+    let end = next.map_or(text.len(), |next| closed.edits.written(next..next).start);
+    Some(Closing { braces, end })
+}
+
+/// A piece with the braces that never close in it closed, if nothing else is wrong with its brackets; it
+/// begins at byte `base` of its text.
+pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
+    let is_unclosed = |fault: &Fault| matches!(fault, Fault::Unclosed { .. });
+    if !scan(piece, 0..piece.len(), 0, limit).faults.iter().all(is_unclosed) {
+        return None;
+    }
+    let mended = closed_by(piece, [0, base], &braces(piece, 0)?);
+    let found = scan(&mended.text, 0..mended.text.len(), 0, limit);
+    (found.faults.is_empty() && found.starts.len() == 1).then_some(mended)
+}
+
+/// Which braces close before which byte; `None` if none does so, or a block is open at the end whose
+/// lines do not tell.
+fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
+    let line = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let mut indent = indent(&text[line(start)..]);
+    let (mut open, mut braces): (Vec<Open>, _) = (vec![], vec![]);
+    for token in tokens(text, start..text.len()) {
+        let is = |marks: &str| token.kind == TokenKind::Mark && marks.contains(token.text);
+        let begun = Some(token).filter(|token| token.first_on_line).map(|it| line(it.start));
+        let blank = |begun: &usize| text[*begun..token.start].trim().is_empty();
+        if let Some(begun) = begun.filter(blank) {
+            if open.is_empty() && !braces.is_empty() {
+                return Some(braces);
+            }
+            indent = token.start - begun;
+            let ends = |open: &mut Open| open.ends_before(indent);
+            while let Some(block) = open.pop_if(|open| !is(")]}") && ends(open)) {
+                braces.push((block.at, begun));
+            }
+        }
+        if is("([{") {
+            let is_brace = token.text == "{";
+            open.push(Open { at: token.start, indent, is_brace, holds_indented: None });
+        } else if is(")]}") {
+            open.pop();
+        }
+    }
+    for block in open.iter().rev() {
+        if !block.is_brace || block.holds_indented != Some(true) {
+            return None;
+        }
+        braces.push((block.at, text.len()));
+    }
+    (!braces.is_empty()).then_some(braces)
+}
+
+/// How many blanks a line begins with.
+pub(super) fn indent(line: &str) -> usize {
+    line.len() - line.trim_start_matches([' ', '\t']).len()
+}
+
+/// A part of a text, which begins at byte `start` of it and `base` of what was written, with braces that
+/// close before these bytes.
+fn closed_by(part: &str, [start, base]: [usize; 2], braces: &[(usize, usize)]) -> Mended {
+    let mut text = String::with_capacity(part.len() + 3 * braces.len());
+    let mut edits = Edits::new(base);
+    let mut done = 0;
+    for line in braces.chunk_by(|(_, one), (_, other)| one == other) {
+        let at = line[0].1 - start;
+        text.push_str(&part[done..at]);
+        let from = text.len();
+        // A remark at the end goes on to the end of its line.
+        text.push_str(if at == part.len() { "\n" } else { "" });
+        text.push_str(&"}".repeat(line.len()));
+        text.push('\n');
+        edits.insert(at, from..text.len());
+        done = at;
+    }
+    text.push_str(&part[done..]);
+    Mended { text, edits }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The text with its braces closed, and what stands behind the statement.
+    fn ended(text: &str) -> Option<(String, &str)> {
+        let Closing { braces, end } = closing(text, 0, 100)?;
+        Some((closed_by(text, [0, 0], &braces).text, &text[end..]))
+    }
+
+    #[test]
+    fn a_block_ends_before_the_first_line_that_is_indented_no_more_than_its_own() {
+        let (group, ball) = ("group {\n", "  shape ball {\n    r = 1\n");
+        let cases = [
+            (
+                format!("{group}{ball}  shape\n}}\na = 1\n"),
+                format!("{group}{ball}}}\n  shape\n}}\na = 1\n"),
+                "a = 1\n",
+            ),
+            (format!("{group}{ball}  }}\na = 1"), format!("{group}{ball}  }}\n}}\na = 1"), "a = 1"),
+            (format!("{group}{ball}a = 1"), format!("{group}{ball}}}}}\na = 1"), "a = 1"),
+            (format!("{group}{ball}  // b"), format!("{group}{ball}  // b\n}}}}\n"), ""),
+            // Lines in brackets may be indented as they like.
+            (
+                format!("{group}  a = [\n1,\n2]\nb = 1"),
+                format!("{group}  a = [\n1,\n2]\n}}\nb = 1"),
+                "b = 1",
+            ),
+        ];
+        for (text, wanted, rest) in &cases {
+            assert_eq!(ended(text), Some((wanted.clone(), *rest)), "{text}");
+        }
+    }
+
+    #[test]
+    fn lines_that_are_not_indented_tell_nothing() {
+        for text in [
+            "group {\nshape ball {\nr = 1\n}\na = 1",
+            "group {",
+            "group { a = (",
+            "group { a {\n b = [\n",
+        ] {
+            assert_eq!(ended(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_piece_in_which_more_is_wrong_with_brackets_is_not_closed() {
+        let closes = |piece: &str| closed(piece, 7, 100).is_some();
+        assert!(closes("group {\n  a = 1\n"));
+        for piece in [
+            "group {\n  a = 1 }\n",
+            "group {\n  a = (1]\n",
+            "group {\n  a = \"b\n",
+            "group {\n  a = (1\n",
+        ] {
+            assert!(!closes(piece), "{piece}");
+        }
+    }
+}

@@ -9,7 +9,7 @@ use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use luxel_core::diag::{Diagnostic, Severity, Sources};
+use luxel_core::diag::{Diagnostic, Severity, Sources, in_order};
 
 use crate::exit::{Exit, Failure};
 
@@ -105,7 +105,7 @@ pub(crate) fn end_of_progress() {
     }
 }
 
-/// Prints diagnostics, then how many there are.
+/// Prints diagnostics in the order of their places, then how many there are.
 ///
 /// # Errors
 /// As `out`, where they go there.
@@ -115,6 +115,7 @@ pub(crate) fn diagnostics(
     form: Form,
     stream: Stream,
 ) -> Result<(), Failure> {
+    let found = &in_order(found);
     match form {
         Form::Json => {
             for diagnostic in found {

@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use glam::UVec2;
-use luxel_core::diag::{Diagnostic, Sources};
+use luxel_core::diag::{Diagnostic, Sources, in_order};
 use luxel_core::film::Film;
 use luxel_core::registry::Registry;
 use luxel_core::render::Reached;
@@ -238,7 +238,7 @@ impl Drop for Page {
 }
 
 fn problems(found: &[Diagnostic], sources: &Sources) -> impl Iterator<Item = Problem> {
-    found.iter().map(move |found| Problem::of_diagnostic(found, sources))
+    in_order(found).into_iter().map(move |found| Problem::of_diagnostic(&found, sources))
 }
 
 fn status(now: Reached, of_samples: u32) -> String {

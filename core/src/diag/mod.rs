@@ -226,3 +226,26 @@ impl fmt::Display for Diagnostic {
         write!(f, "{} {}", self.code, self.message)
     }
 }
+
+/// The same in the order of files and lines; what has no place comes last.
+pub fn in_order(found: &[Diagnostic]) -> Vec<Diagnostic> {
+    let mut found = found.to_vec();
+    found.sort_by_key(|found| (found.span().is_none(), found.span()));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_goes_by_places_and_what_has_none_comes_last() {
+        let at = |source, start| {
+            Diagnostic::error("E0001", Span::new(SourceId(source), start, start + 1), "x")
+        };
+        let later = Diagnostic::warning("E0002", Span::new(SourceId(0), 7, 8), "y");
+        let lone = Diagnostic::unplaced("E0409", "z");
+        let found = [lone.clone(), at(1, 0), at(0, 7), later.clone(), at(0, 2)];
+        assert_eq!(in_order(&found), [at(0, 2), at(0, 7), later, at(1, 0), lone]);
+    }
+}

@@ -14,20 +14,20 @@ pub(super) struct Closing {
 }
 
 /// A bracket that is open.
-struct Open {
+struct Open<'a> {
     at: usize,
+    bracket: &'a str,
     /// How far the line is indented on which it stands.
     indent: usize,
-    is_brace: bool,
     /// Whether its first line is indented further, once that has been met.
     holds_indented: Option<bool>,
 }
 
-impl Open {
+impl Open<'_> {
     /// Whether a line that is indented so far stands behind the block.
     fn ends_before(&mut self, indent: usize) -> bool {
         let holds = *self.holds_indented.get_or_insert(indent > self.indent);
-        self.is_brace && holds && indent <= self.indent
+        self.bracket == "{" && holds && indent <= self.indent
     }
 }
 
@@ -60,30 +60,33 @@ pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
 fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
     let line = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
     let mut indent = indent(&text[line(start)..]);
-    let (mut open, mut braces): (Vec<Open>, _) = (vec![], vec![]);
+    let (mut open, mut braces): (Vec<Open<'_>>, _) = (vec![], vec![]);
     for token in tokens(text, start..text.len()) {
         let is = |marks: &str| token.kind == TokenKind::Mark && marks.contains(token.text);
         let begun = Some(token).filter(|token| token.first_on_line).map(|it| line(it.start));
         let blank = |begun: &usize| text[*begun..token.start].trim().is_empty();
         if let Some(begun) = begun.filter(blank) {
-            if open.is_empty() && !braces.is_empty() {
-                return Some(braces);
-            }
             indent = token.start - begun;
-            let ends = |open: &mut Open| open.ends_before(indent);
+            let ends = |open: &mut Open<'_>| open.ends_before(indent);
             while let Some(block) = open.pop_if(|open| !is(")]}") && ends(open)) {
                 braces.push((block.at, begun));
             }
+            if open.is_empty() && !braces.is_empty() {
+                return Some(braces);
+            }
         }
         if is("([{") {
-            let is_brace = token.text == "{";
-            open.push(Open { at: token.start, indent, is_brace, holds_indented: None });
+            open.push(Open { at: token.start, bracket: token.text, indent, holds_indented: None });
         } else if is(")]}") {
-            open.pop();
+            // One of another kind closes nothing, or leaves those inside it open.
+            let opens = |open: &Open<'_>| {
+                matches!((open.bracket, token.text), ("(", ")") | ("[", "]") | ("{", "}"))
+            };
+            open.truncate(open.iter().rposition(opens).unwrap_or(open.len()));
         }
     }
     for block in open.iter().rev() {
-        if !block.is_brace || block.holds_indented != Some(true) {
+        if block.bracket != "{" || block.holds_indented != Some(true) {
             return None;
         }
         braces.push((block.at, text.len()));

@@ -85,10 +85,8 @@ impl Evaluator<'_> {
     }
 
     fn tristimulus(&mut self, make: Make, call: &Call<'_>) -> Option<Color> {
-        let mut c = [0.0; 3];
-        for (i, c) in c.iter_mut().enumerate() {
-            *c = self.number_arg(call, i, Dimension::NONE)?;
-        }
+        let [r, g, b] = [0, 1, 2].map(|i| self.number_arg(call, i, Dimension::NONE));
+        let c = [r?, g?, b?];
         if make == Make::Srgb && c.iter().any(|x| *x > SCREEN) {
             self.of_bytes(call);
             return None;
@@ -217,11 +215,12 @@ impl Evaluator<'_> {
 
     /// `spectrum.file("x.spd")`: two columns, or a named one of several.
     fn spectrum_file(&mut self, call: &Call<'_>) -> Option<Color> {
-        let (name, span) = self.text_arg(call, 0)?;
+        let name = self.text_arg(call, 0);
         let column = match call.arg(1) {
             Some(_) => Some(self.text_arg(call, 1)?),
             None => None,
         };
+        let (name, span) = name?;
         let path = call.env.file.folder.join(&*name);
         let asked = (path, column.map(|(name, _)| name));
         if let Some(read) = self.spectra.get(&asked).cloned() {

@@ -141,8 +141,8 @@ impl Evaluator<'_> {
 
     /// Noise in [0, 1) that depends on two numbers alone.
     fn hash01(&mut self, call: &Call<'_>) -> Option<Value> {
-        let seed = self.number_arg(call, 0, Dimension::NONE)?;
-        let i = self.number_arg(call, 1, Dimension::NONE)?;
+        let [seed, i] = [0, 1].map(|i| self.number_arg(call, i, Dimension::NONE));
+        let (seed, i) = (seed?, i?);
         // −0 and 0 are one number.
         let bits = mix(mix((seed + 0.0).to_bits()) ^ (i + 0.0).to_bits());
         // The upper 53 bits, which a double holds exactly.
@@ -175,8 +175,8 @@ impl Evaluator<'_> {
     }
 
     fn product(&mut self, math: Math, call: &Call<'_>) -> Option<Value> {
-        let (a, da, _) = self.vector_arg(call, 0)?;
-        let (b, db, _) = self.vector_arg(call, 1)?;
+        let [a, b] = [0, 1].map(|i| self.vector_arg(call, i));
+        let ((a, da, _), (b, db, _)) = (a?, b?);
         let (a, b) = (glam::DVec3::from_array(a), glam::DVec3::from_array(b));
         let dimension = da * db;
         if math == Math::Dot {

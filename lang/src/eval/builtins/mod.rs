@@ -12,7 +12,7 @@ mod transform;
 
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, near};
+use luxel_core::diag::{Diagnostic, Grade, Span, near};
 use luxel_sdk::params::Dimension;
 
 pub(super) use self::color::SpectrumFile;
@@ -208,20 +208,29 @@ impl Evaluator<'_> {
         if given.iter().any(|given| given.name.is_none() && given.value.is_poison()) {
             return Value::Poison;
         }
+        let n_mistakes = self.mistakes();
         let Some(args) = self.arrange(builtin, given, span) else { return Value::Poison };
-        if args.iter().flatten().any(|arg| arg.value.is_poison()) {
+        let is_poison =
+            |arg: &Option<Argument>| arg.as_ref().is_some_and(|arg| arg.value.is_poison());
+        let is_poisoned = args.iter().any(is_poison);
+        // It may do something else without what it can do without.
+        let left_out = |(name, arg): (&&str, _)| name.ends_with('?') && is_poison(arg);
+        if is_poisoned && builtin.args.iter().zip(&args).any(left_out) {
             return Value::Poison;
         }
         let mut call = Call { name: builtin.name, args, span, env };
-        match builtin.run {
+        let value = match builtin.run {
+            Run::Math(_) if is_poisoned => Value::Poison,
             Run::Math(math) => self.math(math, &mut call),
             Run::Transform(transform) => self.make_transform(transform, &mut call),
             Run::Color(make) => self.color(make, &mut call),
             Run::Sun => self.sun(&mut call),
-        }
+        };
+        if is_poisoned || self.mistakes() > n_mistakes { Value::Poison } else { value }
     }
 
-    /// Puts arguments into their places; `None` after a mistake.
+    /// Puts arguments into their places, also those whose misspelt name is surely meant; `None` if one
+    /// has none or is missing.
     fn arrange(
         &mut self,
         builtin: &Builtin,
@@ -229,42 +238,53 @@ impl Evaluator<'_> {
         span: Span,
     ) -> Option<Vec<Option<Argument>>> {
         let mut out = vec![None; builtin.args.len()];
+        let mut is_whole = true;
         for (i, given) in given.into_iter().enumerate() {
-            let place = match &given.name {
-                Some(name) => builtin.arguments().position(|arg| arg == &*name.text),
+            let named = |name: &str| builtin.arguments().position(|arg| arg == name);
+            let known = match &given.name {
+                Some(name) => named(&name.text),
                 None => Some(i).filter(|i| *i < out.len()),
             };
-            let Some(place) = place else {
-                let at = given.name.as_ref().map_or(given.span, |name| name.span);
-                let mut found = if let Some(name) = &given.name {
-                    let message = format!("`{}` has no parameter `{}`", builtin.name, name.text);
-                    Diagnostic::error("E0402", at, message)
-                } else {
-                    let message = takes_only(builtin.name, builtin.args.len());
-                    Diagnostic::error("E0402", at, message)
-                };
-                found =
-                    found.meant(at, given.name.and_then(|n| near(&n.text, builtin.arguments())));
-                self.tell(found.help(format!("it is called as `{}`", builtin.usage())));
-                return None;
-            };
-            if out[place].is_some() {
-                let message =
-                    format!("`{}` is given twice", builtin.args[place].trim_end_matches('?'));
-                self.poison("E0404", given.span, message);
-                return None;
+            let place = known.or_else(|| {
+                let meant = self.misplaced(builtin, &given)?;
+                named(meant).filter(|place| out[*place].is_none())
+            });
+            match place {
+                None => is_whole = false,
+                Some(place) if out[place].is_some() => {
+                    let name = builtin.args[place].trim_end_matches('?');
+                    self.poison("E0404", given.span, format!("`{name}` is given twice"));
+                }
+                Some(place) => {
+                    out[place] = Some(Argument { value: given.value, span: given.span });
+                }
             }
-            out[place] = Some(Argument { value: given.value, span: given.span });
         }
+        let is_misplaced = !is_whole;
         for (arg, value) in builtin.args.iter().zip(&out) {
-            if value.is_none() && !arg.ends_with('?') {
+            if value.is_none() && !is_misplaced && !arg.ends_with('?') {
                 let message = format!("`{}` wants `{arg}`", builtin.name);
                 let usage = format!("it is called as `{}`", builtin.usage());
                 self.tell(Diagnostic::error("E0403", span, message).help(usage));
-                return None;
+                is_whole = false;
             }
         }
-        Some(out)
+        is_whole.then_some(out)
+    }
+
+    /// Tells of an argument that a function does not take; the name that is surely meant.
+    fn misplaced(&mut self, builtin: &Builtin, given: &Given) -> Option<&'static str> {
+        let (at, message, near) = match &given.name {
+            Some(name) => {
+                let message = format!("`{}` has no parameter `{}`", builtin.name, name.text);
+                (name.span, message, near(&name.text, builtin.arguments()))
+            }
+            None => (given.span, takes_only(builtin.name, builtin.args.len()), None),
+        };
+        let found = Diagnostic::error("E0402", at, message).meant(at, near);
+        let known = near.filter(|near| near.grade == Grade::Sure);
+        self.tell(found.help(format!("it is called as `{}`", builtin.usage())));
+        builtin.arguments().find(|arg| known.is_some_and(|near| near.name == *arg))
     }
 
     /// A number of a dimension; a bare one takes the file's unit.
@@ -373,7 +393,8 @@ struct Call<'a> {
 }
 
 impl Call<'_> {
+    /// An argument that was given; `None` also if there was a mistake in it.
     fn arg(&self, i: usize) -> Option<Argument> {
-        self.args.get(i).cloned().flatten()
+        self.args.get(i).cloned().flatten().filter(|arg| !arg.value.is_poison())
     }
 }

@@ -81,8 +81,9 @@ impl Evaluator<'_> {
 
     /// `spin(axis, rate)`.
     pub(super) fn spin(&mut self, call: &Call<'_>) -> Option<Pose> {
-        let (axis, _, span) = self.vector_arg(call, 0)?;
-        let rate = self.number_arg(call, 1, Dimension::ANGULAR_SPEED)?;
+        let axis = self.vector_arg(call, 0);
+        let rate = self.number_arg(call, 1, Dimension::ANGULAR_SPEED);
+        let ((axis, _, span), rate) = (axis?, rate?);
         let Some(axis) = direction(axis.into()) else {
             self.poison("E0412", span, "the axis of a rotation has no direction");
             return None;

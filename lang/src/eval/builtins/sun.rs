@@ -14,14 +14,13 @@ impl Evaluator<'_> {
     }
 
     fn sun_vector(&mut self, call: &Call<'_>) -> Option<Value> {
-        let latitude = self.number_arg(call, 0, Dimension::ANGLE)?;
-        let longitude = self.number_arg(call, 1, Dimension::ANGLE)?;
+        let [latitude, longitude] = [0, 1].map(|i| self.number_arg(call, i, Dimension::ANGLE));
         let (text, span) = self.text_arg(call, 2)?;
         let Some(days) = days_since_2000(&text) else {
             self.bad_time(&text, span);
             return None;
         };
-        let direction = position(latitude, longitude, days);
+        let direction = position(latitude?, longitude?, days);
         Some(Value::numbers(direction, Dimension::NONE, Form::Tuple))
     }
 

@@ -57,8 +57,9 @@ impl Evaluator<'_> {
     }
 
     fn rotate(&mut self, call: &Call<'_>) -> Option<DAffine3> {
-        let (axis, _, span) = self.vector_arg(call, 0)?;
-        let angle = self.number_arg(call, 1, Dimension::ANGLE)?;
+        let axis = self.vector_arg(call, 0);
+        let angle = self.number_arg(call, 1, Dimension::ANGLE);
+        let ((axis, _, span), angle) = (axis?, angle?);
         if let Some(axis) = direction(DVec3::from_array(axis)) {
             Some(DAffine3::from_axis_angle(axis, angle))
         } else {
@@ -103,9 +104,9 @@ impl Evaluator<'_> {
     }
 
     fn look_at(&mut self, call: &Call<'_>) -> Option<Value> {
-        let from = self.vector_of(call, 0, Dimension::LENGTH)?;
-        let to = self.vector_of(call, 1, Dimension::LENGTH)?;
-        let (up, _, _) = self.vector_arg(call, 2)?;
+        let [from, to] = [0, 1].map(|i| self.vector_of(call, i, Dimension::LENGTH));
+        let up = self.vector_arg(call, 2);
+        let (from, to, (up, _, _)) = (from?, to?, up?);
         let apart = to - from;
         let Some(view) = direction(apart) else {
             let same = from == to;

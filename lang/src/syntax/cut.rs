@@ -38,7 +38,7 @@ pub(super) struct Region {
     pub(super) pieces: Vec<Cut>,
     /// What does not close and is worth telling.
     pub(super) faults: Vec<Fault>,
-    /// The first bracket that never closes.
+    /// The first bracket that never closes, or is taken for it.
     pub(super) unclosed: Option<usize>,
     /// A fault stands before the first statement.
     pub(super) junk_told: bool,
@@ -66,13 +66,12 @@ pub(super) fn region(
     let start = unclosed.map(|open| found.starts.partition_point(|start| *start <= open));
     let start = start.map(|i| i.checked_sub(1).map_or(from, |i| found.starts[i]));
     let closing = start.and_then(|start| closing(text, start, limit));
-    let (closes, resume) = match closing {
-        Some(Closing { braces, end }) => (braces, Some(end).filter(|end| *end < text.len())),
-        None => {
-            let likely = |open: usize| Some((open, likely_end(text, open)?));
-            let likely = found.faults.iter().filter_map(open).find_map(likely);
-            (likely.into_iter().collect(), likely.map(|(_, end)| end))
-        }
+    let (closes, resume) = if let Some(Closing { braces, end }) = closing {
+        (braces, Some(end).filter(|end| *end < text.len()))
+    } else {
+        let likely = |open: usize| Some((open, likely_end(text, open)?));
+        let likely = found.faults.iter().filter_map(open).find_map(likely);
+        (likely.into_iter().collect(), likely.map(|(_, end)| end))
     };
     let end = resume.or(found.met).unwrap_or(text.len());
     let too_deep = found.faults.iter().any(|f| matches!(f, Fault::TooDeep { .. }));
@@ -97,7 +96,9 @@ pub(super) fn region(
     let alone = unclosed.filter(|_| closes.is_empty());
     let together = closes.chunk_by(|(_, one), (_, other)| one == other);
     let opens = together.map(|braces| braces[0].0).chain(alone);
-    faults.extend(opens.map(|open| Fault::Unclosed { open }));
+    faults.extend(opens.clone().map(|open| Fault::Unclosed { open }));
+    // One that is closed further down may be taken for the one that is not.
+    let unclosed = unclosed.into_iter().chain(opens).min();
     let next = resume.filter(|_| !too_deep);
     Region { first, pieces, faults, unclosed, junk_told, closes, next, met: found.met }
 }

@@ -125,6 +125,7 @@ impl<'a> Around<'a> {
             .or_else(|| self.missing_operand())
             .or_else(|| self.missing_comma())
             .or_else(|| self.missing_field_comma())
+            .or_else(|| self.missing_comma_and_equals())
             .or_else(|| self.missing_equals())
             .or_else(|| self.untyped())
             .unwrap_or_else(|| self.unexpected())
@@ -288,6 +289,34 @@ impl<'a> Around<'a> {
         let grade = if Unit::named(word.text).is_some() { Grade::Guess } else { Grade::Sure };
         let message = format!("a comma is missing before `{}`", short(word.text));
         Some(self.error("E0014", word, message).mend(gap, ",", grade))
+    }
+
+    /// `radius = 1 m material white`: another field without what stands before it and in it.
+    fn missing_comma_and_equals(&self) -> Option<Diagnostic> {
+        let is_field = |back: &usize| {
+            let [value, word, given] = [back + 1, *back, back - 1].map(|back| self.before(back));
+            let (Some(value), Some(word), Some(given)) = (value, word, given) else { return false };
+            let has_unit = value.kind == TokenKind::Number || matches!(value.text, ")" | "]");
+            let is_unit = has_unit && Unit::named(word.text).is_some();
+            let is_name = word.kind == TokenKind::Word && !RESERVED.contains(&word.text);
+            is_name
+                && !is_unit
+                && value.ends_operand()
+                && given.begins_operand()
+                && given.text != "{"
+                && !word.first_on_line
+                && !given.first_on_line
+        };
+        let back = (1..=2).rev().find(is_field).filter(|_| self.inner() == Place::Fields)?;
+        let (value, word, given) =
+            (self.before(back + 1)?, self.before(back)?, self.before(back - 1)?);
+        let message =
+            format!("a comma is missing before `{0}`, and `=` behind it", short(word.text));
+        let gap = Span::new(self.source, value.end(), given.start);
+        // Two words after one another may be meant otherwise.
+        let is_sure = is_category(word.text) || given.kind != TokenKind::Word;
+        let grade = if is_sure { Grade::Sure } else { Grade::Guess };
+        Some(self.error("E0014", word, message).mend(gap, format!(", {} = ", word.text), grade))
     }
 
     /// `radius 5 cm`

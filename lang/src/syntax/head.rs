@@ -90,16 +90,18 @@ pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
         "`{}` begins a statement, which wants a line of its own, or `;` before it",
         current.text
     );
-    // An object may be meant as a parameter of the one before.
-    let grade = if is_object { Grade::Guess } else { Grade::Sure };
-    let line_break = line_break(&around.text[..blank]);
+    // An object may be meant as a parameter of the one before, but for those that are none of any.
+    let is_alone = matches!(current.text, "camera" | "film" | "integrator" | "light" | "sampler");
+    let is_alike = around.tokens.first().is_some_and(|first| first.text == current.text);
+    let grade = if !is_object || is_alone || is_alike { Grade::Sure } else { Grade::Guess };
+    let line_break = line_break(around.text);
     Some(around.error("E0023", current, message).mend(gap, line_break, grade))
 }
 
-/// What ends a line after this text, as it ended the one before.
-fn line_break(before: &str) -> &'static str {
-    let last = before.rfind('\n').map(|end| &before[..end]);
-    if last.is_some_and(|line| line.ends_with('\r')) { "\r\n" } else { "\n" }
+/// What ends a line of this text.
+fn line_break(text: &str) -> &'static str {
+    let first = text.find('\n').map(|end| &text[..end]);
+    if first.is_some_and(|line| line.ends_with('\r')) { "\r\n" } else { "\n" }
 }
 
 /// `plcae ball`, `includ "a.scene"`, `const x = 3`: by what follows the word.

@@ -15,7 +15,7 @@ use super::fault;
 use super::gaps::Gaps;
 use super::habits::COMMENTS;
 use super::lex::{Token, TokenKind, tokens};
-use super::recover::stopped;
+use super::recover::{stopped, whole_before};
 use super::tree::{Expr, ExprNode, Stmt};
 use super::unopened::unopened;
 use super::weigh::too_large;
@@ -434,7 +434,7 @@ impl Reader<'_> {
             }
             Err(error) => {
                 let at = chunk.start + stopped(&error);
-                if let Some(line) = self.whole_before(at, &chunk) {
+                if let Some(line) = whole_before(self.text, at, &chunk) {
                     self.chunk(chunk.start..line, place);
                     self.chunk(line..chunk.end, place);
                     return;

@@ -35,6 +35,15 @@ fn fault(text: &str) -> Option<usize> {
     SceneParser::parse(Rule::one_stmt, text).err().map(|error| stopped(&error))
 }
 
+/// Where the line begins at whose first character a statement cannot be read further, if what stands
+/// before that line is one as it is.
+pub(super) fn whole_before(text: &str, at: usize, chunk: &Range<usize>) -> Option<usize> {
+    let before = &text[chunk.start..at];
+    let line = chunk.start + before.rfind('\n')? + 1;
+    let is_first = text[line..at].trim().is_empty();
+    (is_first && fault(&text[chunk.start..line]).is_none()).then_some(line)
+}
+
 impl Reader<'_> {
     /// A statement of the file without the inner statements that cannot be read: more mistakes may be
     /// found in the rest.
@@ -79,12 +88,14 @@ impl Reader<'_> {
             let end = part.end + next.text.len() - mended.text.len();
             let fault = fault(&next.text[part.start..end]).map(|to| part.start + to);
             let written = |of: &Mended, at: usize| of.edits.written(at..at).start;
-            if fault.is_some_and(|to| written(&next, to) <= written(&mended, at)) {
+            // Two statements where one was written.
+            let is_apart = fault.is_some_and(|to| whole_before(&next.text, to, &part).is_some());
+            if !is_apart && fault.is_some_and(|to| written(&next, to) <= written(&mended, at)) {
                 break;
             }
             told.push(mended.edits.told(found));
             (mended, part.end) = (next, end);
-            let Some(to) = fault else { break };
+            let Some(to) = fault.filter(|_| !is_apart) else { break };
             at = to;
         }
         if told.is_empty() {
@@ -166,16 +177,6 @@ impl Reader<'_> {
                 self.chunk(start..stop, place);
             }
         }
-    }
-
-    /// Where the line begins at whose first character a statement cannot be read further, if what stands
-    /// before that line is one as it is.
-    pub(super) fn whole_before(&self, at: usize, chunk: &Range<usize>) -> Option<usize> {
-        let before = &self.text[chunk.start..at];
-        let line = chunk.start + before.rfind('\n')? + 1;
-        let is_first = self.text[line..at].trim().is_empty();
-        let whole = || SceneParser::parse(Rule::one_stmt, &self.text[chunk.start..line]);
-        (is_first && whole().is_ok()).then_some(line)
     }
 
     /// The bracket that closes the one at `open`, or `end`.

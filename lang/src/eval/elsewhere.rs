@@ -3,7 +3,7 @@
 use luxel_core::diag::{Grade, Near, near};
 
 /// Their word and ours. Ours counts only where it is known: whether it is, plugins decide.
-const WORDS: [(&str, &str); 67] = [
+const WORDS: [(&str, &str); 72] = [
     ("albedo", "reflectance"),
     ("color", "reflectance"),
     ("kd", "reflectance"),
@@ -12,6 +12,11 @@ const WORDS: [(&str, &str); 67] = [
     ("irradiance", "illuminance"),
     ("ior", "eta"),
     ("position", "center"),
+    ("pos", "center"),
+    ("pos", "position"),
+    ("res", "resolution"),
+    ("rad", "radius"),
+    ("mat", "material"),
     ("distant", "directional"),
     ("infinite", "environment"),
     ("envmap", "environment"),
@@ -75,13 +80,14 @@ const WORDS: [(&str, &str); 67] = [
 
 /// What is one thing here and several elsewhere, or has another form: ours with how it is written, and
 /// their words.
-const FORMS: [(&str, &str, &[&str]); 4] = [
+const FORMS: [(&str, &str, &[&str]); 5] = [
     ("resolution", "resolution = (640, 480)", &["width", "height", "xresolution", "yresolution"]),
     (
         "look",
         "look = look_at(from = (0, 1, 5) m, to = (0, 1, 0) m, up = (0, 1, 0))",
         &[
             "position",
+            "pos",
             "location",
             "origin",
             "from",
@@ -96,6 +102,11 @@ const FORMS: [(&str, &str, &[&str]); 4] = [
         ],
     ),
     ("transform", "transform = move((1, 0, 0) m)", &["translate", "translation", "move"]),
+    (
+        "material",
+        "material = material diffuse { reflectance = rgb.srgb(0.8, 0.4, 0.2) }",
+        &["albedo", "color", "colour", "diffuse", "reflectance", "rgb"],
+    ),
     ("transform", "transform = rotate((0, 1, 0), 20 deg)", &["rotate", "rotation"]),
 ];
 

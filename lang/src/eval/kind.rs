@@ -52,10 +52,24 @@ impl Evaluator<'_> {
         let names = || self.registry.of_kind(kind).map(|e| e.class.name).collect::<Vec<_>>();
         let Some(class) = &object.kind else {
             let message = format!("which {kind}? its name is missing after `{kind}`");
-            let found = Diagnostic::error("E0401", category.span, message);
+            let mut found = Diagnostic::error("E0401", category.span, message);
+            // `material "diffuse" { … }`
+            let quoted = object.label.as_ref();
+            let class = quoted.filter(|it| self.registry.class(kind, &it.text).is_some());
+            if let Some(class) = class {
+                let message = format!("the name of a {kind} stands without quotes");
+                found = Diagnostic::error("E0401", class.span, message);
+                found = found.fix(class.span, &*class.text);
+            }
+            let meant = class.map(|class| Head {
+                kind: Some(kind),
+                class: Name { text: class.text.clone(), span: class.span },
+                label: None,
+                span,
+            });
             let names = names().join(", ");
             self.tell(found.help(format!("known are {names}")));
-            return Err(None);
+            return Err(meant);
         };
         let (class, label) = (class.clone(), object.label.clone());
         let head = Head { kind: Some(kind), class, label, span };

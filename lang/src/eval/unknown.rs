@@ -7,7 +7,7 @@ use luxel_sdk::params::Unit;
 
 use super::builtins;
 use super::resolve::{Resolver, Scope};
-use crate::syntax::{Expr, ExprNode, Name, Op};
+use crate::syntax::{Expr, ExprNode, Name, Op, path_around};
 
 /// Known names among which near ones are looked for: more than `near` looks at, names that are known
 /// twice counted.
@@ -82,6 +82,13 @@ impl Resolver<'_> {
                 format!("there is no unit `{}`", self.text.get(all.range()).unwrap_or(""));
             let found = Diagnostic::error("E0204", all, message);
             return found.help("powers are written with `^`").fix(all, mended);
+        }
+        if let Some(path) = path_around(self.text, name.span.range().start) {
+            let (text, source) = (&self.text[path.clone()], name.span.source);
+            let place = Span::new(source, path.start, path.end);
+            let found = Diagnostic::error("E0101", place, format!("there is no `{text}`"));
+            let found = found.help("the path of a file stands in quotes");
+            return found.guess(place, format!("\"{text}\""));
         }
         let dotted = builtins::names()
             .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));

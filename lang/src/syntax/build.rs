@@ -413,6 +413,11 @@ impl Builder<'_> {
             self.sink.push(of_suffix(span));
             return None;
         }
+        if text == "then" {
+            let message = "no `then` stands between a condition and its block";
+            self.sink.push(Diagnostic::error("E0204", span, message).fix(span, ""));
+            return None;
+        }
         if matches!(text, "px" | "pixel" | "pixels") {
             let before = &pair.get_input()[..pair.as_span().start()];
             let gap = before.len() - before.trim_end_matches([' ', '\t']).len();

@@ -133,6 +133,9 @@ impl<'a> Around<'a> {
 
     /// `1.2.3`, `1e`, `5.`
     fn number(&self) -> Option<Diagnostic> {
+        if let Some(found) = self.other_base() {
+            return Some(found);
+        }
         let near = [self.current(), self.before(1)];
         let bad = near
             .into_iter()
@@ -142,6 +145,27 @@ impl<'a> Around<'a> {
         Some(match bad.text.strip_suffix('.') {
             Some(whole) => found.fix(self.span(bad), whole),
             None => found.help("a number is written as 12, 0.5, .5, 1_000 or 2.5e-3"),
+        })
+    }
+
+    /// `0xff`, `0b101`, `0o17`
+    fn other_base(&self) -> Option<Diagnostic> {
+        let other = |first: &Token<'_>, next: &Token<'_>| {
+            let radix = match next.text.get(..1).filter(|_| first.text == "0")? {
+                "x" | "X" => 16,
+                "b" | "B" => 2,
+                "o" | "O" => 8,
+                _ => return None,
+            };
+            let value = u64::from_str_radix(&next.text[1..], radix).ok();
+            value.filter(|_| first.end() == next.start)
+        };
+        let mut pairs = self.tokens[self.at.saturating_sub(3)..].windows(2).take(4);
+        pairs.find_map(|pair| {
+            let value = other(&pair[0], &pair[1])?;
+            let span = self.span(&pair[0]).to(self.span(&pair[1]));
+            let message = "numbers are written with the digits 0 to 9";
+            Some(Diagnostic::error("E0016", span, message).fix(span, value.to_string()))
         })
     }
 
@@ -301,6 +325,7 @@ impl<'a> Around<'a> {
             let is_name = word.kind == TokenKind::Word && !RESERVED.contains(&word.text);
             is_name
                 && !is_unit
+                && value.end() < word.start
                 && value.ends_operand()
                 && given.begins_operand()
                 && given.text != "{"

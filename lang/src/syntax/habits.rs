@@ -7,6 +7,7 @@ use super::defined::stem;
 use super::foreign::foreign;
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
+use super::paths::unquoted;
 use super::statement::statement;
 use super::type_names;
 
@@ -41,6 +42,7 @@ pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
     sign(around)
         .or_else(|| quotes(around))
         .or_else(|| lettered(around))
+        .or_else(|| unquoted(around))
         .or_else(|| hash(around))
         .or_else(|| foreign(around))
         .or_else(|| listed(around))
@@ -197,6 +199,9 @@ fn operator(around: &Around<'_>) -> Option<Diagnostic> {
             return Some(told(span, "a power is written with `^`").fix(span, "^"));
         }
         if let Some(span) = joined(around, first, &["-", ">"]) {
+            if around.inner() == Place::Fields && around.is_word(first.wrapping_sub(1)) {
+                return Some(told(span, "a value is given with `=`, not with `->`").fix(span, "="));
+            }
             let found = told(span, "what a function gives is not declared");
             let ty = around.tokens.get(first + 2).filter(|ty| ty.kind == TokenKind::Word);
             let before =

@@ -24,6 +24,7 @@ mod make;
 mod number;
 mod operators;
 mod parse;
+mod paths;
 mod recover;
 mod statement;
 #[cfg(test)]
@@ -45,6 +46,7 @@ pub(crate) use parse::{
     Tree, Turns, cut, cut_whole, parse, parse_by_pest, parse_expr, parse_in_turns, read_at,
     read_head, read_piece,
 };
+pub(crate) use paths::path_around;
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Form, ListTy, Name,
     Object, Op, ParamDef, Stmt, StmtNode, Ty, children,

@@ -1,6 +1,6 @@
 //! Text that no terminal takes for a command, counts, and diagnostics as JSON.
 
-use luxel_core::diag::{Diagnostic, Severity, Sources, Span};
+use luxel_core::diag::{Diagnostic, LineColumn, Severity, Sources, Span};
 use serde_json::{Value, json};
 
 /// Replaces control characters, which a file may hold and a terminal would obey.
@@ -28,8 +28,8 @@ pub(super) fn closing(found: &[Diagnostic]) -> String {
     format!("{}{}", count(found), more.unwrap_or_default())
 }
 
-/// One object: `code, severity, message, file, line, column, end_line, end_column, labels, help,
-/// fixes`. Lines and columns count from 1, columns in characters; `null` where no place is at fault, for
+/// One object: `code, severity, message, file, line, column, end_line, end_column, start_byte, end_byte,
+/// label, labels, help, fixes`. Lines and columns count from 1, columns in characters; `null` where no place is at fault, for
 /// which the file is the scene.
 pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     let Diagnostic { code, severity, message, labels, help, fixes } = diagnostic;
@@ -57,22 +57,31 @@ pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
 }
 
 fn place(span: Span, sources: &Sources) -> Value {
-    let start = sources.line_column(span.source, span.start as usize);
-    let end = sources.line_column(span.source, span.end as usize);
-    json!({
-        "file": sources.name(span.source),
-        "line": start.line,
-        "column": start.column,
-        "end_line": end.line,
-        "end_column": end.column,
-        "start_byte": span.start,
-        "end_byte": span.end,
-    })
+    let lines = [span.start, span.end].map(|at| {
+        let LineColumn { line, column } = sources.line_column(span.source, at as usize);
+        [line, column]
+    });
+    place_of(Some(sources.name(span.source)), Some((lines, [span.start, span.end])))
 }
 
 /// The scene that was read, and no place in it.
 fn place_of_nothing(sources: &Sources) -> Value {
-    json!({ "file": sources.first(), "line": null, "column": null })
+    place_of(sources.first(), None)
+}
+
+/// A file, and where in it something begins and ends: lines with columns, and bytes.
+fn place_of(file: Option<&str>, at: Option<([[usize; 2]; 2], [u32; 2])>) -> Value {
+    let (lines, bytes) = at.unzip();
+    let line = |end: usize, of: usize| lines.map(|lines| lines[end][of]);
+    json!({
+        "file": file,
+        "line": line(0, 0),
+        "column": line(0, 1),
+        "end_line": line(1, 0),
+        "end_column": line(1, 1),
+        "start_byte": bytes.map(|bytes| bytes[0]),
+        "end_byte": bytes.map(|bytes| bytes[1]),
+    })
 }
 
 /// The same object of what has no code and is of no scene.
@@ -116,6 +125,8 @@ mod tests {
         let nowhere = json(&Diagnostic::unplaced("E0409", "no camera"), &sources);
         assert_eq!((&nowhere["line"], &nowhere["code"]), (&Value::Null, &json!("E0409")));
         assert_eq!(nowhere["file"], "a.scene");
+        let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+        assert_eq!(keys(&nowhere), keys(&value));
     }
 
     #[test]

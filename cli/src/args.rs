@@ -52,6 +52,12 @@ pub(crate) struct BudgetArgs {
 }
 
 impl BudgetArgs {
+    /// The same with another budget, unless it is given.
+    pub(crate) fn or(mut self, name: &str, amount: f64) -> Self {
+        self.amounts.insert(0, (name.to_owned(), amount));
+        self
+    }
+
     /// All budgets, those that are given changed.
     pub(crate) fn budgets(&self) -> Budgets {
         let changed = |budgets: Budgets, (name, amount): &(String, f64)| {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luxel_core::diag::{Diagnostic, Fix, Mended, SourceId, Sources, mend};
+use luxel_core::diag::{Diagnostic, Fix, Mended, SourceId, Sources, applied, mend};
 use luxel_core::files::Files as _;
 use luxel_lang::Budgets;
 use serde_json::json;
@@ -16,9 +16,17 @@ use crate::load::{self, Course, Text};
 use crate::output::{replace, unwritable};
 use crate::report::{self, Form};
 
-/// How often a scene is read again: what one mend uncovers the next may mend, and of many mistakes a hundred
-/// are told each time.
+/// How often a scene is read again: what one mend uncovers the next may mend.
 const ROUNDS: usize = 256;
+
+/// Mistakes that are told each time.
+const MISTAKES: usize = 1 << 12;
+
+/// Mends that are tried one by one each time, where all together make nothing better.
+const TRIED: usize = 100;
+
+/// Mends that are told each time, the others being counted.
+const TOLD: usize = 200;
 
 /// Mends a scene and the files that it includes, and tells what was changed.
 ///
@@ -31,9 +39,11 @@ pub(super) fn mended(
     form: Form,
     guard: &Guard,
 ) -> Result<(), Failure> {
+    let budgets = args.budgets.clone().or("diagnostics", MISTAKES as f64);
+    let args = LoadArgs { budgets, ..args.clone() };
     for _ in 0..ROUNDS {
         guard.next_file()?;
-        let text = load::read(scene, args, None, plugins, &Course::default())?;
+        let text = load::read(scene, &args, None, plugins, &Course::default())?;
         let Text { diagnostics, sources, files, .. } = &text;
         let may =
             |id| is_scene(diagnostics, id) && is_file(files, sources.name(id), sources.text(id));
@@ -83,8 +93,9 @@ fn bettered(all: Mended, found: &[Diagnostic], sources: &Sources) -> Option<Mend
         own(fix).is_some_and(|own| goes_on(own, fix, &before, &faults(&fix.applied(text))))
     };
     let Mended { source, mut changes, .. } = all;
+    changes.truncate(TRIED);
     changes.retain(|(code, fix)| !is_written(code) || goes_on(fix));
-    let text = changes.iter().rev().fold(text.to_owned(), |text, (_, fix)| fix.applied(&text));
+    let text = applied(text, changes.iter().map(|(_, fix)| fix));
     (!changes.is_empty()).then_some(Mended { source, text, changes })
 }
 
@@ -101,8 +112,9 @@ fn fault(found: &Diagnostic) -> Fault {
 }
 
 fn faults(text: &str) -> Vec<Fault> {
-    let (_, found) = luxel_lang::parse_only(text, &Budgets::default());
-    found.iter().filter(|found| found.is_error()).map(fault).collect()
+    let budgets = Budgets { diagnostics: MISTAKES, ..Budgets::default() };
+    let (_, found) = luxel_lang::parse_only(text, &budgets);
+    found.iter().filter(|found| found.is_error() && found.span().is_some()).map(fault).collect()
 }
 
 /// Whether a text has fewer mistakes, or the same ones further on: of several missing commas the first is
@@ -133,8 +145,9 @@ fn goes_on(own: &Diagnostic, fix: &Fix, before: &[Fault], after: &[Fault]) -> bo
 }
 
 fn tell(mended: &Mended, sources: &Sources, form: Form) -> Result<(), Failure> {
-    for (code, fix) in &mended.changes {
-        let file = sources.name(mended.source);
+    let file = sources.name(mended.source);
+    let most = if form == Form::Text { TOLD } else { usize::MAX };
+    for (code, fix) in mended.changes.iter().take(most) {
         let at = sources.line_column(mended.source, fix.span.range().start);
         let old = &sources.text(mended.source)[fix.span.range()];
         match form {
@@ -154,6 +167,9 @@ fn tell(mended: &Mended, sources: &Sources, form: Form) -> Result<(), Failure> {
                 report::out(&format!("{told}\n"))?;
             }
         }
+    }
+    if let Some(n) = mended.changes.len().checked_sub(most).filter(|n| *n > 0) {
+        report::note(&format!("{file}: {n} mends more"));
     }
     Ok(())
 }

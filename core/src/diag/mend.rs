@@ -25,26 +25,40 @@ pub fn mend(
     may: impl Fn(SourceId) -> bool,
 ) -> Vec<Mended> {
     let mut texts: BTreeMap<SourceId, Vec<(&'static str, Fix)>> = BTreeMap::new();
+    let mut asked = BTreeMap::new();
     for diagnostic in found {
         let Some(fix) = diagnostic.sure() else { continue };
-        if !may(fix.span.source) {
+        let source = fix.span.source;
+        if !*asked.entry(source).or_insert_with(|| may(source)) {
             continue;
         }
         let chosen = texts.entry(fix.span.source).or_default();
-        let apart =
-            |other: &Fix| fix.span.end < other.span.start || other.span.end < fix.span.start;
-        if chosen.iter().all(|(_, other)| apart(other)) {
-            chosen.push((diagnostic.code, fix.clone()));
+        // Those that are chosen are apart: only the nearest on each side can touch it.
+        let i = chosen.partition_point(|(_, other)| other.span < fix.span);
+        let before = i.checked_sub(1).is_none_or(|i| chosen[i].1.span.end < fix.span.start);
+        let after = chosen.get(i).is_none_or(|(_, other)| fix.span.end < other.span.start);
+        if before && after {
+            chosen.insert(i, (diagnostic.code, fix.clone()));
         }
     }
-    let applied = |(source, mut changes): (SourceId, Vec<(&'static str, Fix)>)| {
-        changes.sort_by_key(|(_, fix)| fix.span);
-        // From the end, so that the places before stay what they are.
-        let before = sources.text(source).to_owned();
-        let text = changes.iter().rev().fold(before, |text, (_, fix)| fix.applied(&text));
+    let mended = |(source, changes): (SourceId, Vec<(&'static str, Fix)>)| {
+        let text = applied(sources.text(source), changes.iter().map(|(_, fix)| fix));
         Mended { source, text, changes }
     };
-    texts.into_iter().map(applied).collect()
+    texts.into_iter().map(mended).collect()
+}
+
+/// A text with mends that are apart, in order.
+pub fn applied<'a>(text: &str, fixes: impl Iterator<Item = &'a Fix>) -> String {
+    let (mut out, mut done) = (String::with_capacity(text.len()), 0);
+    for fix in fixes {
+        let range = fix.span.range();
+        out.push_str(&text[done..range.start]);
+        out.push_str(&fix.replacement);
+        done = range.end;
+    }
+    out.push_str(&text[done..]);
+    out
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-pub use mend::{Mended, mend};
+pub use mend::{Mended, applied, mend};
 pub use near::{Near, near, nearest};
 pub use sources::{LineColumn, SourceId, Sources};
 

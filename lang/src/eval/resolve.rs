@@ -299,7 +299,9 @@ impl<'a> Resolver<'a> {
             };
             let end = one.value.span.end;
             let between = self.text.get(end as usize..place.start as usize);
-            if between.is_none_or(|between| between.contains([',', ';', '\n'])) {
+            // What ends with a line ends in a brace that was put there.
+            let ends_line = self.text.get(..end as usize).is_some_and(|it| it.ends_with('\n'));
+            if ends_line || between.is_none_or(|between| between.contains([',', ';', '\n'])) {
                 continue;
             }
             let gap = Span { start: end, end, ..place };

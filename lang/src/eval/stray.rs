@@ -56,7 +56,9 @@ impl Evaluator<'_> {
             };
             body.meant.push(Some(param.name));
             let start = Span { end: category.span.start, ..category.span };
-            let grade = if open.len() == 1 { Grade::Sure } else { Grade::Guess };
+            // `material { … }` lacks more than that.
+            let is_whole = head.end > category.span.end;
+            let grade = if open.len() == 1 && is_whole { Grade::Sure } else { Grade::Guess };
             let help = format!("give it to a parameter: `{} = {word} …`", param.name);
             self.tell(found.help(help).mend(start, format!("{} = ", param.name), grade));
         }

@@ -74,6 +74,20 @@ impl<'a> Around<'a> {
         })
     }
 
+    /// The bracket that token `close` closes.
+    pub(super) fn opening(&self, close: usize) -> Option<usize> {
+        let mut depth = 0_usize;
+        let open = (0..=close).rev().find(|i| {
+            match self.word(*i) {
+                ")" | "]" | "}" => depth += 1,
+                "(" | "[" | "{" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            depth == 0
+        });
+        open.filter(|open| *open < close)
+    }
+
     /// Whether a statement or a field may begin with token `i`.
     pub(super) fn begins(&self, i: usize) -> bool {
         let Some(before) = i.checked_sub(1) else { return true };

@@ -2,6 +2,7 @@
 
 use super::edits::{Edits, Mended};
 use super::lex::{TokenKind, tokens};
+use super::recover::fault;
 use crate::prescan::{Fault, scan, scan_until};
 
 /// How a statement most likely ends in which braces never close.
@@ -24,6 +25,11 @@ struct Open<'a> {
 }
 
 impl Open<'_> {
+    /// Whether a line that is indented so far and closes a block closes another one.
+    fn is_right_of(&self, indent: usize) -> bool {
+        self.bracket == "{" && self.indent > indent
+    }
+
     /// Whether a line that is indented so far stands behind the block.
     fn ends_before(&mut self, indent: usize) -> bool {
         let holds = *self.holds_indented.get_or_insert(indent > self.indent);
@@ -43,16 +49,26 @@ pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing>
     Some(Closing { braces, end })
 }
 
-/// A piece with the braces that never close in it closed, if nothing else is wrong with its brackets; it
-/// begins at byte `base` of its text.
+/// A piece with the braces that never close in it closed, or without the brackets that close nothing, if
+/// nothing else is wrong with its brackets; it begins at byte `base` of its text.
 pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
-    let is_unclosed = |fault: &Fault| matches!(fault, Fault::Unclosed { .. });
-    if !scan(piece, 0..piece.len(), 0, limit).faults.iter().all(is_unclosed) {
+    let faults = scan(piece, 0..piece.len(), 0, limit).faults;
+    let stray = |fault: &Fault| match fault {
+        Fault::Stray { at } => Some(*at),
+        _ => None,
+    };
+    let strays: Vec<usize> = faults.iter().filter_map(stray).collect();
+    let mended = if !faults.is_empty() && strays.len() == faults.len() {
+        without(piece, base, &strays)
+    } else if faults.iter().all(|fault| matches!(fault, Fault::Unclosed { .. })) {
+        closed_by(piece, [0, base], &braces(piece, 0)?)
+    } else {
         return None;
-    }
-    let mended = closed_by(piece, [0, base], &braces(piece, 0)?);
+    };
     let found = scan(&mended.text, 0..mended.text.len(), 0, limit);
-    (found.faults.is_empty() && found.starts.len() == 1).then_some(mended)
+    let is_one = found.faults.is_empty() && found.starts.len() == 1;
+    // Where a bracket closes nothing, that which opens may be what is missing.
+    (is_one && (strays.is_empty() || fault(&mended.text).is_none())).then_some(mended)
 }
 
 /// Which braces close before which byte; `None` if none does so, or a block is open at the end whose
@@ -67,13 +83,26 @@ fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
         let blank = |begun: &usize| text[*begun..token.start].trim().is_empty();
         if let Some(begun) = begun.filter(blank) {
             indent = token.start - begun;
-            let ends = |open: &mut Open<'_>| open.ends_before(indent);
-            while let Some(block) = open.pop_if(|open| !is(")]}") && ends(open)) {
+            let is_field = is_field(&text[token.start..]);
+            let mut left = open.len();
+            let mut ends = |open: &mut Open<'_>| {
+                left -= 1;
+                // What closes a block that begins further left, and what stands in no block of the file, tell.
+                if is(")]}") {
+                    token.text == "}" && open.is_right_of(indent)
+                } else {
+                    !(is_field && left == 0) && open.ends_before(indent)
+                }
+            };
+            while let Some(block) = open.pop_if(&mut ends) {
                 braces.push((block.at, begun));
             }
             if open.is_empty() && !braces.is_empty() {
                 return Some(braces);
             }
+        } else if let Some(open) = open.last_mut() {
+            // What stands on the line of its brace.
+            open.holds_indented.get_or_insert(true);
         }
         if is("([{") {
             open.push(Open { at: token.start, bracket: token.text, indent, holds_indented: None });
@@ -92,6 +121,13 @@ fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
         braces.push((block.at, text.len()));
     }
     (!braces.is_empty()).then_some(braces)
+}
+
+/// Whether a value is given to a name there, which no statement of a file does.
+pub(super) fn is_field(line: &str) -> bool {
+    let rest = line.trim_start_matches(|c: char| c.is_ascii_alphanumeric() || c == '_');
+    let is_given = |rest: &str| rest.starts_with('=') && !rest.starts_with("==");
+    rest.len() < line.len() && is_given(rest.trim_start_matches([' ', '\t']))
 }
 
 /// How many blanks a line begins with.
@@ -120,6 +156,19 @@ fn closed_by(part: &str, [start, base]: [usize; 2], braces: &[(usize, usize)]) -
     Mended { text, edits }
 }
 
+/// A piece without some of its bytes; it begins at byte `base` of its text.
+fn without(piece: &str, base: usize, places: &[usize]) -> Mended {
+    let (mut text, mut edits) = (String::with_capacity(piece.len()), Edits::new(base));
+    let mut done = 0;
+    for at in places {
+        text.push_str(&piece[done..*at]);
+        edits.remove(*at..at + 1, text.len());
+        done = at + 1;
+    }
+    text.push_str(&piece[done..]);
+    Mended { text, edits }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,18 +184,18 @@ mod tests {
         let (group, ball) = ("group {\n", "  shape ball {\n    r = 1\n");
         let cases = [
             (
-                format!("{group}{ball}  shape\n}}\na = 1\n"),
-                format!("{group}{ball}}}\n  shape\n}}\na = 1\n"),
-                "a = 1\n",
+                format!("{group}{ball}  shape\n}}\nlet a\n"),
+                format!("{group}{ball}}}\n  shape\n}}\nlet a\n"),
+                "let a\n",
             ),
-            (format!("{group}{ball}  }}\na = 1"), format!("{group}{ball}  }}\n}}\na = 1"), "a = 1"),
-            (format!("{group}{ball}a = 1"), format!("{group}{ball}}}}}\na = 1"), "a = 1"),
+            (format!("{group}{ball}  }}\nlet a"), format!("{group}{ball}  }}\n}}\nlet a"), "let a"),
+            (format!("{group}{ball}let a"), format!("{group}{ball}}}}}\nlet a"), "let a"),
             (format!("{group}{ball}  // b"), format!("{group}{ball}  // b\n}}}}\n"), ""),
             // Lines in brackets may be indented as they like.
             (
-                format!("{group}  a = [\n1,\n2]\nb = 1"),
-                format!("{group}  a = [\n1,\n2]\n}}\nb = 1"),
-                "b = 1",
+                format!("{group}  c = [\n1,\n2]\nlet b"),
+                format!("{group}  c = [\n1,\n2]\n}}\nlet b"),
+                "let b",
             ),
         ];
         for (text, wanted, rest) in &cases {
@@ -170,6 +219,7 @@ mod tests {
     fn a_piece_in_which_more_is_wrong_with_brackets_is_not_closed() {
         let closes = |piece: &str| closed(piece, 7, 100).is_some();
         assert!(closes("group {\n  a = 1\n"));
+        assert!(closes("let a = 1\n}\n") && !closes("group a = 1\n}\n"));
         for piece in [
             "group {\n  a = 1 }\n",
             "group {\n  a = (1]\n",

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use luxel_core::diag::Diagnostic;
 
-use super::closing::{Closing, closing, indent};
+use super::closing::{Closing, closing, indent, is_field};
 use crate::prescan::{Fault, scan_until};
 
 /// How often reading goes on after a brace that never closes.
@@ -16,6 +16,8 @@ pub(crate) struct Cut {
     pub(crate) range: Range<usize>,
     /// Something in it does not close.
     pub(crate) faulty: bool,
+    /// It stands in a block that cannot be read without its head.
+    pub(crate) headless: bool,
 }
 
 /// The statements of a text, or of a part of it.
@@ -87,7 +89,7 @@ pub(super) fn region(
     };
     let pieces = ranges.map(|(start, stop)| {
         let range = start..stop.min(end);
-        Cut { faulty: holds(&range), range }
+        Cut { faulty: holds(&range), range, headless: false }
     });
     let pieces: Vec<Cut> = pieces.collect();
     let told =
@@ -112,7 +114,7 @@ fn likely_end(text: &str, open: usize) -> Option<usize> {
     for line in text[at..].split_inclusive('\n') {
         let first = line.trim_start().chars().next();
         let begins = first.is_some_and(|c| c.is_ascii_alphabetic() || matches!(c, '@' | '/'));
-        if begins && indent(line) <= limit {
+        if begins && indent(line) <= limit && !is_field(line.trim_start()) {
             return Some(at);
         }
         at += line.len();

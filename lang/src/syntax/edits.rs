@@ -34,6 +34,12 @@ impl Edits {
         self.edits.push(Edit { old: at..at, new });
     }
 
+    /// Bytes of the text that are gone, where byte `now` stands now, behind all others.
+    pub(super) fn remove(&mut self, old: Range<usize>, now: usize) {
+        let old = self.base + old.start..self.base + old.end;
+        self.edits.push(Edit { old, new: now..now });
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.edits.is_empty()
     }

@@ -123,6 +123,7 @@ impl<'a> Around<'a> {
             .or_else(|| self.reserved())
             .or_else(|| self.equals())
             .or_else(|| self.missing_operand())
+            .or_else(|| self.unit_behind_call())
             .or_else(|| self.missing_comma())
             .or_else(|| self.missing_field_comma())
             .or_else(|| self.missing_comma_and_equals())
@@ -295,8 +296,41 @@ impl<'a> Around<'a> {
             return None;
         }
         let gap = Span::new(self.source, before.end(), before.end());
+        // `scale 2` may be a call.
+        let may_call = before.kind == TokenKind::Word && current.kind != TokenKind::Word;
+        let grade = if may_call { Grade::Guess } else { Grade::Sure };
         let message = format!("a comma is missing before `{}`", short(current.text));
-        Some(self.error("E0014", current, message).fix(gap, ","))
+        Some(self.error("E0014", current, message).mend(gap, ",", grade))
+    }
+
+    /// `max(1, 2) m`
+    fn unit_behind_call(&self) -> Option<Diagnostic> {
+        [self.at, self.at.wrapping_sub(1)].into_iter().find_map(|i| self.unit_at(i))
+    }
+
+    fn unit_at(&self, i: usize) -> Option<Diagnostic> {
+        let (unit, close) = (self.tokens.get(i)?, i.checked_sub(1)?);
+        let open = self.opening(close).filter(|open| self.word(*open) == "(")?;
+        let callee = open.checked_sub(1).filter(|callee| self.is_word(*callee))?;
+        let is_unit = unit.kind == TokenKind::Word && Unit::named(unit.text).is_some();
+        let here = || self.place == Place::Fields;
+        let is_brace = self.open.last().map_or_else(here, |open| self.word(*open) == "{");
+        if !is_unit || unit.first_on_line || is_brace && self.begins(callee) {
+            return None;
+        }
+        let callee = self.word(callee);
+        let message = format!(
+            "a unit stands behind a number or the brackets of a vector, not behind `{callee}(…)`"
+        );
+        let found = self.error("E0203", unit, message);
+        let end = self.tokens[close].end();
+        let is_vector = self.tokens[open..close].iter().any(|token| token.text == ",");
+        if is_vector && callee == "move" {
+            let start = self.tokens[open].start;
+            let all = Span::new(self.source, start, unit.end());
+            return Some(found.fix(all, format!("({} {})", &self.text[start..end], unit.text)));
+        }
+        Some(found.guess(Span::new(self.source, end, unit.start), " * 1 "))
     }
 
     /// `roughness = 0 metallic = 1`: the word was read as the unit of what stands before it.
@@ -317,24 +351,10 @@ impl<'a> Around<'a> {
 
     /// `radius = 1 m material white`: another field without what stands before it and in it.
     fn missing_comma_and_equals(&self) -> Option<Diagnostic> {
-        let is_field = |back: &usize| {
-            let [value, word, given] = [back + 1, *back, back - 1].map(|back| self.before(back));
-            let (Some(value), Some(word), Some(given)) = (value, word, given) else { return false };
-            let has_unit = value.kind == TokenKind::Number || matches!(value.text, ")" | "]");
-            let is_unit = has_unit && Unit::named(word.text).is_some();
-            let is_name = word.kind == TokenKind::Word && !RESERVED.contains(&word.text);
-            is_name
-                && !is_unit
-                && value.end() < word.start
-                && value.ends_operand()
-                && given.begins_operand()
-                && given.text != "{"
-                && !word.first_on_line
-                && !given.first_on_line
-        };
-        let back = (1..=2).rev().find(is_field).filter(|_| self.inner() == Place::Fields)?;
-        let (value, word, given) =
-            (self.before(back + 1)?, self.before(back)?, self.before(back - 1)?);
+        let first = self.at.saturating_sub(2).max(1);
+        let i = (first..=self.at).find(|i| self.is_bare_field(*i));
+        let i = i.filter(|_| self.inner() == Place::Fields)?;
+        let (value, word, given) = (&self.tokens[i - 1], &self.tokens[i], &self.tokens[i + 1]);
         let message =
             format!("a comma is missing before `{0}`, and `=` behind it", short(word.text));
         let gap = Span::new(self.source, value.end(), given.start);
@@ -344,10 +364,39 @@ impl<'a> Around<'a> {
         Some(self.error("E0014", word, message).mend(gap, format!(", {} = ", word.text), grade))
     }
 
+    /// Whether token `i` is a word between two values, on their line.
+    fn is_bare_field(&self, i: usize) -> bool {
+        let (value, Some(word), Some(given)) =
+            (&self.tokens[i - 1], self.tokens.get(i), self.tokens.get(i + 1))
+        else {
+            return false;
+        };
+        let before = i.checked_sub(2).map_or("", |i| self.word(i));
+        let is_number = |i: Option<usize>| {
+            i.and_then(|i| self.tokens.get(i)).is_some_and(|t| t.kind == TokenKind::Number)
+        };
+        // A word alone may be the name of what comes.
+        let is_value = value.kind != TokenKind::Word
+            || matches!(before, "=" | ")")
+            || is_number(i.checked_sub(2));
+        let has_unit = is_number(Some(i - 1)) || matches!(value.text, ")" | "]");
+        let is_unit = has_unit && Unit::named(word.text).is_some();
+        let is_name = word.kind == TokenKind::Word && !RESERVED.contains(&word.text) && !is_unit;
+        let is_apart = value.end() < word.start && !word.first_on_line && !given.first_on_line;
+        let ends = value.ends_operand() && given.begins_operand() && given.text != "{";
+        is_name && is_value && is_apart && ends
+    }
+
     /// `radius 5 cm`
     fn missing_equals(&self) -> Option<Diagnostic> {
-        // The word may stand one or two tokens before the place: `material gold }`.
-        for (word_at, value_at) in [(1, 0), (2, 1)] {
+        if self.open.last().is_some_and(|open| self.word(*open) == "[") {
+            return None;
+        }
+        // The word may stand one or two tokens before the place, as in `material gold }`, or before brackets
+        // that end there.
+        let bracket = self.at.checked_sub(1).and_then(|close| self.opening(close));
+        let before_bracket = bracket.map(|open| (self.at - open + 1, self.at - open));
+        for (word_at, value_at) in [(1, 0), (2, 1)].into_iter().chain(before_bracket) {
             let Some(word) = self.before(word_at).filter(|t| t.kind == TokenKind::Word) else {
                 continue;
             };

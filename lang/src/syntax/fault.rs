@@ -46,6 +46,9 @@ pub(super) fn told(
                 braces.push_str(indent_of(text, one));
                 braces.push_str("}\n");
             }
+            if byte(*open) != '{' {
+                return found;
+            }
             let others = all.filter(|one| one != open);
             let found =
                 others.fold(found, |found, one| found.label(span(one..one + 1), "nor is this"));

@@ -75,10 +75,13 @@ pub(super) fn opens_block(word: &str) -> bool {
 
 /// `shape sphere { … } shape box { … }`: a statement on the line on which another one ends.
 pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
-    let (current, before) = (around.current()?, around.before(1)?);
-    let is_object = is_category(current.text) && around.is_word(around.at + 1);
+    // Behind a name a category is read as one more word.
+    let is_category_before = around.before(1).is_some_and(|word| is_category(word.text));
+    let at = around.at - usize::from(is_category_before);
+    let (current, before) = (around.tokens.get(at)?, around.tokens.get(at.checked_sub(1)?)?);
+    let is_object = is_category(current.text) && around.is_word(at + 1);
     // `a if b` and `a for b in c` are other languages' expressions.
-    let is_statement = current.text != "for" && fits(current.text, around, around.at + 1);
+    let is_statement = current.text != "for" && fits(current.text, around, at + 1);
     let apart = around.open.is_empty() && around.place == Place::File;
     if !(is_object || is_statement) || !apart || current.first_on_line || !before.ends_operand() {
         return None;

@@ -362,7 +362,9 @@ impl Reader<'_> {
                 return;
             }
             self.again = AGAIN;
-            if piece.faulty {
+            if piece.headless {
+                self.broken(piece.range.clone());
+            } else if piece.faulty {
                 self.unclosed(piece.range.clone());
             } else {
                 self.chunk(piece.range.clone(), Place::File);

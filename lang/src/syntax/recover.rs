@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use luxel_core::diag::Diagnostic;
 use pest::Parser;
 use pest::error::InputLocation;
 
@@ -31,7 +32,7 @@ pub(super) fn stopped(error: &pest::error::Error<Rule>) -> usize {
 }
 
 /// Where a statement cannot be read further, if it cannot.
-fn fault(text: &str) -> Option<usize> {
+pub(super) fn fault(text: &str) -> Option<usize> {
     SceneParser::parse(Rule::one_stmt, text).err().map(|error| stopped(&error))
 }
 
@@ -90,7 +91,16 @@ impl Reader<'_> {
             let written = |of: &Mended, at: usize| of.edits.written(at..at).start;
             // Two statements where one was written.
             let is_apart = fault.is_some_and(|to| whole_before(&next.text, to, &part).is_some());
-            if !is_apart && fault.is_some_and(|to| written(&next, to) <= written(&mended, at)) {
+            let is_further = |to: usize| {
+                let begins = |of: &Mended, found: &Diagnostic| {
+                    found.span().map(|span| written(of, span.range().start))
+                };
+                let left =
+                    || explain(&next.text, part.start..end, to, self.source, place).diagnostic;
+                written(&next, to) > written(&mended, at)
+                    || begins(&next, &left()) > begins(&mended, &found)
+            };
+            if !is_apart && fault.is_some_and(|to| !is_further(to)) {
                 break;
             }
             told.push(mended.edits.told(found));

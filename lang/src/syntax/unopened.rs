@@ -25,7 +25,7 @@ pub(super) fn unopened(text: &str, found: &mut Region) {
         let Some(head) = (first..after).rev().find(is_head) else { return true };
         // A head on the line of its block ends in the brace itself.
         pieces[head].faulty = false;
-        pieces[head + 1..after].iter_mut().for_each(|piece| piece.faulty = true);
+        pieces[head + 1..after].iter_mut().for_each(|piece| piece.headless = true);
         false
     });
 }

@@ -209,10 +209,13 @@ impl Evaluator<'_> {
             return Value::Poison;
         }
         let n_mistakes = self.mistakes();
-        let Some(args) = self.arrange(builtin, given, span) else { return Value::Poison };
+        let args = self.arrange(builtin, given, span);
         let is_poison =
             |arg: &Option<Argument>| arg.as_ref().is_some_and(|arg| arg.value.is_poison());
-        let is_poisoned = args.iter().any(is_poison);
+        let is_missing =
+            |(name, arg): (&&str, &Option<Argument>)| arg.is_none() && !name.ends_with('?');
+        let is_poisoned =
+            args.iter().any(is_poison) || builtin.args.iter().zip(&args).any(is_missing);
         // It may do something else without what it can do without.
         let left_out = |(name, arg): (&&str, _)| name.ends_with('?') && is_poison(arg);
         if is_poisoned && builtin.args.iter().zip(&args).any(left_out) {
@@ -229,14 +232,14 @@ impl Evaluator<'_> {
         if is_poisoned || self.mistakes() > n_mistakes { Value::Poison } else { value }
     }
 
-    /// Puts arguments into their places, also those whose misspelt name is surely meant; `None` if one
-    /// has none or is missing.
+    /// Puts arguments into their places, also those whose misspelt name is surely meant; tells of those that
+    /// have none, or are missing.
     fn arrange(
         &mut self,
         builtin: &Builtin,
         given: Vec<Given>,
         span: Span,
-    ) -> Option<Vec<Option<Argument>>> {
+    ) -> Vec<Option<Argument>> {
         let mut out = vec![None; builtin.args.len()];
         let mut is_whole = true;
         for (i, given) in given.into_iter().enumerate() {
@@ -245,6 +248,10 @@ impl Evaluator<'_> {
                 Some(name) => named(&name.text),
                 None => Some(i).filter(|i| *i < out.len()),
             };
+            // Of several that are too many the first is told.
+            if known.is_none() && given.name.is_none() && !is_whole {
+                continue;
+            }
             let place = known.or_else(|| {
                 let meant = self.misplaced(builtin, &given)?;
                 named(meant).filter(|place| out[*place].is_none())
@@ -260,16 +267,14 @@ impl Evaluator<'_> {
                 }
             }
         }
-        let is_misplaced = !is_whole;
-        for (arg, value) in builtin.args.iter().zip(&out) {
-            if value.is_none() && !is_misplaced && !arg.ends_with('?') {
+        for (arg, value) in builtin.args.iter().zip(&out).filter(|_| is_whole) {
+            if value.is_none() && !arg.ends_with('?') {
                 let message = format!("`{}` wants `{arg}`", builtin.name);
                 let usage = format!("it is called as `{}`", builtin.usage());
                 self.tell(Diagnostic::error("E0403", span, message).help(usage));
-                is_whole = false;
             }
         }
-        is_whole.then_some(out)
+        out
     }
 
     /// Tells of an argument that a function does not take; the name that is surely meant.

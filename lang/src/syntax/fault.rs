@@ -40,19 +40,16 @@ pub(super) fn told(
                 return found;
             };
             let found = found.label(span(at..at), "it most likely closes before this");
-            let mut braces = String::from(if text[..at].ends_with('\n') { "" } else { "\n" });
-            let all = closes.iter().filter(|(_, other)| *other == at).map(|(one, _)| *one);
-            for one in all.clone() {
-                braces.push_str(indent_of(text, one));
-                braces.push_str("}\n");
-            }
             if byte(*open) != '{' {
                 return found;
             }
-            let others = all.filter(|one| one != open);
+            let all = || closes.iter().filter(|(_, other)| *other == at).map(|(one, _)| *one);
+            let others = all().filter(|one| one != open);
             let found =
                 others.fold(found, |found, one| found.label(span(one..one + 1), "nor is this"));
-            found.guess(span(at..at), braces)
+            let end = if text[..at].ends_with('\n') { "" } else { "\n" };
+            let braces = all().map(|one| format!("{}}}\n", indent_of(text, one)));
+            found.guess(span(at..at), format!("{end}{}", braces.collect::<String>()))
         }
         Fault::Mismatch { open, at } => {
             let message = format!("`{}` is closed by `{}`", byte(*open), byte(*at));

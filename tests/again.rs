@@ -305,14 +305,46 @@ fn what_only_hands_a_value_on_is_not_evaluated() {
         assert_eq!(n(&lines), (1, true));
         lines[0] = "let r = 7.5 cm".to_owned();
         assert_eq!(n(&lines), (1, true));
-        // One that does more than that is evaluated, with what it uses.
-        lines[9] = lines[9].replace("(1, 2, 3) m", "(r, 2 * r, r)");
+        // A vector of what is reckoned too, of which an item may become a bare zero.
+        lines[9] = lines[9].replace("(1, 2, 3) m", "(r, 2 * r, 0)");
         assert_eq!(n(&lines), (3, true));
         lines[0] = "let r = 8 cm".to_owned();
+        assert_eq!(n(&lines), (1, true));
+        // One that does more than that is evaluated, with what it uses.
+        lines[9] = lines[9].replace("(r, 2 * r, 0)", "(r, 2 * r, r) * 2");
+        assert_eq!(n(&lines), (3, true));
+        lines[0] = "let r = 9 cm".to_owned();
         assert_eq!(n(&lines), (3, true));
         // What is wrong for all of them is told of each.
         lines[0] = "let r = 8 s".to_owned();
         assert!(!n(&lines).1);
+    }
+}
+
+#[test]
+fn vectors_of_what_is_reckoned_are_not_evaluated() {
+    let mut now: Vec<String> =
+        ["let x = 5 cm", "let at = (1, 2, 3) m", CAMERA].map(str::to_owned).to_vec();
+    now.extend((0..60).map(|i| match i % 3 {
+        0 => format!("shape sphere {{ radius = 1 m, center = (x, {i} m, 2 * x) }}"),
+        1 => "shape sphere { radius = 1 m, center = (0, x, 0) }".to_owned(),
+        _ => "shape sphere { radius = 1 m, center = at }".to_owned(),
+    }));
+    let mut edited = Edited::new(Settings { noting: true, ..Settings::default() });
+    let mut n = |lines: &[String]| {
+        let loaded = edited.load(&text_of(lines), "an edit");
+        (edited.kept.n_evaluated().unwrap_or_default(), is_good(&loaded))
+    };
+    assert_eq!(n(&now), (65, true));
+    for (i, line) in [(0, "let x = 7 cm"), (1, "let at = (0, 0, 3) m"), (0, "let x = 0 mm")] {
+        line.clone_into(&mut now[i]);
+        assert_eq!(n(&now), (1, true), "{line}");
+    }
+    for (i, line) in [(0, "let x = 1 s"), (1, "let at = (1, 2) m"), (0, "let x = (1, 2) m")] {
+        let before = std::mem::replace(&mut now[i], line.to_owned());
+        assert!(!n(&now).1, "{line}");
+        now[i] = before;
+        assert!(n(&now).1, "{line}");
     }
 }
 

@@ -49,7 +49,10 @@ pub(crate) fn run() -> Result<(), String> {
     let told = format!("{objects}set one.radius = 30 cm\nmaterial dielectric {{ }}\n")
         .replacen("ball 3", "one", 1);
     let reckoning = objects.replace("radius = r,", "radius = r / 2,");
-    let moving = objects.replace("(1.2, 0.5, -3.25) m", "(1.2 m, r, -3.25 m)");
+    let center = "(1.2, 0.5, -3.25) m";
+    let alike = objects.replace(center, "(1.2 m, r, -3.25 m)");
+    let moved = |i: usize| object(i).replace(center, &format!("({i} mm, r, -3.25 m)"));
+    let apart = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), moved));
     let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
     let case = |name, text: &str, (from, to)| Case { name, text: text.to_owned(), from, to };
     let number = ("ball 50001\" { center = (1.2", "ball 50001\" { center = (1.3");
@@ -64,7 +67,8 @@ pub(crate) fn run() -> Result<(), String> {
         case("objects, a length that all hand on", &objects, length),
         case("objects, a material of nearly all", &objects, ("e = 0.5", "e = 0.4")),
         case("objects, a length that all reckon with", &reckoning, length),
-        case("objects, a length in vectors of all", &moving, length),
+        case("objects, a length in one vector of all", &alike, length),
+        case("objects, a length in a vector of each", &apart, length),
         case("objects, a mistake", &objects, (number.0, "ball 50001\" { center = (1.2 s")),
         case("objects, a number beside a `set` and a warning", &told, number),
         case("objects, what is `set`", &told, ("radius = 30 cm", "radius = 20 cm")),

@@ -6,12 +6,17 @@ use super::source_of;
 use crate::Budgets;
 use crate::eval::numbered::Known;
 use crate::sink::Sink;
-use crate::syntax::{Expr, ExprNode, Op, parse_expr};
+use crate::syntax::{Expr, ExprNode, Form, Op, parse_expr};
 
-/// A name, or numbers that are reckoned with: numbers, names, operators and brackets alone.
+/// Items of a vector, at most.
+pub(super) const MOST_ITEMS: usize = 3;
+
+/// A name, or numbers that are reckoned with: numbers, names, operators and brackets alone; or a vector of
+/// two or three such.
 ///
 /// Where such an expression came to a number, each of its operands was one, for no operator makes a number
-/// of anything else. So it takes as many steps when it comes to a number again.
+/// of anything else; and where one came to a vector of numbers, each of its items did. So it takes as many
+/// steps when it comes to that again.
 #[derive(Debug)]
 pub(super) struct Formula {
     pub(super) text: Arc<str>,
@@ -25,7 +30,13 @@ impl Formula {
     pub(super) fn of(text: &str, budgets: &Budgets, known: &Known) -> Option<Self> {
         let expr = read(text, budgets)?;
         let mut words = vec![];
-        if !is_reckoned(&expr, &mut words) {
+        let is_one = match &expr.node {
+            ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
+                items.iter().all(|item| is_reckoned(item, &mut words))
+            }
+            _ => is_reckoned(&expr, &mut words),
+        };
+        if !is_one {
             return None;
         }
         let mut names: Vec<(u32, u32)> = vec![];
@@ -41,6 +52,11 @@ impl Formula {
     /// Whether it is a name alone, which may stand for anything.
     pub(super) fn is_name(&self) -> bool {
         matches!(self.expr.node, ExprNode::Path(_))
+    }
+
+    /// Whether it is a vector of what is reckoned.
+    pub(super) fn is_vector(&self) -> bool {
+        matches!(self.expr.node, ExprNode::Items { .. })
     }
 
     /// The names that the file knows, and how often each stands there.

@@ -11,6 +11,7 @@ use luxel_core::scene::{self, Changed, IsOver, NodeId};
 
 use super::formula::Formula;
 use super::handing::{Place, Wanted, is_simple};
+use super::made::Cost;
 use super::values::KeptValues;
 use super::{State, Statement, source_of};
 use crate::eval::Evaluator;
@@ -35,10 +36,32 @@ pub(super) struct Handed {
 /// What becomes of the values that are handed on.
 #[derive(Debug, Default)]
 pub(super) struct Fitted {
-    /// What is wanted, by the numbers of nodes that were evaluated; how an editor shows it, if it does.
-    values: Vec<(scene::Value, Option<Arc<str>>)>,
+    values: Vec<FittedValue>,
     /// Which of those each that is wanted has, by number.
     of_wanted: Vec<u32>,
+}
+
+/// A value for a parameter.
+#[derive(Debug)]
+struct FittedValue {
+    /// By the numbers of nodes that were evaluated.
+    value: scene::Value,
+    /// How an editor shows it, if it does.
+    shown: Option<Arc<str>>,
+    /// Steps that it takes to fit.
+    steps: u64,
+}
+
+impl Fitted {
+    /// The value that a place gets.
+    fn at(&self, place: &Place) -> &FittedValue {
+        &self.values[self.of_wanted[place.wanted as usize] as usize]
+    }
+
+    /// What it costs to put the values everywhere, at most: what was there before may have cost as much.
+    pub(super) fn cost(&self, handed: &Handed) -> Cost {
+        Cost::of_steps(handed.places.iter().map(|(_, place)| self.at(place).steps).sum())
+    }
 }
 
 impl Handed {
@@ -130,14 +153,17 @@ impl State {
         value: Value,
         (handed, env): (&Handed, &Env),
         evaluator: &mut Evaluator<'_>,
-    ) -> Option<(scene::Value, Option<Arc<str>>)> {
+    ) -> Option<FittedValue> {
         // What it stands in stands in what the statement makes, each in the next one at most.
         let is_deep = |object: &ObjectValue| {
             object.depth + handed.most_nodes >= self.settings.budgets.nesting
         };
         let fits = match &value {
             Value::Object(object) => wanted.is_node && !is_deep(object),
-            Value::Number(..) => !wanted.is_node,
+            Value::Number(..) => !wanted.is_node && !formula.is_vector(),
+            Value::Numbers(_) | Value::Items(_) => {
+                !wanted.is_node && (formula.is_vector() || formula.is_name())
+            }
             _ => !wanted.is_node && formula.is_name(),
         };
         let class = evaluator.registry.class(wanted.kind, &wanted.class).filter(|_| fits)?;
@@ -147,11 +173,12 @@ impl State {
         let span = Span::new(source_of(u32::MAX), 0, 0);
         let name = Name { text: param.name.into(), span };
         let field = FieldValue { name, value, span, file: env.file.clone() };
-        let spent = |of: &Evaluator<'_>| (of.sink.kept().len(), of.steps, of.held.get());
-        let before = spent(evaluator);
-        let fitted = evaluator.conform(param, &field)?;
-        let is_fit = before == spent(evaluator) && is_simple(&fitted, &evaluator.scene.nodes);
-        is_fit.then_some((fitted, shown))
+        let spent = |of: &Evaluator<'_>| (of.sink.kept().len(), of.held.get());
+        let (before, first) = (spent(evaluator), evaluator.steps);
+        let value = evaluator.conform(param, &field)?;
+        let steps = evaluator.steps - first;
+        let is_fit = before == spent(evaluator) && is_simple(&value, &evaluator.scene.nodes);
+        is_fit.then_some(FittedValue { value, shown, steps })
     }
 
     /// Gives the parameters their new values. `nodes` are the numbers here of those that were evaluated.
@@ -164,7 +191,7 @@ impl State {
         is_over: IsOver<'_>,
     ) -> Option<()> {
         let Fitted { values, of_wanted } = fitted;
-        let kept = |(mut value, _): (scene::Value, _)| {
+        let kept = |FittedValue { mut value, .. }: FittedValue| {
             if let scene::Value::Node(NodeId(id)) = &mut value {
                 *id = nodes[*id as usize];
             }
@@ -186,9 +213,7 @@ impl KeptValues {
     /// With the values that are handed on.
     pub(super) fn handed_on(mut self, handed: &Handed, fitted: &Fitted) -> Self {
         let value = |(statement, place): &(SourceId, Place)| {
-            let value = fitted.of_wanted[place.wanted as usize];
-            let (_, shown) = &fitted.values[value as usize];
-            Some(((*statement, place.field), shown.clone()?))
+            Some(((*statement, place.field), fitted.at(place).shown.clone()?))
         };
         self.own.hand_on(handed.places.iter().filter_map(value).collect());
         self

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use luxel_core::scene::{self, IsOver, Node, NodeId};
 use luxel_sdk::kind::Kind;
 
-use super::formula::Formula;
+use super::formula::{Formula, MOST_ITEMS};
 use super::{Statement, source_of};
 use crate::Budgets;
 use crate::eval::numbered::Known;
@@ -17,7 +17,7 @@ use crate::eval::object::stands_somewhere;
 use crate::shares;
 use crate::syntax::{Expr, ExprNode, Object, Stmt, StmtNode, children};
 
-/// Texts that are looked at, at most, by each thread: what is reckoned with others is evaluated.
+/// Texts that are looked at, at most, in each share of the file: what is reckoned with others is evaluated.
 const TEXTS: usize = 1 << 12;
 
 /// What values are handed on, and where.
@@ -114,12 +114,13 @@ fn has_no_object(expr: &Expr) -> bool {
     is_so
 }
 
-/// Whether a parameter's value is one that stands for itself: it costs nothing to fit, and nothing but
-/// the parameter depends on it.
+/// Whether a parameter's value is one that stands for itself: it costs next to nothing to fit, and nothing
+/// but the parameter depends on it.
 pub(super) fn is_simple(value: &scene::Value, nodes: &[Node]) -> bool {
-    use scene::Value::{Bool, Color, Node, Number, Path, Text};
+    use scene::Value::{Bool, Color, Node, Number, Path, Text, Vector};
     match value {
         Node(NodeId(id)) => !stands_somewhere(nodes[*id as usize].kind),
+        Vector(items) => items.len() <= MOST_ITEMS,
         value => matches!(value, Bool(_) | Color(..) | Number(..) | Path(_) | Text(_)),
     }
 }
@@ -202,7 +203,8 @@ impl Handing {
             }
             let Some(value) = text.get(range.clone()) else { continue };
             let may_reckon =
-                matches!(argument.value, scene::Value::Number(..)) && written.n_shadows == 0;
+                matches!(argument.value, scene::Value::Number(..) | scene::Value::Vector(_))
+                    && written.n_shadows == 0;
             let is_used = |(name, _): &(u32, u32)| {
                 let word = written.names.name(*name);
                 value == word || may_reckon && value.contains(word)

@@ -76,6 +76,10 @@ impl Cost {
         Self([evaluator.steps, wide(evaluator.held.get()), wide(evaluator.placements), n_instances])
     }
 
+    pub(super) fn of_steps(steps: u64) -> Self {
+        Self([steps, 0, 0, 0])
+    }
+
     pub(super) fn plus(self, other: Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i].saturating_add(other.0[i])))
     }

@@ -69,7 +69,7 @@ impl State {
         if !self.set_again(&plan, &mut evaluator) {
             return None;
         }
-        let set = Cost::of(&evaluator).minus(before);
+        let set = Cost::of(&evaluator).minus(before).plus(fitted.cost(&plan.handed));
         let values = self.values_after(&plan, evaluator.noted.take())?;
         let values = values.handed_on(&plan.handed, &fitted);
         let after = After::of(self, &plan.gone, &plan.fresh);
@@ -193,7 +193,7 @@ impl State {
         Some(out)
     }
 
-    /// What is spent now, with the cost of what is `set`, and how many statements have come to another number of things; `None` if it is
+    /// What is spent now, with the cost of what is `set` and handed on, and how many statements have come to another number of things; `None` if it is
     /// more than the budgets allow.
     fn spent(
         &self,

@@ -128,6 +128,9 @@ fn is_same(one: &Value, other: &Value) -> bool {
         (Value::Number(x, measure), Value::Number(y, other)) => {
             x.to_bits() == y.to_bits() && measure == other
         }
+        (Value::Vector(one), Value::Vector(other)) => {
+            one.iter().map(|x| x.to_bits()).eq(other.iter().map(|x| x.to_bits()))
+        }
         (Value::Node(one), Value::Node(other)) => one == other,
         (Value::Bool(one), Value::Bool(other)) => one == other,
         _ => false,
@@ -167,8 +170,9 @@ mod tests {
     #[test]
     fn what_the_last_said_too_counts_for_both() {
         let values = [number(0.0), number(-0.0), number(1.0), Value::Node(NodeId(1))];
+        let vectors = [[0.0, 1.0], [-0.0, 1.0]].map(Value::vector);
         let more = [Value::Node(NodeId(2)), Value::Bool(true), Value::vector([1.0])];
-        let all = || values.iter().chain(&more);
+        let all = || values.iter().chain(&more).chain(&vectors);
         let mut terms = Terms::default();
         let mut met = vec![];
         for (radius, material) in all().flat_map(|one| all().map(move |other| (one, other))) {

@@ -94,6 +94,20 @@ fn mends_that_come_one_after_another_end_and_may_be_gone_on_with() {
 }
 
 #[test]
+fn thousands_of_mistakes_are_mended_at_once_and_not_all_told() {
+    let n = 5000;
+    let wrong = format!("{SCENE}{}", "shape sphere { radius 1 m }\n".repeat(n));
+    let folder = Folder::new("fix-thousands").with("a.scene", &wrong);
+    let done = folder.luxel(&["check", "a.scene", "--fix"]);
+    assert_eq!((done.code, &*done.out), (0, "a.scene: fine\n"));
+    assert_eq!(text(&folder, "a.scene"), wrong.replace("radius 1", "radius = 1"));
+    // Of the first round, in which 4096 mistakes are told, and of the second.
+    let told = done.err.lines().filter(|line| line.contains("E0012")).count();
+    assert_eq!(told, 400);
+    assert!(done.err.contains("a.scene: 3896 mends more") && done.err.contains(": 704 mends more"));
+}
+
+#[test]
 fn statements_on_one_line_are_put_on_their_own() {
     let folder = Folder::new("fix-lines").with("a.scene", &format!("{SCENE}let a = 1 let b = 2\n"));
     let done = folder.luxel(&["check", "a.scene", "--fix"]);

@@ -29,8 +29,8 @@ pub(super) fn closing(found: &[Diagnostic]) -> String {
 }
 
 /// One object: `code, severity, message, file, line, column, end_line, end_column, start_byte, end_byte,
-/// label, labels, help, fixes`. Lines and columns count from 1, columns in characters; `null` where no place is at fault, for
-/// which the file is the scene.
+/// label, labels, help, fixes`. Lines and columns count from 1, columns in characters; `null` where no
+/// place is at fault, for which the file is the scene.
 pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     let Diagnostic { code, severity, message, labels, help, fixes } = diagnostic;
     let nowhere = || place_of_nothing(sources);
@@ -57,11 +57,8 @@ pub(super) fn json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
 }
 
 fn place(span: Span, sources: &Sources) -> Value {
-    let lines = [span.start, span.end].map(|at| {
-        let LineColumn { line, column } = sources.line_column(span.source, at as usize);
-        [line, column]
-    });
-    place_of(Some(sources.name(span.source)), Some((lines, [span.start, span.end])))
+    let at = |byte: u32| (sources.line_column(span.source, byte as usize), byte);
+    place_of(Some(sources.name(span.source)), Some((at(span.start), at(span.end))))
 }
 
 /// The scene that was read, and no place in it.
@@ -69,18 +66,17 @@ fn place_of_nothing(sources: &Sources) -> Value {
     place_of(sources.first(), None)
 }
 
-/// A file, and where in it something begins and ends: lines with columns, and bytes.
-fn place_of(file: Option<&str>, at: Option<([[usize; 2]; 2], [u32; 2])>) -> Value {
-    let (lines, bytes) = at.unzip();
-    let line = |end: usize, of: usize| lines.map(|lines| lines[end][of]);
+/// A file, and where in it something begins and ends.
+fn place_of(file: Option<&str>, at: Option<((LineColumn, u32), (LineColumn, u32))>) -> Value {
+    let (start, end) = at.unzip();
     json!({
         "file": file,
-        "line": line(0, 0),
-        "column": line(0, 1),
-        "end_line": line(1, 0),
-        "end_column": line(1, 1),
-        "start_byte": bytes.map(|bytes| bytes[0]),
-        "end_byte": bytes.map(|bytes| bytes[1]),
+        "line": start.map(|(at, _)| at.line),
+        "column": start.map(|(at, _)| at.column),
+        "end_line": end.map(|(at, _)| at.line),
+        "end_column": end.map(|(at, _)| at.column),
+        "start_byte": start.map(|(_, byte)| byte),
+        "end_byte": end.map(|(_, byte)| byte),
     })
 }
 

@@ -32,7 +32,7 @@ pub fn mend(
         if !*asked.entry(source).or_insert_with(|| may(source)) {
             continue;
         }
-        let chosen = texts.entry(fix.span.source).or_default();
+        let chosen = texts.entry(source).or_default();
         // Those that are chosen are apart: only the nearest on each side can touch it.
         let i = chosen.partition_point(|(_, other)| other.span < fix.span);
         let before = i.checked_sub(1).is_none_or(|i| chosen[i].1.span.end < fix.span.start);

@@ -27,9 +27,9 @@ struct Said {
 impl Scene {
     /// Gives parameters other values, in a scene whose nodes are hashed.
     ///
-    /// `changes` go by node and parameter, and all lie in `runs` of nodes, which follow one another. No node
-    /// but those behind it in its run refers to one of a run, and no value to a node of one. `None`, and a
-    /// scene of no use, once it is over.
+    /// `changes` go by node and parameter. `runs` are nodes that follow one another, of which one may refer to
+    /// another before it in its run; nothing else refers to a node that changes, and no value does. `None`,
+    /// and a scene of no use, once it is over.
     pub fn change(
         &mut self,
         runs: &[Range<usize>],

@@ -10,8 +10,8 @@ use crate::prescan::{Fault, scan, scan_until};
 pub(super) struct Closing {
     /// Which braces, and before which byte each closes; these bytes are in order.
     pub(super) braces: Vec<(usize, usize)>,
-    /// Where the next statement begins, or the text ends.
-    pub(super) end: usize,
+    /// Where the next statement begins, if there is one.
+    pub(super) end: Option<usize>,
 }
 
 /// A bracket that is open.
@@ -20,8 +20,9 @@ struct Open<'a> {
     bracket: &'a str,
     /// How far the line is indented on which it stands.
     indent: usize,
-    /// Whether its first line is indented further, once that has been met.
-    holds_indented: Option<bool>,
+    /// Whether lines tell where it ends, once its first content has been met: that stands on its own line or is
+    /// indented further.
+    tells_end: Option<bool>,
 }
 
 impl Open<'_> {
@@ -32,8 +33,14 @@ impl Open<'_> {
 
     /// Whether a line that is indented so far stands behind the block.
     fn ends_before(&mut self, indent: usize) -> bool {
-        let holds = *self.holds_indented.get_or_insert(indent > self.indent);
-        self.bracket == "{" && holds && indent <= self.indent
+        let tells = *self.tells_end.get_or_insert(indent > self.indent);
+        self.bracket == "{" && tells && indent <= self.indent
+    }
+
+    /// A line can only stand in the block, however far it is indented: it does not end.
+    fn goes_on(&mut self) -> bool {
+        self.tells_end = Some(true);
+        false
     }
 }
 
@@ -45,7 +52,7 @@ pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing>
     let braces = braces(text, start)?;
     let closed = closed_by(&text[start..], [start, start], &braces);
     let next = scan_until(&closed.text, 0..closed.text.len(), 0, limit, &mut |at| at > 0).met;
-    let end = next.map_or(text.len(), |next| closed.edits.written(next..next).start);
+    let end = next.map(|next| closed.edits.written(next..next).start);
     Some(Closing { braces, end })
 }
 
@@ -84,28 +91,28 @@ fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
         if let Some(begun) = begun.filter(blank) {
             indent = token.start - begun;
             let is_field = is_field(&text[token.start..]);
-            let mut left = open.len();
-            let mut ends = |open: &mut Open<'_>| {
-                left -= 1;
-                // What closes a block that begins further left, and what stands in no block of the file, tell.
-                if is(")]}") {
-                    token.text == "}" && open.is_right_of(indent)
-                } else {
-                    !(is_field && left == 0) && open.ends_before(indent)
-                }
-            };
-            while let Some(block) = open.pop_if(&mut ends) {
+            let mut n_open = open.len();
+            while let Some(last) = open.last_mut() {
+                let ends = match token.text {
+                    ")" | "]" => false,
+                    "}" => last.is_right_of(indent),
+                    // Fields stand in no file.
+                    _ if is_field && n_open == 1 => last.goes_on(),
+                    _ => last.ends_before(indent),
+                };
+                let Some(block) = open.pop_if(|_| ends) else { break };
                 braces.push((block.at, begun));
+                n_open -= 1;
             }
             if open.is_empty() && !braces.is_empty() {
                 return Some(braces);
             }
         } else if let Some(open) = open.last_mut() {
             // What stands on the line of its brace.
-            open.holds_indented.get_or_insert(true);
+            open.tells_end.get_or_insert(true);
         }
         if is("([{") {
-            open.push(Open { at: token.start, bracket: token.text, indent, holds_indented: None });
+            open.push(Open { at: token.start, bracket: token.text, indent, tells_end: None });
         } else if is(")]}") {
             // One of another kind closes nothing, or leaves those inside it open.
             let opens = |open: &Open<'_>| {
@@ -115,7 +122,7 @@ fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
         }
     }
     for block in open.iter().rev() {
-        if block.bracket != "{" || block.holds_indented != Some(true) {
+        if block.bracket != "{" || block.tells_end != Some(true) {
             return None;
         }
         braces.push((block.at, text.len()));
@@ -176,7 +183,7 @@ mod tests {
     /// The text with its braces closed, and what stands behind the statement.
     fn ended(text: &str) -> Option<(String, &str)> {
         let Closing { braces, end } = closing(text, 0, 100)?;
-        Some((closed_by(text, [0, 0], &braces).text, &text[end..]))
+        Some((closed_by(text, [0, 0], &braces).text, end.map_or("", |end| &text[end..])))
     }
 
     #[test]
@@ -206,7 +213,7 @@ mod tests {
     #[test]
     fn lines_that_are_not_indented_tell_nothing() {
         for text in [
-            "group {\nshape ball {\nr = 1\n}\na = 1",
+            "group {\nshape ball {\nr = 1\n}\nlet a",
             "group {",
             "group { a = (",
             "group { a {\n b = [\n",

@@ -64,17 +64,10 @@ pub(super) fn region(
         Fault::Unclosed { open } => Some(*open),
         _ => None,
     };
-    let unclosed = found.faults.iter().filter_map(open).min();
-    let start = unclosed.map(|open| found.starts.partition_point(|start| *start <= open));
-    let start = start.map(|i| i.checked_sub(1).map_or(from, |i| found.starts[i]));
-    let closing = start.and_then(|start| closing(text, start, limit));
-    let (closes, resume) = if let Some(Closing { braces, end }) = closing {
-        (braces, Some(end).filter(|end| *end < text.len()))
-    } else {
-        let likely = |open: usize| Some((open, likely_end(text, open)?));
-        let likely = found.faults.iter().filter_map(open).find_map(likely);
-        (likely.into_iter().collect(), likely.map(|(_, end)| end))
-    };
+    let unclosed: Vec<usize> = found.faults.iter().filter_map(open).collect();
+    let Closing { braces: closes, end: resume } =
+        ending(text, from, &found.starts, &unclosed, limit);
+    let unclosed = unclosed.into_iter().min();
     let end = resume.or(found.met).unwrap_or(text.len());
     let too_deep = found.faults.iter().any(|f| matches!(f, Fault::TooDeep { .. }));
     let first = found.starts.first().copied().unwrap_or(end);
@@ -105,8 +98,22 @@ pub(super) fn region(
     Region { first, pieces, faults, unclosed, junk_told, closes, next, met: found.met }
 }
 
-/// Where a block that never closes may end, where nothing else tells: before the first line that is indented no
-/// more than the line of its brace.
+/// Where brackets that never close most likely do, of statements that begin there.
+fn ending(text: &str, from: usize, starts: &[usize], unclosed: &[usize], limit: usize) -> Closing {
+    let begins = |open: &usize| match starts.partition_point(|start| start <= open) {
+        0 => from,
+        i => starts[i - 1],
+    };
+    let first = unclosed.iter().min();
+    if let Some(found) = first.and_then(|open| closing(text, begins(open), limit)) {
+        return found;
+    }
+    let likely = unclosed.iter().find_map(|open| Some((*open, likely_end(text, *open)?)));
+    Closing { braces: likely.into_iter().collect(), end: likely.map(|(_, end)| end) }
+}
+
+/// Where a block that never closes may end, where nothing else tells: before the first line that is
+/// indented no more than the line of its brace.
 fn likely_end(text: &str, open: usize) -> Option<usize> {
     let line_start = text[..open].rfind('\n').map_or(0, |at| at + 1);
     let limit = indent(&text[line_start..open]);

@@ -29,16 +29,7 @@ impl Formula {
     /// A text as one; `None` of any other.
     pub(super) fn of(text: &str, budgets: &Budgets, known: &Known) -> Option<Self> {
         let expr = read(text, budgets)?;
-        let mut words = vec![];
-        let is_one = match &expr.node {
-            ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
-                items.iter().all(|item| is_reckoned(item, &mut words))
-            }
-            _ => is_reckoned(&expr, &mut words),
-        };
-        if !is_one {
-            return None;
-        }
+        let words = words(&expr)?;
         let mut names: Vec<(u32, u32)> = vec![];
         for number in words.iter().filter_map(|word| known.of(word)) {
             match names.iter_mut().find(|(name, _)| *name == number) {
@@ -71,6 +62,18 @@ fn read(text: &str, budgets: &Budgets) -> Option<Expr> {
     expr.filter(|_| sink.kept().is_empty())
 }
 
+/// The names in a formula; `None` if an expression is none.
+fn words(expr: &Expr) -> Option<Vec<Arc<str>>> {
+    let mut words = vec![];
+    let is_one = match &expr.node {
+        ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
+            items.iter().all(|item| is_reckoned(item, &mut words))
+        }
+        _ => is_reckoned(expr, &mut words),
+    };
+    is_one.then_some(words)
+}
+
 /// Whether an expression is one of numbers, and the names in it.
 fn is_reckoned(expr: &Expr, words: &mut Vec<Arc<str>>) -> bool {
     match &expr.node {
@@ -97,11 +100,7 @@ mod tests {
 
     #[test]
     fn numbers_and_names_are_reckoned_with_and_nothing_else_is() {
-        let words = |text: &str| {
-            let mut words = vec![];
-            let expr = read(text, &Budgets::default())?;
-            is_reckoned(&expr, &mut words).then(|| words.join(" "))
-        };
+        let words = |text: &str| Some(words(&read(text, &Budgets::default())?)?.join(" "));
         let yes =
             [("r", "r"), ("2 * r", "r"), ("-(a + b % 3 m) cm ^ a / c", "a b a c"), ("1.5 km", "")];
         for (text, names) in yes {
@@ -113,7 +112,9 @@ mod tests {
             "a < b",
             "a && b",
             "!a",
-            "(a, b)",
+            "(a, b, c, d)",
+            "(a, (b, c))",
+            "((a, b))",
             "[a]",
             "a[0]",
             "\"a\"",

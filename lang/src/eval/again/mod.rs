@@ -76,6 +76,7 @@ struct Statement {
     shadows: bool,
     /// Where it hands a value on, its objects need not be made anew.
     is_plain: bool,
+    /// Which values it hands on, and where.
     hands: Hands,
 }
 

@@ -193,8 +193,8 @@ impl State {
         Some(out)
     }
 
-    /// What is spent now, with the cost of what is `set` and handed on, and how many statements have come to another number of things; `None` if it is
-    /// more than the budgets allow.
+    /// What is spent now, with the cost of what is `set` and handed on, and how many statements have come to
+    /// another number of things; `None` if it is more than the budgets allow.
     fn spent(
         &self,
         plan: &Plan,

@@ -16,9 +16,19 @@ impl Evaluator<'_> {
     /// The scene, if there is no error, with everything that was found.
     pub(super) fn finish(mut self) -> Loaded {
         self.lacks();
+        self.finished()
+    }
+
+    /// Whether what a faulty load made is small enough to be looked at.
+    pub(super) fn is_looked_at(&self) -> bool {
+        !self.stopped && self.scene.nodes.len() <= LOOKED_AT
+    }
+
+    /// The same, where what the scene lacks has been told.
+    pub(super) fn finished(mut self) -> Loaded {
         let errors = self.sink.errors();
         let is_good = errors == 0 && !self.damaged && !self.stopped;
-        let is_small = !self.stopped && self.scene.nodes.len() <= LOOKED_AT;
+        let is_small = self.is_looked_at();
         let is_over = self.sink.over();
         let mut made = if is_good || is_small { self.compacted(&is_over) } else { None };
         if is_over() {

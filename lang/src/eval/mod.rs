@@ -159,7 +159,7 @@ const TOLD: u64 = 50;
 const REPEATS: usize = 1000;
 
 /// A group that is being filled.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct OpenGroup {
     group: Group,
     depth: usize,

@@ -100,12 +100,13 @@ impl Evaluator<'_> {
         };
         let mut turns = Turns { bytes, take: &mut take };
         syntax::parse_in_turns(text, source, &budgets, &mut told, &mut turns);
+        let n_written = told.kept().len();
         if told.is_stopped() {
             leave(names);
         } else if self.spent.is_none() {
             names.tell(text, &mut told);
         }
-        self.end_record(told.kept().len());
+        self.end_record(n_written, told.kept().len());
         self.stopped |= told.is_full();
         told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;

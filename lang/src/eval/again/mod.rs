@@ -51,6 +51,10 @@ use crate::{Loaded, ParamInfo, Settings};
 /// ones are loaded anew as soon.
 const KEPT: usize = 1 << 18;
 
+/// Which part of a scene mistakes may hide for it to be gone on from: with what is kept from before, less
+/// is evaluated once they are mended.
+const HIDDEN: usize = 8;
+
 /// Sources from here on are statements of the root file, by their `id`.
 const STATEMENTS: u32 = 1 << 31;
 
@@ -108,6 +112,10 @@ pub(crate) struct State {
     asked: Questions,
     /// It was given up while it changed, and is of no use any more.
     is_broken: bool,
+    /// A mistake is told of a statement, so that nothing takes the place of anything before it is mended.
+    is_wrong: bool,
+    /// Something is wrong with the names of one.
+    has_odd_names: bool,
     /// What was spent.
     spent: Cost,
     /// Bytes of other files.
@@ -160,7 +168,9 @@ fn load_in_turns(
         return super::load(path, plain, registry, settings);
     }
     let (loaded, state) = evaluator.finish_recorded(path, settings);
-    if let Some(state) = state {
+    let before = kept.as_ref().filter(|state| state.path == path && state.is_set(settings));
+    let is_better = |state: &State| before.is_none_or(|before| state.is_as_whole_as(before));
+    if let Some(state) = state.filter(is_better) {
         leave(kept.replace(Box::new(State { asked: files.beside(path), ..state })));
     } else if let Some(state) = kept {
         state.n_evaluated = 0;
@@ -181,6 +191,11 @@ impl State {
             && *budgets == before.budgets
             && *unloaded == before.unloaded
             && *noting == before.noting
+    }
+
+    /// Whether its mistakes hide little of what stands in another state of the file.
+    fn is_as_whole_as(&self, other: &Self) -> bool {
+        !self.is_wrong || self.n_kept >= other.n_kept - other.n_kept / HIDDEN
     }
 
     /// The scene of all statements, with what was told of it as a whole in `evaluator`. `None` if that is a

@@ -41,6 +41,8 @@ pub(super) struct Plan {
     pub(super) read: Vec<Vec<Diagnostic>>,
     /// What is wrong with names.
     pub(super) names: Vec<Diagnostic>,
+    /// Something is wrong with what it does not concern.
+    pub(super) is_wrong_beside: bool,
     pub(super) sets: Sets,
     /// What hands on the values that have changed.
     pub(super) handed: Handed,
@@ -138,7 +140,7 @@ impl State {
         };
         let n_names = self.n_names - n_names(&self.stmts[gone.clone()]) + n_names(&fresh);
         let (mut tables, mut names) = (None, vec![]);
-        if !self.is_named_alike(&gone, &fresh) {
+        if self.has_odd_names || !self.is_named_alike(&gone, &fresh) {
             let (found, odd) = Tables::of(&self.names, after.iter().map(|stmt| &stmt.names));
             if n_names > budgets.names {
                 return None;
@@ -153,7 +155,22 @@ impl State {
         let wanted: BTreeSet<usize> =
             new.iter().chain(&sets.setters).copied().chain(known).collect();
         let tasks = self.tasks((text, &edit), &after, &firsts, (&new, wanted), (trees, is_over))?;
-        Some(Plan { edit, gone, fresh, tasks, tables, n_names, read: said, names, sets, handed })
+        let is_wrong_beside = self.is_wrong_beside(&after, &tasks);
+        let read = said;
+        let plan = Plan {
+            edit,
+            gone,
+            fresh,
+            tasks,
+            tables,
+            n_names,
+            read,
+            names,
+            is_wrong_beside,
+            sets,
+            handed,
+        };
+        Some(plan)
     }
 
     /// Whether statements have the same to do with names as those that they stand for.

@@ -63,7 +63,7 @@ impl State {
             stmt.made = made;
             stmt.hands = self.handing.add(stmt, &written);
         }
-        self.is_broken = false;
+        (self.is_broken, self.is_wrong, self.has_odd_names) = (false, false, false);
         Some(())
     }
 

@@ -36,12 +36,13 @@ pub(in crate::eval) struct Record {
     around: Cost,
     /// How much is set of labelled things.
     pub(super) n_sets: usize,
-    /// How much was told of the text and its names.
+    /// How much was told of how it is written, and of that and its names.
+    pub(super) n_written: usize,
     pub(super) n_read: usize,
 }
 
-/// What was noted of a file in which everything went well.
-struct Sound {
+/// What was noted of a file, of whose mistakes each is one of a statement.
+struct KnownRecord {
     record: Record,
     /// The bytes of its statements.
     ranges: Vec<Range<usize>>,
@@ -119,19 +120,20 @@ impl Evaluator<'_> {
         }
     }
 
-    /// All of them have been evaluated: does what `set` says. So much was told of the text and its names.
-    pub(in crate::eval) fn end_record(&mut self, n_read: usize) {
+    /// All of them have been evaluated: does what `set` says. So much was told of how they are written, and of
+    /// that and their names.
+    pub(in crate::eval) fn end_record(&mut self, n_written: usize, n_read: usize) {
         let (n_sets, before) = (self.labels.sets.len(), Cost::of(self));
         self.apply_sets();
         let cost = Cost::of(self).minus(before);
         if let Some(record) = &mut self.record {
-            (record.n_sets, record.n_read) = (n_sets, n_read);
+            (record.n_sets, record.n_written, record.n_read) = (n_sets, n_written, n_read);
             record.around = record.around.plus(cost);
         }
     }
 
-    /// As `finish`; and the state that the next load goes on from, if everything went well in a file that
-    /// was read in turns.
+    /// As `finish`; and the state that the next load goes on from, if each mistake is one of a statement in a
+    /// file that was read in turns.
     pub(super) fn finish_recorded(
         mut self,
         path: &Path,
@@ -143,8 +145,20 @@ impl Evaluator<'_> {
             return (self.finish(), None);
         }
         self.lacks();
-        let state = self.sound_record().and_then(|sound| self.state(sound, path, settings));
-        let Some(mut state) = state else { return (self.finish(), None) };
+        let Some(known) = self.known_record() else { return (self.finish(), None) };
+        let is_wrong = self.sink.errors() > 0;
+        let looked_at = is_wrong && self.is_looked_at();
+        let copy = looked_at.then(|| (self.scene.clone(), self.open_groups.clone()));
+        let params = if is_wrong { self.params.clone() } else { vec![] };
+        let Some(mut state) = self.state(known, path, settings) else {
+            return (self.finish(), None);
+        };
+        if is_wrong {
+            (self.scene, self.open_groups) = copy.unwrap_or_default();
+            let loaded = self.finished();
+            let rest = loaded.rest.filter(|_| looked_at);
+            return (Loaded { rest, params, values: state.values(), ..loaded }, Some(state));
+        }
         match state.gathered(&mut self, settings) {
             Some(loaded) => (loaded, Some(state)),
             None if is_over() => {
@@ -156,22 +170,22 @@ impl Evaluator<'_> {
         }
     }
 
-    /// What was noted of a file in which everything went well.
-    fn sound_record(&mut self) -> Option<Sound> {
+    /// What was noted of a file, if it is known which statement each mistake is of.
+    fn known_record(&mut self) -> Option<KnownRecord> {
         let mut record = self.record.take().filter(|record| {
             let is_whole = record.cuts.len() == record.stmts.len() && !record.stmts.is_empty();
-            is_whole && self.sink.errors() == 0 && !self.damaged && !self.stopped
+            is_whole && !self.stopped && (self.sink.errors() > 0 || !self.damaged)
         })?;
         let ranges: Vec<_> = record.stmts.iter().map(|stmt| stmt.range.clone()).collect();
         record.warn(&self.sink, &ranges)?;
         let set_labels = record.set_labels(&self.labels)?;
-        Some(Sound { record, ranges, set_labels })
+        Some(KnownRecord { record, ranges, set_labels })
     }
 
     /// What is kept of it; `None` once it is over.
     fn state(
         &mut self,
-        Sound { record, ranges, set_labels }: Sound,
+        KnownRecord { record, ranges, set_labels }: KnownRecord,
         path: &Path,
         settings: &Settings,
     ) -> Option<State> {
@@ -179,7 +193,7 @@ impl Evaluator<'_> {
         let place = |span: Span| in_statement(span, &ranges);
         let mut scene = std::mem::take(&mut self.scene);
         scene.root = std::mem::take(&mut self.open_groups).pop().unwrap_or_default().group;
-        let Record { from, names, mut stmts, around, .. } = record;
+        let Record { from, names, mut stmts, around, n_written, n_read, .. } = record;
         let text: Arc<str> = self.sources.shared(SourceId(0));
         let n_shadows = stmts.iter().filter(|stmt| stmt.shadows).count();
         let found = scene.prepare(&place, &is_over).map(|()| {
@@ -223,6 +237,8 @@ impl Evaluator<'_> {
             params,
             asked: Questions::default(),
             is_broken: false,
+            is_wrong: self.sink.errors() > 0,
+            has_odd_names: n_read > n_written,
             other_bytes: self.bytes_read - text.len(),
             text,
             values: values.unwrap_or_default(),

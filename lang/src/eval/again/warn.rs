@@ -1,4 +1,4 @@
-//! Warnings of statements, kept with them.
+//! What is told of statements, kept with them.
 //!
 //! Known are only those whose places all lie in the statement that they are told of.
 
@@ -7,7 +7,7 @@ use std::ops::Range;
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::made::{Made, Warnings};
-use super::plan::Plan;
+use super::plan::{After, Plan, Task};
 use super::record::{Record, in_statement};
 use super::{State, Statement, in_file, source_of};
 use crate::sink::Sink;
@@ -29,8 +29,9 @@ fn is_of(told: &Diagnostic, id: u32) -> bool {
 impl Record {
     /// Keeps with each statement what is said of it; `None` if something is said of several.
     pub(super) fn warn(&mut self, sink: &Sink, ranges: &[Range<usize>]) -> Option<()> {
-        let (read, found) =
+        let (told, found) =
             sink.kept().split_at_checked(self.n_read).filter(|_| sink.is_whole())?;
+        let (read, _) = told.split_at_checked(self.n_written)?;
         let place = |span: Span| in_statement(span, ranges);
         for told in read {
             let at = told.span()?.range().start;
@@ -53,7 +54,29 @@ impl Record {
 impl Plan {
     /// Whether something is wrong with what is written or with names.
     pub(super) fn is_wrong(&self) -> bool {
-        self.read.iter().flatten().chain(&self.names).any(Diagnostic::is_error)
+        let mut told = self.read.iter().flatten().chain(&self.names);
+        self.is_wrong_beside || told.any(Diagnostic::is_error)
+    }
+}
+
+impl Warnings {
+    /// Whether one of them is a mistake, of how the statement is written if it is evaluated again.
+    fn is_wrong(&self, is_evaluated: bool) -> bool {
+        let found = if is_evaluated { &[] } else { &self.found[..] };
+        self.read.iter().chain(found).any(Diagnostic::is_error)
+    }
+}
+
+impl State {
+    /// Whether a statement that is as it was has a mistake, if these are evaluated.
+    pub(super) fn is_wrong_beside(&self, after: &After<'_>, tasks: &[Task]) -> bool {
+        let mut new = tasks.iter().filter(|task| task.is_new).map(|task| task.i).peekable();
+        let mut is_wrong = |(i, stmt): (usize, &Statement)| {
+            let is_evaluated = new.next_if_eq(&i).is_some();
+            let warnings = stmt.made.rare.as_ref().map(|rare| &rare.warnings);
+            warnings.is_some_and(|warnings| warnings.is_wrong(is_evaluated))
+        };
+        self.is_wrong && after.iter().enumerate().any(|one| is_wrong(one))
     }
 }
 

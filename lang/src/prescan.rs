@@ -27,6 +27,8 @@ pub enum Fault {
         open: usize,
         /// The closing one.
         at: usize,
+        /// How many brackets are open within the one that it closes.
+        left: usize,
     },
     /// A closing bracket without an open one.
     Stray {
@@ -71,6 +73,8 @@ pub struct Scan {
     pub starts: Vec<usize>,
     /// What does not close.
     pub faults: Vec<Fault>,
+    /// Brackets that are open where they nest too deep.
+    pub open: Vec<usize>,
     /// The start that was known: the scan ended there, and it is not among the others.
     pub met: Option<usize>,
 }
@@ -337,6 +341,7 @@ impl Scanner<'_> {
     fn open_bracket(&mut self, byte: u8) -> bool {
         if self.open.len() == self.limit {
             self.out.faults.push(Fault::TooDeep { at: self.at });
+            self.out.open = std::mem::take(&mut self.open);
             return false;
         }
         self.open.push(self.at);
@@ -401,15 +406,15 @@ impl Scanner<'_> {
                 self.stray();
             }
             Some(open) if closing(self.bytes[open]) != byte => {
-                self.out.faults.push(Fault::Mismatch { open, at: self.at });
                 // An outer bracket of this kind closes here too, if the line goes on better so; else
                 // only this one does.
                 let outer = self.open.iter().rposition(|&o| closing(self.bytes[o]) == byte);
-                if let Some(outer) = outer
-                    && self.misfits(&self.open[..outer]) <= self.misfits(&self.open)
-                {
-                    self.open.truncate(outer);
-                }
+                let goes_on =
+                    |outer: &usize| self.misfits(&self.open[..*outer]) <= self.misfits(&self.open);
+                let outer = outer.filter(goes_on);
+                let left = outer.map_or(0, |outer| self.open.len() - outer);
+                self.open.truncate(outer.unwrap_or(self.open.len()));
+                self.out.faults.push(Fault::Mismatch { open, at: self.at, left });
             }
             Some(_) => {}
         }
@@ -473,7 +478,7 @@ mod tests {
         check("a = \"x\nb = 1", Fault::String { at: 4..6 });
         check("a /* b", Fault::Comment { at: 2 });
         check("a {", Fault::Unclosed { open: 2 });
-        check("a = [1, 2)", Fault::Mismatch { open: 4, at: 9 });
+        check("a = [1, 2)", Fault::Mismatch { open: 4, at: 9, left: 0 });
         check("}", Fault::Stray { at: 0 });
         check("((((", Fault::TooDeep { at: 3 });
         check("\"\\q\"", Fault::Escape { at: 1..3 });

@@ -14,7 +14,7 @@ use crate::eval::names::{Known, Placed, moved, resolve_placed};
 use crate::prescan::FAULTS;
 use crate::shares;
 use crate::sink::Sink;
-use crate::syntax::{Cut, Cuts, RESUME_LIMIT, cut, read_head};
+use crate::syntax::{Cut, Cuts, cut, read_head, resume_limit};
 
 /// A scene file in an editor. Offsets are bytes of its text; spans have source 0.
 #[derive(Clone, Debug)]
@@ -98,6 +98,7 @@ impl Document {
 
     /// `range` becomes `with`. Both ends are brought onto characters and into the text.
     pub fn edit(&mut self, range: Range<usize>, with: &str) {
+        let was_cut_short = self.is_cut_short();
         let start = floor(&self.text, range.start);
         let range = start..floor(&self.text, range.end).max(start);
         self.text.replace_range(range.clone(), with);
@@ -106,7 +107,7 @@ impl Document {
         (self.from, self.head) = read_head(&self.text, &self.budgets);
         self.tops = OnceLock::new();
         match (before, self.from) {
-            (Some(old), Some(new)) if !self.is_cut_short() => {
+            (Some(old), Some(new)) if !was_cut_short => {
                 let is_same_head = old == new && range.start > old;
                 self.read_around(&range, with.len(), is_same_head);
                 if self.is_cut_short() {
@@ -121,7 +122,7 @@ impl Document {
     /// that stands before.
     fn is_cut_short(&self) -> bool {
         let faults = self.budgets.diagnostics.min(FAULTS);
-        self.unclosed.len() >= RESUME_LIMIT || self.faults.len() >= faults
+        self.unclosed.len() >= resume_limit(self.text.len()) || self.faults.len() >= faults
     }
 
     fn read_again(&mut self) {

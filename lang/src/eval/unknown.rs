@@ -94,27 +94,15 @@ impl Resolver<'_> {
             .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
         let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };
         let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
-        let mut known: Vec<&str> = builtins::names().chain(["true", "false"]).collect();
-        known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
-        known.extend(self.before.into_iter().flat_map(|before| before()));
-        // Which are looked at must not depend on the order in which a table holds them.
-        if known.len() > LOOKED_AT {
-            known.select_nth_unstable(LOOKED_AT);
-            known.truncate(LOOKED_AT);
-        }
-        known.sort_unstable();
-        // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
-        let ending = builtins::names()
-            .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
-        let ending = ending.map(|name| Near { name, grade: Grade::Sure });
+        let meant = self.meant(shown);
         if Unit::named(shown).is_some() {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
         } else if shown == "rgba" {
             found = found.help("a colour is written `rgb.srgb(1, 0.5, 0)`, and has no alpha");
         } else if shown == "not" {
             found = found.help("`not` is written `!`").guess(place, "!");
-        } else if let Some(near) = ending.or_else(|| near(shown, known.iter().copied())) {
-            found = found.meant(place, Some(near));
+        } else if meant.is_some() {
+            found = found.meant(place, meant);
         } else if VECTORS.contains(&&*shown.to_lowercase()) {
             found = found.help("a vector is written without a word: `(0, 1, 0)`");
             if self.text.get(place.range().end..).is_some_and(|rest| rest.starts_with('(')) {
@@ -129,6 +117,26 @@ impl Resolver<'_> {
             );
         }
         found
+    }
+
+    /// The name that an unknown one most likely stands for.
+    fn meant(&self, shown: &str) -> Option<Near<'_>> {
+        let mut known: Vec<&str> = builtins::names().chain(["true", "false"]).collect();
+        known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
+        known.extend(self.before.into_iter().flat_map(|before| before()));
+        // Which are looked at must not depend on the order in which a table holds them.
+        if known.len() > LOOKED_AT {
+            known.select_nth_unstable(LOOKED_AT);
+            known.truncate(LOOKED_AT);
+        }
+        known.sort_unstable();
+        // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
+        let ending = builtins::names()
+            .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
+        let ending = ending.map(|name| Near { name, grade: Grade::Sure });
+        let alike = || known.iter().copied().find(|known| known.eq_ignore_ascii_case(shown));
+        let near = ending.or_else(|| near(shown, known.iter().copied()));
+        near.or_else(|| alike().map(|name| Near { name, grade: Grade::Guess }))
     }
 
     /// The unit behind a number of which a name is a part, and how it is written: `W/m2/sr`.

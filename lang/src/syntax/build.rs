@@ -3,16 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Grade, SourceId, Span, nearest};
-use luxel_sdk::params::{UNITS, Unit};
+use luxel_core::diag::{Diagnostic, SourceId, Span};
 use pest::iterators::Pair;
 
 use super::Rule;
 use super::edits::Edits;
 use super::gaps::Gaps;
-use super::habits::condition;
 use super::make::{self, RESERVED};
-use super::statement::{is_suffix, of_suffix};
 use super::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
     Quoted, Stmt, StmtNode,
@@ -30,6 +27,8 @@ pub(super) struct Builder<'a> {
     pub(super) gaps: Gaps,
     /// What was mended of what was written.
     pub(super) edits: Edits,
+    /// A word that begins an object, and its last byte, if it was read as a unit.
+    pub(super) begun: Option<(usize, Name)>,
 }
 
 fn is_keyword(rule: Rule) -> bool {
@@ -79,7 +78,7 @@ impl<'a> Builder<'a> {
         budgets: &'a Budgets,
     ) -> Self {
         let (gaps, edits) = (Gaps::default(), Edits::default());
-        Self { source, base, sink, budgets, gaps, edits }
+        Self { source, base, sink, budgets, gaps, edits, begun: None }
     }
 }
 
@@ -357,14 +356,23 @@ impl Builder<'_> {
         parts: &mut impl Iterator<Item = Pair<'i, Rule>>,
     ) -> Object {
         let (mut category, mut kind, mut label) = (None, None, None);
-        for part in take(parts).into_inner() {
+        let head = take(parts);
+        let start = head.as_span().start();
+        let before = &head.get_input()[..start];
+        let begun = self.begun.take().filter(|(end, _)| {
+            before.get(*end..).is_some_and(|gap| !gap.is_empty() && gap.trim().is_empty())
+        });
+        for part in head.into_inner() {
             match part.as_rule() {
                 Rule::ident => category = Some(self.name(&part)),
                 Rule::kind => kind = Some(self.name(&part)),
                 _ => label = Some(self.string(part)),
             }
         }
-        let category = category.expect("a head begins with a word");
+        let mut category = category.expect("a head begins with a word");
+        if let Some((_, word)) = begun {
+            (category, kind) = (word, Some(category));
+        }
         Object { category, kind, label, body: self.block(take(parts)) }
     }
 
@@ -382,102 +390,4 @@ impl Builder<'_> {
         }
         Name { text: make::unescape(body.as_str()), span }
     }
-
-    /// `640x480` with its place, if a unit of that kind stands behind a number.
-    fn size(&self, pair: &Pair<'_, Rule>) -> Option<(Span, String)> {
-        let (unit, height) = (self.span(pair), pair.as_str().strip_prefix(['x', 'X'])?);
-        let before = &pair.get_input()[..pair.as_span().start()];
-        let digits = before.bytes().rev().take_while(u8::is_ascii_digit).count();
-        if digits == 0 || height.is_empty() || !height.bytes().all(|b| b.is_ascii_digit()) {
-            return None;
-        }
-        let size = format!("({}, {height})", &before[before.len() - digits..]);
-        let range = unit.range();
-        Some((Span::new(unit.source, range.start - digits, range.end), size))
-    }
-
-    /// The unit that a token names; `None` if it is none, which is told.
-    pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Arc<Unit>> {
-        let text = pair.as_str();
-        let bad = match Unit::parse(text) {
-            Ok(unit) => return Some(Arc::new(unit)),
-            Err(bad) => bad,
-        };
-        let span = self.span(pair);
-        // `(a > 1) and (b > 1)`
-        if let Some(found) = condition(span, text) {
-            self.sink.push(found);
-            return None;
-        }
-        if is_suffix(text) {
-            self.sink.push(of_suffix(span));
-            return None;
-        }
-        if text == "then" {
-            let message = "no `then` stands between a condition and its block";
-            self.sink.push(Diagnostic::error("E0204", span, message).fix(span, ""));
-            return None;
-        }
-        if matches!(text, "px" | "pixel" | "pixels") {
-            let before = &pair.get_input()[..pair.as_span().start()];
-            let gap = before.len() - before.trim_end_matches([' ', '\t']).len();
-            let all = self.written(before.len() - gap..pair.as_span().end());
-            let message = format!("there is no unit `{text}`: pixels are counted");
-            let found = Diagnostic::error("E0204", span, message);
-            self.sink.push(found.fix(all, ""));
-            return None;
-        }
-        let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
-        if let Some((all, size)) = self.size(pair) {
-            self.sink.push(diagnostic.help("a size is a vector").guess(all, size));
-            return None;
-        }
-        if let Some((unit, grade)) = suggest_unit(&bad) {
-            diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));
-            if bad == text {
-                diagnostic = diagnostic.mend(span, unit, grade);
-            }
-        } else {
-            diagnostic = diagnostic.help(
-                "units are written as `cm`, `deg` or `W/m^2/sr`; a variable is multiplied by `*`",
-            );
-        }
-        self.sink.push(diagnostic);
-        None
-    }
-}
-
-/// The unit that a misspelt one stands for: full names are sure, slips of the pen are guessed.
-fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
-    const FULL: [(&str, &str); 21] = [
-        ("meter", "m"),
-        ("metre", "m"),
-        ("kilometer", "km"),
-        ("centimeter", "cm"),
-        ("centimetre", "cm"),
-        ("millimeter", "mm"),
-        ("millimetre", "mm"),
-        ("nanometer", "nm"),
-        ("nanometre", "nm"),
-        ("degree", "deg"),
-        ("radian", "rad"),
-        ("second", "s"),
-        ("kelvin", "K"),
-        ("watt", "W"),
-        ("lumen", "lm"),
-        ("candela", "cd"),
-        ("in", "inch"),
-        // `inches`
-        ("inche", "inch"),
-        ("foot", "ft"),
-        ("feet", "ft"),
-        ("lux", "lx"),
-    ];
-    let lower = text.to_lowercase();
-    let singular = lower.strip_suffix('s').unwrap_or(&lower);
-    let full = FULL.iter().find(|(name, _)| *name == singular).map(|(_, unit)| *unit);
-    let case = UNITS.iter().find(|(name, _)| name.to_lowercase() == lower).map(|(name, _)| *name);
-    let slip = || nearest(text, UNITS.iter().map(|(name, _)| *name)).filter(|_| text.len() > 2);
-    let near = case.or_else(slip);
-    full.map(|unit| (unit, Grade::Sure)).or(near.map(|unit| (unit, Grade::Guess)))
 }

@@ -1,12 +1,15 @@
 //! Braces that never close: where they most likely do, by how far lines are indented.
 
+use std::ops::Range;
+
 use super::edits::{Edits, Mended};
+use super::fault::mend;
 use super::lex::{TokenKind, tokens};
 use super::recover::fault;
 use crate::prescan::{Fault, scan, scan_until};
 
 /// How a statement most likely ends in which braces never close.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Closing {
     /// Which braces, and before which byte each closes; these bytes are in order.
     pub(super) braces: Vec<(usize, usize)>,
@@ -49,38 +52,34 @@ impl Open<'_> {
 /// A block whose lines are indented ends before the first line that is indented no more than that of its
 /// brace, or with the text.
 pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing> {
-    let braces = braces(text, start)?;
+    let braces = braces(text, start, limit)?;
     let closed = closed_by(&text[start..], [start, start], &braces);
     let next = scan_until(&closed.text, 0..closed.text.len(), 0, limit, &mut |at| at > 0).met;
     let end = next.map(|next| closed.edits.written(next..next).start);
     Some(Closing { braces, end })
 }
 
-/// A piece with the braces that never close in it closed, or without the brackets that close nothing, if
-/// nothing else is wrong with its brackets; it begins at byte `base` of its text.
+/// A piece with the braces that never close in it closed, or without the brackets that close nothing and with
+/// others for those that close another one, if nothing else is wrong with its brackets; it begins at byte `base` of its text.
 pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
     let faults = scan(piece, 0..piece.len(), 0, limit).faults;
-    let stray = |fault: &Fault| match fault {
-        Fault::Stray { at } => Some(*at),
-        _ => None,
-    };
-    let strays: Vec<usize> = faults.iter().filter_map(stray).collect();
-    let mended = if !faults.is_empty() && strays.len() == faults.len() {
-        without(piece, base, &strays)
-    } else if faults.iter().all(|fault| matches!(fault, Fault::Unclosed { .. })) {
-        closed_by(piece, [0, base], &braces(piece, 0)?)
+    let is_open = |fault: &Fault| matches!(fault, Fault::Unclosed { .. });
+    let (mended, is_sure) = if faults.iter().all(is_open) {
+        (closed_by(piece, [0, base], &braces(piece, 0, limit)?), true)
     } else {
-        return None;
+        let mends = faults.iter().map(|fault| mend(piece, fault)).collect::<Option<Vec<_>>>()?;
+        let are_apart = mends.is_sorted_by(|(one, _), (next, _)| one.end <= next.start);
+        (are_apart.then(|| rewritten(piece, base, &mends))?, false)
     };
     let found = scan(&mended.text, 0..mended.text.len(), 0, limit);
     let is_one = found.faults.is_empty() && found.starts.len() == 1;
     // Where a bracket closes nothing, that which opens may be what is missing.
-    (is_one && (strays.is_empty() || fault(&mended.text).is_none())).then_some(mended)
+    (is_one && (is_sure || fault(&mended.text).is_none())).then_some(mended)
 }
 
-/// Which braces close before which byte; `None` if none does so, or a block is open at the end whose
-/// lines do not tell.
-fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
+/// Which braces close before which byte; `None` if none does so, a block is open at the end whose lines do not
+/// tell, or so many brackets are open.
+fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>> {
     let line = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
     let mut indent = indent(&text[line(start)..]);
     let (mut open, mut braces): (Vec<Open<'_>>, _) = (vec![], vec![]);
@@ -112,13 +111,20 @@ fn braces(text: &str, start: usize) -> Option<Vec<(usize, usize)>> {
             open.tells_end.get_or_insert(true);
         }
         if is("([{") {
+            if open.len() >= limit {
+                return None;
+            }
             open.push(Open { at: token.start, bracket: token.text, indent, tells_end: None });
         } else if is(")]}") {
-            // One of another kind closes nothing, or leaves those inside it open.
+            // One of another kind leaves those inside it open, or stands for one that opened on its line.
             let opens = |open: &Open<'_>| {
                 matches!((open.bracket, token.text), ("(", ")") | ("[", "]") | ("{", "}"))
             };
-            open.truncate(open.iter().rposition(opens).unwrap_or(open.len()));
+            let begun = line(token.start);
+            let stands = |open: &[Open<'_>]| open.last().is_some_and(|last| last.at >= begun);
+            let end = open.iter().rposition(opens);
+            let end = end.unwrap_or_else(|| open.len() - usize::from(stands(&open)));
+            open.truncate(end);
         }
     }
     for block in open.iter().rev() {
@@ -156,21 +162,23 @@ fn closed_by(part: &str, [start, base]: [usize; 2], braces: &[(usize, usize)]) -
         text.push_str(if at == part.len() { "\n" } else { "" });
         text.push_str(&"}".repeat(line.len()));
         text.push('\n');
-        edits.insert(at, from..text.len());
+        edits.replace(at..at, from..text.len());
         done = at;
     }
     text.push_str(&part[done..]);
     Mended { text, edits }
 }
 
-/// A piece without some of its bytes; it begins at byte `base` of its text.
-fn without(piece: &str, base: usize, places: &[usize]) -> Mended {
+/// A piece some of whose bytes became others, in order; it begins at byte `base` of its text.
+fn rewritten(piece: &str, base: usize, mends: &[(Range<usize>, &str)]) -> Mended {
     let (mut text, mut edits) = (String::with_capacity(piece.len()), Edits::new(base));
     let mut done = 0;
-    for at in places {
-        text.push_str(&piece[done..*at]);
-        edits.remove(*at..at + 1, text.len());
-        done = at + 1;
+    for (old, new) in mends {
+        text.push_str(&piece[done..old.start]);
+        let start = text.len();
+        text.push_str(new);
+        edits.replace(old.clone(), start..text.len());
+        done = old.end;
     }
     text.push_str(&piece[done..]);
     Mended { text, edits }

@@ -5,10 +5,20 @@ use std::ops::Range;
 use luxel_core::diag::Diagnostic;
 
 use super::closing::{Closing, closing, indent, is_field};
-use crate::prescan::{Fault, scan_until};
+use crate::prescan::{Fault, Scan, scan_until};
 
-/// How often reading goes on after a brace that never closes.
-pub(crate) const RESUME_LIMIT: usize = 8;
+/// How often at least reading goes on after a bracket that never closes, and of how many bytes at most if it
+/// does so more often: each time the rest of the text is looked through.
+const RESUMED: usize = 8;
+const RESUMED_BYTES: usize = 1 << 24;
+
+/// How often reading goes on, in a text of so many bytes, after a bracket that never closes.
+pub(crate) fn resume_limit(bytes: usize) -> usize {
+    (RESUMED_BYTES / bytes.max(1)).clamp(RESUMED, MOST_RESUMED)
+}
+
+/// The same of any text.
+const MOST_RESUMED: usize = 256;
 
 /// The bytes of one statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,17 +69,14 @@ pub(super) fn region(
     limit: usize,
     is_known: &mut dyn FnMut(usize) -> bool,
 ) -> Region {
-    let found = scan_until(text, from..text.len(), 0, limit, is_known);
+    let mut found = scan_until(text, from..text.len(), 0, limit, is_known);
+    let Closing { braces: closes, end: resume } = ended(text, from, &mut found, limit);
     let open = |fault: &Fault| match fault {
         Fault::Unclosed { open } => Some(*open),
         _ => None,
     };
-    let unclosed: Vec<usize> = found.faults.iter().filter_map(open).collect();
-    let Closing { braces: closes, end: resume } =
-        ending(text, from, &found.starts, &unclosed, limit);
-    let unclosed = unclosed.into_iter().min();
+    let unclosed = found.faults.iter().filter_map(open).min();
     let end = resume.or(found.met).unwrap_or(text.len());
-    let too_deep = found.faults.iter().any(|f| matches!(f, Fault::TooDeep { .. }));
     let first = found.starts.first().copied().unwrap_or(end);
     let junk_told = found.faults.iter().any(|fault| fault.at() < first);
     let stops = found.starts.iter().skip(1).copied().chain([end]);
@@ -94,8 +101,31 @@ pub(super) fn region(
     faults.extend(opens.clone().map(|open| Fault::Unclosed { open }));
     // One that is closed further down may be taken for the one that is not.
     let unclosed = unclosed.into_iter().chain(opens).min();
-    let next = resume.filter(|_| !too_deep);
-    Region { first, pieces, faults, unclosed, junk_told, closes, next, met: found.met }
+    Region { first, pieces, faults, unclosed, junk_told, closes, next: resume, met: found.met }
+}
+
+/// The same of what was found, where brackets that nest too deep are ones that never close if the first of
+/// them most likely does before that.
+fn ended(text: &str, from: usize, found: &mut Scan, limit: usize) -> Closing {
+    let deep = |fault: &Fault| match fault {
+        Fault::TooDeep { at } => Some(*at),
+        _ => None,
+    };
+    let Some(at) = found.faults.iter().find_map(deep) else {
+        let open = found.faults.iter().filter_map(|fault| match fault {
+            Fault::Unclosed { open } => Some(*open),
+            _ => None,
+        });
+        let unclosed: Vec<usize> = open.collect();
+        return ending(text, from, &found.starts, &unclosed, limit);
+    };
+    let ending = ending(text, from, &found.starts, &found.open, limit);
+    if ending.end.is_none_or(|end| end > at) {
+        return Closing::default();
+    }
+    found.faults.retain(|fault| deep(fault).is_none());
+    found.faults.extend(found.open.iter().map(|open| Fault::Unclosed { open: *open }));
+    ending
 }
 
 /// Where brackets that never close most likely do, of statements that begin there.

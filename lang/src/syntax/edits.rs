@@ -28,16 +28,10 @@ impl Edits {
         Self { base, edits: vec![] }
     }
 
-    /// Bytes that stand now where nothing was written at byte `at` of the text, behind all others.
-    pub(super) fn insert(&mut self, at: usize, new: Range<usize>) {
-        let at = self.base + at;
-        self.edits.push(Edit { old: at..at, new });
-    }
-
-    /// Bytes of the text that are gone, where byte `now` stands now, behind all others.
-    pub(super) fn remove(&mut self, old: Range<usize>, now: usize) {
+    /// Bytes of the text for which others stand now, behind all others that were replaced.
+    pub(super) fn replace(&mut self, old: Range<usize>, new: Range<usize>) {
         let old = self.base + old.start..self.base + old.end;
-        self.edits.push(Edit { old, new: now..now });
+        self.edits.push(Edit { old, new });
     }
 
     pub(super) fn is_empty(&self) -> bool {

@@ -12,6 +12,7 @@ use super::head;
 use super::lex::{Token, TokenKind, tokens};
 use super::make::{RESERVED, STATEMENTS};
 use super::number;
+use super::peers::{BEGINS, is_pbrt};
 
 /// A mistake with what is needed to go on after it.
 pub(super) struct Explained {
@@ -24,55 +25,12 @@ pub(super) struct Explained {
     pub(super) resume: Option<usize>,
 }
 
+/// Functions of one number.
+const OF_A_NUMBER: [&str; 8] = ["abs", "ceil", "cos", "floor", "scale", "sin", "sqrt", "tan"];
 /// What is said of `==` where a value is given.
 pub(crate) const COMPARES: &str = "`==` compares; a value is given with `=`";
 /// What is said of an `else` that nothing stands before.
 pub(super) const LONE_ELSE: &str = "`else` without an `if` before it";
-
-/// Whether a word is a directive of pbrt's language.
-pub(super) fn is_pbrt(word: &str) -> bool {
-    const WORDS: [&str; 38] = [
-        "Accelerator",
-        "ActiveTransform",
-        "AreaLightSource",
-        "Attribute",
-        "AttributeBegin",
-        "AttributeEnd",
-        "Camera",
-        "ColorSpace",
-        "ConcatTransform",
-        "CoordinateSystem",
-        "CoordSysTransform",
-        "Film",
-        "Identity",
-        "Include",
-        "Integrator",
-        "LightSource",
-        "LookAt",
-        "MakeNamedMaterial",
-        "MakeNamedMedium",
-        "Material",
-        "MediumInterface",
-        "NamedMaterial",
-        "ObjectBegin",
-        "ObjectEnd",
-        "ObjectInstance",
-        "PixelFilter",
-        "ReverseOrientation",
-        "Rotate",
-        "Sampler",
-        "Scale",
-        "Shape",
-        "Texture",
-        "Transform",
-        "TransformBegin",
-        "TransformEnd",
-        "Translate",
-        "WorldBegin",
-        "WorldEnd",
-    ];
-    WORDS.contains(&word)
-}
 
 /// Explains why `text[chunk]` cannot be read as a statement; pest stopped at byte `at`.
 pub(super) fn explain(
@@ -124,6 +82,7 @@ impl<'a> Around<'a> {
             .or_else(|| self.equals())
             .or_else(|| self.missing_operand())
             .or_else(|| self.unit_behind_call())
+            .or_else(|| self.missing_brackets())
             .or_else(|| self.missing_comma())
             .or_else(|| self.missing_field_comma())
             .or_else(|| self.missing_comma_and_equals())
@@ -176,10 +135,7 @@ impl<'a> Around<'a> {
         if is_pbrt(first.text) && second.is_none_or(|t| t.text != "=") {
             let message = format!("`{}` looks like pbrt's language", first.text);
             let found = self.error("E0021", first, message);
-            return Some(
-                found
-                    .help("a scene begins with `scene 1` and says `shape sphere { radius = 1 m }`"),
-            );
+            return Some(found.help(BEGINS));
         }
         let current = self.current()?;
         if let Some(lone) = [first, current].into_iter().find(|t| t.text == "else") {
@@ -287,6 +243,22 @@ impl<'a> Around<'a> {
         }
         let message = format!("a value is missing after `{}`", operator.text);
         Some(self.error("E0015", operator, message))
+    }
+
+    /// `[scale 2, move (1, 0, 0) m]`
+    fn missing_brackets(&self) -> Option<Diagnostic> {
+        let (current, callee) = (self.current()?, self.before(1)?);
+        let is_callee = OF_A_NUMBER.contains(&callee.text);
+        let opens = matches!(self.before(2)?.text, "[" | "," | "(" | "=");
+        if !is_callee || !opens || current.kind != TokenKind::Number || current.first_on_line {
+            return None;
+        }
+        let unit = self.tokens.get(self.at + 1).filter(|t| Unit::named(t.text).is_some());
+        let end = unit.unwrap_or(current).end();
+        let message = format!("what is given to `{}` stands in brackets", callee.text);
+        let all = Span::new(self.source, callee.end(), end);
+        let found = self.error("E0023", current, message);
+        Some(found.guess(all, format!("({})", &self.text[current.start..end])))
     }
 
     fn missing_comma(&self) -> Option<Diagnostic> {
@@ -439,10 +411,15 @@ impl<'a> Around<'a> {
             return None;
         }
         let message = format!("the parameter `{}` needs a type", before.text);
-        Some(
-            self.error("E0024", before, message)
-                .help(format!("write `{}: length`, `float`, `int`, `angle`, …", before.text)),
-        )
+        let found = self
+            .error("E0024", before, message)
+            .help(format!("write `{}: length`, `float`, `int`, `angle`, …", before.text));
+        // Reading stopped at the first of them.
+        let others = (self.at + 1..self.closing(self.open[0])?).filter(|i| {
+            let ends = matches!(self.word(i + 1), ")" | ",");
+            self.is_word(*i) && self.word(i - 1) == "," && ends
+        });
+        Some(others.fold(found, |found, i| found.label(self.span(&self.tokens[i]), "and this")))
     }
 
     fn unexpected(&self) -> Diagnostic {

@@ -1,10 +1,11 @@
-//! What does not close, in words.
+//! What does not close, in words, and what mends it.
 
 use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
 
 use super::closing::indent;
+use super::lex::{TokenKind, tokens};
 use crate::prescan::Fault;
 
 /// Brackets that a message shows.
@@ -14,6 +15,45 @@ const SHOWN: usize = 8;
 fn indent_of(text: &str, at: usize) -> &str {
     let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
     &text[line..line + indent(&text[line..])]
+}
+
+/// What most likely mends a bracket that closes nothing, or another one than the last that opened: which bytes
+/// become what.
+pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static str)> {
+    let closing = |open: usize| match text.as_bytes()[open] {
+        b'(' => ")",
+        b'[' => "]",
+        _ => "}",
+    };
+    match fault {
+        Fault::Stray { at } => Some((*at..at + 1, "")),
+        Fault::Mismatch { open, at, left: 0 } => Some((*at..at + 1, closing(*open))),
+        Fault::Mismatch { open, at, left: 1 } => {
+            let end = before_field(text, *open..*at).unwrap_or(*at);
+            let end = text[..end].trim_end().len();
+            Some((end..end, closing(*open)))
+        }
+        _ => None,
+    }
+}
+
+/// Where in brackets a comma stands before the first field that follows something else: it is no argument's name.
+fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
+    let inner: Vec<_> = tokens(text, inside).collect();
+    let is_named = |i: usize| {
+        let of = inner.get(i..i + 2);
+        of.is_some_and(|of| of[0].kind == TokenKind::Word && of[1].text == "=")
+    };
+    let mut depth = 0_usize;
+    (1..inner.len()).filter(|_| !is_named(1)).find_map(|i| {
+        match inner[i].text {
+            "(" | "[" | "{" => depth += 1,
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
+            "," if depth == 0 && is_named(i + 1) => return Some(inner[i].start),
+            _ => {}
+        }
+        None
+    })
 }
 
 /// What is told of a bracket, text or comment that does not close; `limit` is how deep brackets may
@@ -51,10 +91,14 @@ pub(super) fn told(
             let braces = all().map(|one| format!("{}}}\n", indent_of(text, one)));
             found.guess(span(at..at), format!("{end}{}", braces.collect::<String>()))
         }
-        Fault::Mismatch { open, at } => {
+        Fault::Mismatch { open, at, .. } => {
             let message = format!("`{}` is closed by `{}`", byte(*open), byte(*at));
-            Diagnostic::error("E0009", span(*at..at + 1), message)
-                .label(span(*open..open + 1), "opened here")
+            let found = Diagnostic::error("E0009", span(*at..at + 1), message)
+                .label(span(*open..open + 1), "opened here");
+            match mend(text, fault) {
+                Some((place, with)) => found.guess(span(place), with),
+                None => found,
+            }
         }
         Fault::Stray { at } => {
             let rest = &text[*at..];

@@ -24,6 +24,7 @@ pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| set(around))
         .or_else(|| placed(around))
         .or_else(|| bare_vector(around))
+        .or_else(|| vector_of_fields(around))
         .or_else(|| braced_vector(around))
         .or_else(|| called_parameter(around))
 }
@@ -164,6 +165,22 @@ fn a_vector(around: &Around<'_>, all: Range<usize>, numbers: &[&str]) -> Diagnos
     let span = Span::new(around.source, all.start, all.end);
     let found = told(span, "a vector stands between `(` and `)`, with commas");
     found.guess(span, format!("({})", numbers.join(", ")))
+}
+
+/// `resolution = 48, 30`
+fn vector_of_fields(around: &Around<'_>) -> Option<Diagnostic> {
+    let first =
+        around.at.checked_sub(2).filter(|first| *first > 0 && around.word(first - 1) == "=")?;
+    let is_number = |i: usize| {
+        around.tokens.get(i).is_some_and(|t| t.kind == TokenKind::Number && !t.first_on_line)
+    };
+    let follows = |i: &usize| is_number(*i) && around.word(i - 1) == "," && is_number(i - 2);
+    let last = (around.at..).step_by(2).take(WIDEST - 1).take_while(follows).last()?;
+    let ends =
+        around.tokens.get(last + 1).is_none_or(|t| t.first_on_line || matches!(t.text, "," | "}"));
+    let texts: Vec<&str> = (first..=last).step_by(2).map(|i| around.word(i)).collect();
+    let all = around.tokens[first].start..around.tokens[last].end();
+    ends.then(|| a_vector(around, all, &texts))
 }
 
 /// `center = 0 0 0`

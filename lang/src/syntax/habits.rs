@@ -316,6 +316,10 @@ fn word(around: &Around<'_>) -> Option<Diagnostic> {
                 .help("it is written `fn f(x: float) = x + 1`"),
         ),
         "lambda" => Some(nameless(around.span(before))),
+        "new" if !current.first_on_line && !around.begins(around.at - 1) => Some(
+            told(around.span(before), "an object is made without `new`")
+                .help("it is written `material diffuse { reflectance = 0.5 }`"),
+        ),
         "mut" if around.before(2).is_some_and(|t| t.text == "let") => {
             let all = Span::new(around.source, before.start, current.start);
             Some(told(around.span(before), "a name keeps its value").fix(all, ""))

@@ -24,7 +24,8 @@ pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
 
 /// `for i in 0..3` and `if x > 1` that go on without `{`.
 fn block(around: &Around<'_>) -> Option<Diagnostic> {
-    let start = (0..around.at).rev().find(|i| around.begins(*i) && opens_block(around.word(*i)))?;
+    let begins = |i: usize| around.begins(i) || around.word(i - 1) == "else";
+    let start = (0..around.at).rev().find(|i| opens_block(around.word(*i)) && begins(*i))?;
     let last = around.before(1)?;
     // The head is whole if a value ends it, and nothing opened a block.
     let head = &around.tokens[start..around.at];

@@ -8,12 +8,11 @@ use pest::Parser;
 
 use super::around::Place;
 use super::build::Builder;
-use super::cut::{Cut, Cuts, RESUME_LIMIT, Region, region};
+use super::cut::{Cut, Cuts, Region, region, resume_limit};
 use super::direct::{self, Words};
 use super::edits::Edits;
 use super::fault;
 use super::gaps::Gaps;
-use super::habits::COMMENTS;
 use super::lex::{Token, TokenKind, tokens};
 use super::recover::{stopped, whole_before};
 use super::tree::{Expr, ExprNode, Stmt};
@@ -84,7 +83,7 @@ pub(crate) fn cut(
 ) -> Cuts {
     let mut out = Cuts::default();
     let mut next = Some(from);
-    for _ in 0..RESUME_LIMIT {
+    for _ in 0..resume_limit(text.len()) {
         let Some(from) = next else { break };
         let found = region(text, from, budgets.brackets, is_known);
         let mut sink = Sink::new(budgets.diagnostics);
@@ -115,7 +114,7 @@ pub(crate) fn cut_whole(
 ) -> Vec<Cut> {
     let mut pieces = vec![];
     let mut next = Some(from);
-    for _ in 0..RESUME_LIMIT {
+    for _ in 0..resume_limit(text.len()) {
         let Some(from) = next else { break };
         let found = whole_region(text, from, budgets, is_over);
         pieces.extend(found.pieces);
@@ -246,79 +245,12 @@ impl Reader<'_> {
 
     fn file(&mut self, turns: &mut Turns<'_>) {
         let Some(mut from) = self.head() else { return };
-        for _ in 0..RESUME_LIMIT {
+        for _ in 0..resume_limit(self.text.len()) {
             match self.region(from, turns) {
                 Some(next) if next > from => from = next,
                 _ => break,
             }
         }
-    }
-
-    /// Reads what stands before the first statement; gives where that ends, or `None` if reading on is
-    /// of no use.
-    fn head(&mut self) -> Option<usize> {
-        if let Some(at) = memchr::memchr(0, self.text.as_bytes()) {
-            let message = format!("a NUL byte at offset {at}: this is not a text");
-            self.sink.push(Diagnostic::error("E0004", self.span(at..at + 1), message));
-            return None;
-        }
-        if self.text.starts_with('\u{FEFF}') {
-            let message = "the file begins with a byte order mark, which is not needed";
-            let span = self.span(0..3);
-            self.sink.push(Diagnostic::warning("E0004", span, message).fix(span, ""));
-        }
-        self.header()
-    }
-
-    /// Reads `scene 1`; gives where it ends, or `None` if reading on is of no use.
-    fn header(&mut self) -> Option<usize> {
-        let (marks, from) = marks(self.text);
-        for at in marks {
-            let span = self.span(at..at + 1);
-            let found = Diagnostic::error("E0023", span, COMMENTS);
-            self.sink.push(found.guess(span, "//"));
-        }
-        let mut tokens = tokens(self.text, from..self.text.len());
-        let Some(first) = tokens.next() else {
-            let message = "the file is empty: a scene begins with `scene 1`";
-            let span = self.span(0..0);
-            self.sink.push(Diagnostic::error("E0001", span, message).guess(span, "scene 1\n"));
-            return None;
-        };
-        let span = self.span(first.start..first.end());
-        if first.text != "scene" {
-            if !super::explain::is_pbrt(first.text) {
-                let start = self.span(first.start..first.start);
-                let message = "a scene begins with `scene 1`";
-                let found = Diagnostic::error("E0001", span, message).guess(start, "scene 1\n");
-                self.sink.push(found);
-            }
-            return Some(first.start);
-        }
-        // Blanks alone may stand before the version: no comment, no carriage return.
-        let is_next =
-            |t: &Token<'_>| self.text[first.end()..t.start].trim_matches([' ', '\t']).is_empty();
-        let next = tokens.next().filter(is_next);
-        let Some(version) = next.filter(|t| t.kind == TokenKind::Number) else {
-            // `scene "v1"`
-            if let Some(text) = next.filter(|t| t.kind == TokenKind::Text) {
-                let span = self.span(text.start..text.end());
-                let message = "the version of the language is a number";
-                self.sink.push(Diagnostic::error("E0001", span, message).guess(span, "1"));
-                return Some(text.end());
-            }
-            let message = "`scene` wants the version of the language";
-            let end = self.span(first.end()..first.end());
-            self.sink.push(Diagnostic::error("E0001", span, message).guess(end, " 1"));
-            return Some(first.end());
-        };
-        if version.text != "1" {
-            let span = self.span(version.start..version.end());
-            let message = format!("version {} is not known; the newest is 1", version.text);
-            self.sink.push(Diagnostic::error("E0002", span, message).guess(span, "1"));
-            return None;
-        }
-        Some(version.end())
     }
 
     /// Reads statements from `from` on, which are taken in turns. Gives where to go on after a brace
@@ -456,8 +388,9 @@ impl Reader<'_> {
     }
 
     pub(super) fn builder(&mut self, base: usize) -> Builder<'_> {
-        let (gaps, edits) = (Gaps::default(), self.edits.clone());
-        Builder { source: self.source, base, sink: self.sink, budgets: self.budgets, gaps, edits }
+        let (source, budgets, edits) = (self.source, self.budgets, self.edits.clone());
+        let gaps = Gaps::default();
+        Builder { source, base, sink: self.sink, budgets, gaps, edits, begun: None }
     }
 
     /// Whether a statement would take too much to read, which is told.
@@ -469,24 +402,4 @@ impl Reader<'_> {
         }
         is_found
     }
-}
-
-/// Lines before `scene` that are looked at for comments as other languages write them.
-const COMMENTED: usize = 100;
-
-/// Where `#` begins lines that stand before `scene`, if there only comments do, and where what is to be read
-/// begins.
-fn marks(text: &str) -> (Vec<usize>, usize) {
-    let (mut at, mut marks) = (0, vec![]);
-    for line in text.split_inclusive('\n').take(COMMENTED) {
-        let written = line.trim_start();
-        if written.starts_with('#') {
-            marks.push(at + line.len() - written.len());
-        } else if !written.is_empty() && !written.starts_with("//") {
-            let is_head = written.starts_with("scene") && !marks.is_empty();
-            return if is_head { (marks, at) } else { (vec![], 0) };
-        }
-        at += line.len();
-    }
-    (vec![], 0)
 }

@@ -4,9 +4,9 @@ use luxel_core::diag::{Diagnostic, Span};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, told};
-use super::explain::is_pbrt;
 use super::lex::{Token, TokenKind};
 use super::make::RESERVED;
+use super::peers::is_pbrt;
 
 /// Why the place cannot be read, if such a statement stands there.
 pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {

@@ -37,6 +37,22 @@ fn reading_by_statement_is_reading_the_file_whole() {
 }
 
 #[test]
+fn of_many_brackets_that_never_close_each_is_told() {
+    let told = |line: &dyn Fn(usize) -> String, n: usize| {
+        let lines: String = (0..n).map(line).collect();
+        let codes = read(&format!("scene 1\n{lines}let z = = 1\n")).1.into_iter();
+        codes.map(|(code, _)| code).collect::<Vec<_>>()
+    };
+    let expected = |n: usize| [vec!["E0008"; n], vec!["E0013"]].concat();
+    let block = |i: usize| format!("group {{\n  let v{i} = 1\n");
+    let bracket = |i: usize| format!("let v{i} = max(1,\n");
+    for n in [1, 8, 9, 99] {
+        assert_eq!(told(&block, n), expected(n));
+        assert_eq!(told(&bracket, n), expected(n));
+    }
+}
+
+#[test]
 fn several_mistakes_are_told_in_one_run() {
     let (_, mistakes) = read(include_str!("../../tests/scenes/bad_multi.scene"));
     let expected =

@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::around::is_category;
 use super::cut::Region;
 use super::head::opens_block;
-use super::lex::tokens;
+use super::lex::{Token, tokens};
 use crate::prescan::Fault;
 
 /// Takes a `}` that closes nothing for the end of the last `for` or `if` before it that has no `{`.
@@ -33,8 +34,19 @@ pub(super) fn unopened(text: &str, found: &mut Region) {
 /// Statements before a brace among which its head is looked for.
 const LOOKED_AT: usize = 100;
 
-/// Whether a statement begins as one with a block and opens none.
+/// Whether a statement begins as one with a block and opens none, or what stands in that begins before the
+/// first brace.
 fn lacks_block(text: &str, range: Range<usize>) -> bool {
-    let mut tokens = tokens(text, range);
-    tokens.next().is_some_and(|first| opens_block(first.text)) && tokens.all(|t| t.text != "{")
+    let tokens: Vec<_> = tokens(text, range).collect();
+    let begins = |i: &usize| {
+        let before = i.checked_sub(1).map_or("{", |before| tokens[before].text);
+        let begins = tokens[*i].first_on_line || matches!(before, "{" | "}" | ";" | "else");
+        begins && opens_block(tokens[*i].text)
+    };
+    let lacks = |i: usize| {
+        let length = tokens[i..].iter().take_while(|token| token.text != "{").count();
+        let goes_on = |pair: &[Token<'_>]| pair[0].ends_operand() && is_category(pair[1].text);
+        i + length == tokens.len() || tokens[i..i + length].windows(2).any(goes_on)
+    };
+    !tokens.is_empty() && begins(&0) && (0..tokens.len()).filter(begins).any(lacks)
 }

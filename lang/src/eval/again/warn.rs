@@ -76,7 +76,7 @@ impl State {
             let warnings = stmt.made.rare.as_ref().map(|rare| &rare.warnings);
             warnings.is_some_and(|warnings| warnings.is_wrong(is_evaluated))
         };
-        self.is_wrong && after.iter().enumerate().any(|one| is_wrong(one))
+        self.is_wrong && after.iter().enumerate().any(&mut is_wrong)
     }
 }
 

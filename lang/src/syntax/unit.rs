@@ -1,0 +1,134 @@
+//! Units behind numbers, and what is said of words that are none.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use luxel_core::diag::{Diagnostic, Grade, Span, nearest};
+use luxel_sdk::params::{UNITS, Unit};
+use pest::iterators::Pair;
+
+use super::Rule;
+use super::around::is_category;
+use super::build::Builder;
+use super::habits::condition;
+use super::statement::{is_suffix, of_suffix};
+use super::tree::Name;
+
+impl Builder<'_> {
+    /// `640x480` with its place, if a unit of that kind stands behind a number.
+    fn size(&self, pair: &Pair<'_, Rule>) -> Option<(Span, String)> {
+        let (unit, height) = (self.span(pair), pair.as_str().strip_prefix(['x', 'X'])?);
+        let before = &pair.get_input()[..pair.as_span().start()];
+        let digits = before.bytes().rev().take_while(u8::is_ascii_digit).count();
+        if digits == 0 || height.is_empty() || !height.bytes().all(|b| b.is_ascii_digit()) {
+            return None;
+        }
+        let size = format!("({}, {height})", &before[before.len() - digits..]);
+        let range = unit.range();
+        Some((Span::new(unit.source, range.start - digits, range.end), size))
+    }
+
+    /// The unit that a token names; `None` if it is none, which is told.
+    pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Arc<Unit>> {
+        let text = pair.as_str();
+        let bad = match Unit::parse(text) {
+            Ok(unit) => return Some(Arc::new(unit)),
+            Err(bad) => bad,
+        };
+        let span = self.span(pair);
+        // `(a > 1) and (b > 1)`
+        if let Some(found) = condition(span, text) {
+            self.sink.push(found);
+            return None;
+        }
+        if is_suffix(text) {
+            self.sink.push(of_suffix(span));
+            return None;
+        }
+        if text == "then" {
+            let message = "no `then` stands between a condition and its block";
+            self.sink.push(Diagnostic::error("E0204", span, message).fix(span, ""));
+            return None;
+        }
+        if matches!(text, "px" | "pixel" | "pixels") {
+            let all = self.written(blank_before(pair).start..pair.as_span().end());
+            let message = format!("there is no unit `{text}`: pixels are counted");
+            let found = Diagnostic::error("E0204", span, message);
+            self.sink.push(found.fix(all, ""));
+            return None;
+        }
+        if is_category(text) {
+            self.sink.push(self.statement_as_unit(pair, span));
+            self.begun = Some((pair.as_span().end(), Name { text: text.into(), span }));
+            return None;
+        }
+        let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
+        if let Some((all, size)) = self.size(pair) {
+            self.sink.push(diagnostic.help("a size is a vector").guess(all, size));
+            return None;
+        }
+        if let Some((unit, grade)) = suggest_unit(&bad) {
+            diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));
+            if bad == text {
+                diagnostic = diagnostic.mend(span, unit, grade);
+            }
+        } else {
+            diagnostic = diagnostic.help(
+                "units are written as `cm`, `deg` or `W/m^2/sr`; a variable is multiplied by `*`",
+            );
+        }
+        self.sink.push(diagnostic);
+        None
+    }
+
+    /// `let b = 4 shape sphere { … }`
+    fn statement_as_unit(&self, pair: &Pair<'_, Rule>, span: Span) -> Diagnostic {
+        let message = format!(
+            "`{}` begins a statement, which wants a line of its own, or `;` before it",
+            pair.as_str()
+        );
+        let gap = self.written(blank_before(pair));
+        Diagnostic::error("E0204", span, message).guess(gap, "; ")
+    }
+}
+
+/// The blanks before what stands behind a number.
+fn blank_before(pair: &Pair<'_, Rule>) -> Range<usize> {
+    let before = &pair.get_input()[..pair.as_span().start()];
+    before.trim_end_matches([' ', '\t']).len()..before.len()
+}
+
+/// The unit that a misspelt one stands for: full names are sure, slips of the pen are guessed.
+fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
+    const FULL: [(&str, &str); 21] = [
+        ("meter", "m"),
+        ("metre", "m"),
+        ("kilometer", "km"),
+        ("centimeter", "cm"),
+        ("centimetre", "cm"),
+        ("millimeter", "mm"),
+        ("millimetre", "mm"),
+        ("nanometer", "nm"),
+        ("nanometre", "nm"),
+        ("degree", "deg"),
+        ("radian", "rad"),
+        ("second", "s"),
+        ("kelvin", "K"),
+        ("watt", "W"),
+        ("lumen", "lm"),
+        ("candela", "cd"),
+        ("in", "inch"),
+        // `inches`
+        ("inche", "inch"),
+        ("foot", "ft"),
+        ("feet", "ft"),
+        ("lux", "lx"),
+    ];
+    let lower = text.to_lowercase();
+    let singular = lower.strip_suffix('s').unwrap_or(&lower);
+    let full = FULL.iter().find(|(name, _)| *name == singular).map(|(_, unit)| *unit);
+    let case = UNITS.iter().find(|(name, _)| name.to_lowercase() == lower).map(|(name, _)| *name);
+    let slip = || nearest(text, UNITS.iter().map(|(name, _)| *name)).filter(|_| text.len() > 2);
+    let near = case.or_else(slip);
+    full.map(|unit| (unit, Grade::Sure)).or(near.map(|unit| (unit, Grade::Guess)))
+}

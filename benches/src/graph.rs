@@ -23,10 +23,11 @@ let m1 = material diffuse { reflectance = 0.5 }
 let ball = shape sphere { radius = r, material = m1 }
 ";
 
-/// A text, and what of it becomes what else.
+/// A text with so many mistakes, and what of it becomes what else.
 struct Case {
     name: &'static str,
     text: String,
+    mistakes: usize,
     from: &'static str,
     to: &'static str,
 }
@@ -53,8 +54,12 @@ pub(crate) fn run() -> Result<(), String> {
     let alike = objects.replace(center, "(1.2 m, r, -3.25 m)");
     let moved = |i: usize| object(i).replace(center, &format!("({i} mm, r, -3.25 m)"));
     let apart = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), moved));
+    let wrong = objects.replacen("radius = r", "radus = r", 1);
     let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
-    let case = |name, text: &str, (from, to)| Case { name, text: text.to_owned(), from, to };
+    let case = |name, text: &str, (from, to)| {
+        let text = text.to_owned();
+        Case { name, text, mistakes: 0, from, to }
+    };
     let number = ("ball 50001\" { center = (1.2", "ball 50001\" { center = (1.3");
     let one_more = ("shape sphere \"ball 50001", "place ball\nshape sphere \"ball 50001");
     let length = ("r = 50 cm", "r = 40 cm");
@@ -70,6 +75,7 @@ pub(crate) fn run() -> Result<(), String> {
         case("objects, a length in one vector of all", &alike, length),
         case("objects, a length in a vector of each", &apart, length),
         case("objects, a mistake", &objects, (number.0, "ball 50001\" { center = (1.2 s")),
+        Case { mistakes: 1, ..case("objects, a number, where a mistake stands", &wrong, number) },
         case("objects, a number beside a `set` and a warning", &told, number),
         case("objects, what is `set`", &told, ("radius = 30 cm", "radius = 20 cm")),
         case("placements, a number", &placements, ("move((50001, 0.5", "move((50001, 0.25")),
@@ -84,7 +90,9 @@ fn report(case: &Case, registry: &Registry) -> Result<(), String> {
     let files = [files(&case.text), files(&other)];
     let path = Path::new("a.scene");
     let good = load(path, &files[0], registry, &Settings::default());
-    good.scene.as_ref().ok_or_else(|| format!("{:?}", good.diagnostics))?;
+    if good.diagnostics.iter().filter(|told| told.is_error()).count() != case.mistakes {
+        return Err(format!("{:?}", good.diagnostics));
+    }
     drop(good);
     let again = |settings: &Settings| {
         let mut kept = Kept::default();

@@ -27,7 +27,7 @@ pub fn agree(text: &str, budgets: &Budgets) -> Result<Agreement, String> {
     let Some(from) = read_head(text, budgets).0 else { return Ok(out) };
     let mut words = Words::default();
     for piece in cut(text, from, budgets, &mut |_| false).pieces {
-        if piece.faulty || piece.headless {
+        if piece.faulty {
             continue;
         }
         let pest = read_as(None, text, piece.range.clone(), budgets);

@@ -170,7 +170,7 @@ fn closed_by(part: &str, [start, base]: [usize; 2], braces: &[(usize, usize)]) -
 }
 
 /// A piece some of whose bytes became others, in order; it begins at byte `base` of its text.
-fn rewritten(piece: &str, base: usize, mends: &[(Range<usize>, &str)]) -> Mended {
+pub(super) fn rewritten(piece: &str, base: usize, mends: &[(Range<usize>, &str)]) -> Mended {
     let (mut text, mut edits) = (String::with_capacity(piece.len()), Edits::new(base));
     let mut done = 0;
     for (old, new) in mends {

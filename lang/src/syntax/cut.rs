@@ -5,6 +5,7 @@ use std::ops::Range;
 use luxel_core::diag::Diagnostic;
 
 use super::closing::{Closing, closing, indent, is_field};
+use super::strays::{Mend, Slip};
 use crate::prescan::{Fault, Scan, scan_until};
 
 /// How often at least reading goes on after a bracket that never closes, and of how many bytes at most if it
@@ -26,8 +27,8 @@ pub(crate) struct Cut {
     pub(crate) range: Range<usize>,
     /// Something in it does not close.
     pub(crate) faulty: bool,
-    /// It stands in a block that cannot be read without its head.
-    pub(crate) headless: bool,
+    /// What mends that, if it is a brace further up.
+    pub(crate) mend: Option<Box<Mend>>,
 }
 
 /// The statements of a text, or of a part of it.
@@ -52,6 +53,8 @@ pub(super) struct Region {
     pub(super) faults: Vec<Fault>,
     /// The first bracket that never closes, or is taken for it.
     pub(super) unclosed: Option<usize>,
+    /// Braces that are missing, or one too many, for others that close nothing.
+    pub(super) slips: Vec<Slip>,
     /// A fault stands before the first statement.
     pub(super) junk_told: bool,
     /// Before which lines braces that never close most likely do.
@@ -89,7 +92,7 @@ pub(super) fn region(
     };
     let pieces = ranges.map(|(start, stop)| {
         let range = start..stop.min(end);
-        Cut { faulty: holds(&range), range, headless: false }
+        Cut { faulty: holds(&range), range, mend: None }
     });
     let pieces: Vec<Cut> = pieces.collect();
     let told =
@@ -101,7 +104,8 @@ pub(super) fn region(
     faults.extend(opens.clone().map(|open| Fault::Unclosed { open }));
     // One that is closed further down may be taken for the one that is not.
     let unclosed = unclosed.into_iter().chain(opens).min();
-    Region { first, pieces, faults, unclosed, junk_told, closes, next: resume, met: found.met }
+    let (slips, met) = (vec![], found.met);
+    Region { first, pieces, faults, unclosed, slips, junk_told, closes, next: resume, met }
 }
 
 /// The same of what was found, where brackets that nest too deep are ones that never close if the first of

@@ -8,7 +8,7 @@ use super::make::RESERVED;
 use super::statement;
 
 /// What is said of an object whose parameters do not stand in braces.
-const BRACES: &str = "an object has its parameters between `{` and `}`";
+pub(super) const BRACES: &str = "an object has its parameters between `{` and `}`";
 
 /// Words with which other languages begin what `let`, `param` and `fn` begin here.
 const FOREIGN: [&str; 22] = [

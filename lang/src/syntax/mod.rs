@@ -33,8 +33,8 @@ mod statement;
 mod tests;
 mod tree;
 pub(crate) mod type_names;
+mod strays;
 mod unit;
-mod unopened;
 mod walk;
 mod weigh;
 

@@ -15,8 +15,8 @@ use super::fault;
 use super::gaps::Gaps;
 use super::lex::{Token, TokenKind, tokens};
 use super::recover::{stopped, whole_before};
+use super::strays::joined;
 use super::tree::{Expr, ExprNode, Stmt};
-use super::unopened::unopened;
 use super::weigh::too_large;
 use super::{Rule, SceneParser};
 use crate::budgets::Budgets;
@@ -101,7 +101,7 @@ pub(crate) fn cut(
 /// What stands from `from` on, up to a brace that never closes, or to where it is over.
 fn whole_region(text: &str, from: usize, budgets: &Budgets, is_over: &dyn Fn() -> bool) -> Region {
     let mut found = region(text, from, budgets.brackets, &mut |_| is_over());
-    unopened(text, &mut found);
+    joined(text, &mut found, budgets.brackets);
     found
 }
 
@@ -294,8 +294,8 @@ impl Reader<'_> {
                 return;
             }
             self.again = AGAIN;
-            if piece.headless {
-                self.broken(piece.range.clone());
+            if let Some(mend) = &piece.mend {
+                self.with_mend(piece.range.clone(), mend);
             } else if piece.faulty {
                 self.unclosed(piece.range.clone());
             } else {
@@ -310,6 +310,9 @@ impl Reader<'_> {
             let limit = self.budgets.brackets;
             let told = fault::told(self.text, self.source, limit, fault, &found.closes);
             self.sink.push(told);
+        }
+        for slip in &found.slips {
+            self.sink.push(slip.told(self.source));
         }
         if !found.junk_told {
             self.before_first(from, found.first);

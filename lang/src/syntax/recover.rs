@@ -8,13 +8,14 @@ use pest::error::InputLocation;
 
 use super::around::Place;
 use super::build::Builder;
-use super::closing::closed;
+use super::closing::{closed, rewritten};
 use super::defined::perhaps_defined;
 use super::edits::{Edits, Mended};
 use super::explain::explain;
 use super::gaps::Gaps;
 use super::lex::{TokenKind, tokens};
 use super::parse::Reader;
+use super::strays::Mend;
 use super::tree::{Stmt, StmtNode};
 use super::{Rule, SceneParser};
 use crate::prescan::scan;
@@ -130,6 +131,14 @@ impl Reader<'_> {
         self.again = reader.again;
         self.out.stmts.append(&mut reader.out.stmts);
         self.sink.absorb(sink);
+    }
+
+    /// Reads a statement with something of it mended, which has been told.
+    pub(super) fn with_mend(&mut self, chunk: Range<usize>, (at, with): &Mend) {
+        let own = at.start - chunk.start..at.end - chunk.start;
+        let mended = rewritten(&self.text[chunk.clone()], chunk.start, &[(own, *with)]);
+        let whole = 0..mended.text.len();
+        self.read_mended(mended, whole, Place::File);
     }
 
     /// Reads a statement with whose brackets something is wrong, which has been told: closed where it most

@@ -1,0 +1,205 @@
+//! Braces that close nothing because one further up is missing, or is one too many: one mistake, not one at
+//! each end and one for each line between.
+
+use std::ops::Range;
+
+use luxel_core::diag::{Diagnostic, SourceId, Span};
+
+use super::around::is_category;
+use super::closing::{indent, is_field, rewritten};
+use super::cut::{Cut, Region};
+use super::fault::mend;
+use super::head::{BRACES, opens_block};
+use super::lex::{Token, TokenKind, tokens};
+use crate::prescan::{Fault, scan};
+
+/// Statements before a brace among which the mistake is looked for.
+const LOOKED_AT: usize = 100;
+
+/// Bytes that are scanned again, all in all, to find out whether a mend is one.
+const SCANNED: usize = 1 << 20;
+
+/// A brace that is missing or one too many.
+#[derive(Debug)]
+pub(super) struct Slip {
+    /// What is to blame: the end of a head, or the brace.
+    at: Range<usize>,
+    what: What,
+    pub(super) mend: Mend,
+}
+
+/// Which bytes become what.
+pub(crate) type Mend = (Range<usize>, &'static str);
+
+#[derive(Clone, Copy, Debug)]
+enum What {
+    /// A head with this first word opens no block.
+    Unopened(&'static str),
+    /// An object has no brace before its parameters.
+    Bare,
+    /// A brace ends what goes on.
+    Early,
+}
+
+impl Slip {
+    /// What is told of it.
+    pub(super) fn told(&self, source: SourceId) -> Diagnostic {
+        let span = |range: &Range<usize>| Span::new(source, range.start, range.end);
+        let (code, message) = match self.what {
+            What::Unopened(word) => ("E0023", format!("the `{{` of this `{word}` is missing")),
+            What::Bare => ("E0023", BRACES.to_owned()),
+            What::Early => ("E0010", "this `}` ends what goes on below it".to_owned()),
+        };
+        let found = Diagnostic::error(code, span(&self.at), message);
+        let found = match self.what {
+            What::Unopened(_) => found.help("a block stands between `{` and `}`"),
+            What::Bare | What::Early => found,
+        };
+        found.guess(span(&self.mend.0), self.mend.1)
+    }
+}
+
+/// Finds what a `}` that closes nothing closes, or would if another one did not, and joins the statements in
+/// between to one.
+pub(super) fn joined(text: &str, found: &mut Region, limit: usize) {
+    let (mut left, mut done) = (SCANNED, 0);
+    let mut faults = std::mem::take(&mut found.faults);
+    let strays = faults.extract_if(.., |fault| matches!(fault, Fault::Stray { .. }));
+    let strays: Vec<Fault> = strays.collect();
+    for stray in strays {
+        let at = stray.at();
+        let after = found.pieces.partition_point(|piece| piece.range.start < at);
+        let first = after.saturating_sub(LOOKED_AT).max(done);
+        let is_alone = text[at..].starts_with('}') && !text[at + 1..].starts_with('}');
+        let mut search = Search { text, pieces: &found.pieces[first..after], limit, left };
+        let slip = if is_alone { search.slip(at) } else { None };
+        let other = slip.is_none().then(|| search.other(&mut faults)).flatten();
+        left = search.left;
+        let Some((begin, mend)) = slip.as_ref().map(|(i, slip)| (*i, slip.mend.clone())).or(other)
+        else {
+            faults.push(stray);
+            continue;
+        };
+        let end = found.pieces[after - 1].range.end;
+        let range = found.pieces[first + begin].range.start..end;
+        let joined = Cut { range, faulty: true, mend: Some(Box::new(mend)) };
+        found.pieces.splice(first + begin..after, [joined]);
+        done = first + begin + 1;
+        found.slips.extend(slip.map(|(_, slip)| slip));
+    }
+    faults.sort_by_key(Fault::at);
+    found.faults = faults;
+}
+
+/// The statements up to a brace that closes nothing.
+struct Search<'a> {
+    text: &'a str,
+    pieces: &'a [Cut],
+    limit: usize,
+    /// Bytes that may still be scanned.
+    left: usize,
+}
+
+impl Search<'_> {
+    /// What most likely is wrong before the brace at `stray`, nearest first, and in which statement it
+    /// begins.
+    fn slip(&mut self, stray: usize) -> Option<(usize, Slip)> {
+        let start = self.pieces.first()?.range.start;
+        let tokens: Vec<Token<'_>> = tokens(self.text, start..stray).collect();
+        let lines: Vec<&[Token<'_>]> = tokens.chunk_by(|_, next| !next.first_on_line).collect();
+        (0..lines.len()).rev().find_map(|i| {
+            let next = lines.get(i + 1).map(|line| line[0].start);
+            let slip = self.slip_of(lines[i], next)?;
+            Some((self.begin(&slip.mend)?, slip))
+        })
+    }
+
+    /// A bracket of another kind that ends what goes on, of which that is told.
+    fn other(&mut self, faults: &mut [Fault]) -> Option<(usize, Mend)> {
+        let start = self.pieces.first()?.range.start;
+        let end = self.pieces.last()?.range.end;
+        faults.iter_mut().rev().find_map(|fault| {
+            let Fault::Mismatch { open, at, .. } = *fault else { return None };
+            let other = Fault::Mismatch { open, at, left: 0 };
+            let mend = mend(self.text, &other).filter(|_| (start..end).contains(&at))?;
+            let begin = self.begin(&mend)?;
+            *fault = other;
+            Some((begin, mend))
+        })
+    }
+
+    /// The statement in which a mend stands, if with it all from there on is one statement.
+    fn begin(&mut self, (at, with): &Mend) -> Option<usize> {
+        let begin = self.pieces.partition_point(|piece| piece.range.start <= at.start);
+        let begin = begin.checked_sub(1)?;
+        let range = self.pieces[begin].range.start..self.pieces.last()?.range.end;
+        self.left = self.left.checked_sub(range.len())?;
+        let own = at.start - range.start..at.end - range.start;
+        let mended = rewritten(&self.text[range], 0, &[(own, *with)]).text;
+        let found = scan(&mended, 0..mended.len(), 0, self.limit);
+        (found.faults.is_empty() && found.starts.len() == 1).then_some(begin)
+    }
+
+    /// What may be wrong with a line, if the next begins at that byte.
+    fn slip_of(&self, line: &[Token<'_>], next: Option<usize>) -> Option<Slip> {
+        let depth = |at: usize| {
+            let begin = self.text[..at].rfind('\n').map_or(0, |end| end + 1);
+            indent(&self.text[begin..])
+        };
+        if let Some((end, what)) = unopened(line) {
+            let goes_on = next.is_some_and(|next| depth(next) > depth(line[0].start));
+            let (at, behind) = (line[end].start..line[end].end(), line[end].end());
+            let slip = Slip { at, what, mend: (behind..behind, " {") };
+            return (end + 1 < line.len() || goes_on).then_some(slip);
+        }
+        // What follows begins a statement, and is none or stands within.
+        let (last, next) = (line.last().filter(|last| last.text == "}")?, next?);
+        let i = self.pieces.binary_search_by_key(&next, |piece| piece.range.start).ok()?;
+        let begun = depth(self.pieces[i.checked_sub(1)?].range.start);
+        let at = last.start..last.end();
+        let slip = Slip { at: at.clone(), what: What::Early, mend: (at, "") };
+        (is_field(&self.text[next..]) || depth(next) > begun).then_some(slip)
+    }
+}
+
+/// The last token of the head with which a line begins, if no brace follows where one should.
+fn unopened(line: &[Token<'_>]) -> Option<(usize, What)> {
+    let word = |i: usize| line.get(i).map_or("", |token| token.text);
+    let is = |i: usize, kind: TokenKind| line.get(i).is_some_and(|token| token.kind == kind);
+    let no_brace = |from: usize| line[from..].iter().all(|token| token.text != "{");
+    // Behind `} else` a head may stand, and behind `let x =` an object's.
+    let last_else = line.iter().rposition(|token| token.text == "else");
+    let from = match (last_else, word(0), word(2)) {
+        (Some(i), ..) => i + 1,
+        (None, "let", "=") => 3,
+        _ => 0,
+    };
+    let block = ["for", "if"].into_iter().find(|known| *known == word(from));
+    if let Some(block) = block.filter(|block| opens_block(block)) {
+        let begins = |i: &usize| is_category(word(i + 1)) && line[*i].ends_operand();
+        let end = (from + 1..line.len() - 1).find(begins);
+        let head = &line[from..=end.unwrap_or(line.len() - 1)];
+        let is_whole = head.len() > 2 && head.iter().all(|token| token.text != "{");
+        let end = from + head.len() - 1;
+        return (is_whole && line[end].ends_operand()).then_some((end, What::Unopened(block)));
+    }
+    if last_else.is_some_and(|i| i + 1 == line.len()) {
+        return Some((line.len() - 1, What::Unopened("else")));
+    }
+    if word(0) == "fn" && is(1, TokenKind::Word) && word(line.len() - 1) == ")" {
+        let is_template = no_brace(0) && line.iter().all(|token| token.text != "=");
+        return is_template.then_some((line.len() - 1, What::Unopened("fn")));
+    }
+    let is_group = word(from) == "group";
+    if !is_category(word(from)) && !is_group {
+        return None;
+    }
+    let mut end = from + usize::from(!is_group);
+    while word(end + 1) == "." {
+        end += 2;
+    }
+    let is_class = is_group || is(end, TokenKind::Word);
+    end += usize::from(is(end + 1, TokenKind::Text));
+    let goes_on = is(end + 1, TokenKind::Word) && word(end + 2) == "=";
+    (is_class && (end + 1 == line.len() || goes_on)).then_some((end, What::Bare))
+}

@@ -311,6 +311,12 @@ impl Evaluator<'_> {
                 (self.damaged, body.broken) = (true, true);
                 self.unseen.block = true;
             }
+            Value::Transform(_) if body.place != Place::File => {
+                self.unused(call.span, body, ("transform", "transform"));
+            }
+            Value::Look(_) if body.place != Place::File => {
+                self.unused(call.span, body, ("look", "view"));
+            }
             _ => {
                 let message = "this call gives a value that nothing uses";
                 self.tell(
@@ -318,6 +324,23 @@ impl Evaluator<'_> {
                         .help("only functions with a `{ … }` body emit something"),
                 );
             }
+        }
+    }
+
+    /// A value that stands alone in an object, and the parameter that it is surely meant for.
+    fn unused(&mut self, span: Span, body: &mut Body, (param, what): (&str, &str)) {
+        body.broken = true;
+        let found = Diagnostic::error("E0114", span, format!("this {what} is given to nothing"));
+        let last = body.fields.iter().rfind(|field| *field.name.text == *param);
+        let Some(last) = last else {
+            let start = Span { end: span.start, ..span };
+            self.tell(found.guess(start, format!("{param} = ")));
+            return;
+        };
+        let gap = Span { start: last.span.end, end: span.start, ..span };
+        // Where no comma stands between the two, that has been told.
+        if gap.start > gap.end || self.written(gap).contains([',', ';', '\n']) {
+            self.tell(found.help("several stand in a list: `[scale(2), move((1, 0, 0) m)]`"));
         }
     }
 }

@@ -109,7 +109,19 @@ impl Evaluator<'_> {
             scene::wanted(param),
             items.len()
         );
-        self.poison("E0214", field.span, message);
+        let number = |item: &Value| match item {
+            Value::Number(_, dimension) => Some(*dimension),
+            _ => None,
+        };
+        let numbers: Option<Vec<_>> = items.iter().map(number).collect();
+        let mut units = numbers.unwrap_or_default();
+        units.retain(|dimension| *dimension != Dimension::NONE);
+        units.dedup();
+        let found = Diagnostic::error("E0214", field.span, message);
+        self.tell(match &units[..] {
+            [_] => found.help("one unit stands behind all: `(1, 2, 3) m`"),
+            _ => found,
+        });
         None
     }
 

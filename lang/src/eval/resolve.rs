@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::slice;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Span, near};
+use luxel_core::diag::{Diagnostic, Grade, Span, near};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Unit;
 
@@ -373,7 +373,12 @@ impl<'a> Resolver<'a> {
         let value = Span { start: end + u32::try_from(blanks).unwrap_or(0), ..call.span };
         let message = format!("`=` is missing between `{name}` and its value");
         let gap = Span { start: end, end, ..value };
-        self.sink.push(Diagnostic::error("E0012", value, message).fix(gap, " ="));
+        // `phase henyey_greenstein(0.5)` is an object.
+        let before = self.text.get(..end as usize - name.len()).unwrap_or_default().trim_end();
+        let last = before.rsplit(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
+        let is_kind = last.is_some_and(|word| Kind::of_word(word).is_some());
+        let grade = if is_kind { Grade::Guess } else { Grade::Sure };
+        self.sink.push(Diagnostic::error("E0012", value, message).mend(gap, " =", grade));
         for arg in args {
             self.expr(&arg.value);
         }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
+use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Unit;
 
 use super::builtins;
@@ -21,6 +22,19 @@ const VECTORS: [&str; 11] = [
     "vec", "vec2", "vec3", "vec4", "vector", "vector3", "float3", "point", "point3", "dvec3",
     "xyz3",
 ];
+
+/// What other languages call functions, and ours.
+const FUNCTIONS: [(&str, &str); 6] = [
+    ("translate", "move"),
+    ("translation", "move"),
+    ("rotation", "rotate"),
+    ("lookat", "look_at"),
+    ("norm", "length"),
+    ("magnitude", "length"),
+];
+
+/// Functions of other languages for which there is none here.
+const NONE: [&str; 4] = ["print", "printf", "append", "input"];
 
 impl Resolver<'_> {
     /// Whether an argument is a text without its quotes, which is told: `metal(Au)`.
@@ -97,6 +111,8 @@ impl Resolver<'_> {
         let meant = self.meant(shown);
         if Unit::named(shown).is_some() {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
+        } else if Kind::of_word(shown).is_some() {
+            found = found.help(format!("an object is written `{shown} NAME {{ … }}`"));
         } else if shown == "rgba" {
             found = found.help("a colour is written `rgb.srgb(1, 0.5, 0)`, and has no alpha");
         } else if shown == "not" {
@@ -133,7 +149,16 @@ impl Resolver<'_> {
         // `srgb` is nearer to `rgb.srgb`, which ends so, than to `rgb`.
         let ending = builtins::names()
             .find(|known| known.split_once('.').is_some_and(|(_, ending)| ending == shown));
-        let ending = ending.map(|name| Near { name, grade: Grade::Sure });
+        // A picture may be meant by `file` as well as a spectrum.
+        let grade = if shown == "file" { Grade::Guess } else { Grade::Sure };
+        let ending = ending.map(|name| Near { name, grade });
+        let theirs = FUNCTIONS.iter().find(|(theirs, _)| *theirs == shown);
+        if let Some((_, name)) = theirs {
+            return Some(Near { name, grade: Grade::Guess });
+        }
+        if NONE.contains(&shown) {
+            return None;
+        }
         let alike = || known.iter().copied().find(|known| known.eq_ignore_ascii_case(shown));
         let near = ending.or_else(|| near(shown, known.iter().copied()));
         near.or_else(|| alike().map(|name| Near { name, grade: Grade::Guess }))

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
+use luxel_sdk::params::{Dimension, Unit};
 use pest::iterators::Pair;
 
 use super::Rule;
@@ -162,7 +163,7 @@ impl Builder<'_> {
         let rule = pair.as_rule();
         let mut parts = parts(pair);
         match rule {
-            Rule::field => StmtNode::Field(self.field(&mut parts)),
+            Rule::field => self.field_stmt(&mut parts),
             Rule::object => StmtNode::Object(Arc::new(self.object(&mut parts))),
             Rule::let_stmt => {
                 let name = self.definition(&take(&mut parts));
@@ -345,6 +346,28 @@ impl Builder<'_> {
     fn field<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> Field {
         let name = self.definition(&take(parts));
         Field { name, value: self.expr(take(parts)) }
+    }
+
+    /// A field, or `units = mm`.
+    fn field_stmt<'i>(&mut self, parts: &mut impl Iterator<Item = Pair<'i, Rule>>) -> StmtNode {
+        let name = take(parts);
+        let value = take(parts);
+        let unit =
+            Unit::named(value.as_str().trim()).filter(|unit| unit.dimension == Dimension::LENGTH);
+        if name.as_str() != "units" || unit.is_none() {
+            return StmtNode::Field(Field {
+                name: self.definition(&name),
+                value: self.expr(value),
+            });
+        }
+        let start = value.as_span().start();
+        let unit = self.written(start..start + value.as_str().trim_end().len());
+        let span = self.span(&name).to(unit);
+        let mended = format!("units {{ length = {} }}", value.as_str().trim());
+        let found = Diagnostic::error("E0023", span, "units stand between `{` and `}`");
+        self.sink.push(found.guess(span, mended));
+        let name = Name { text: "length".into(), span: unit };
+        StmtNode::Units(Box::new([Field { name, value: self.expr(value) }]))
     }
 
     pub(super) fn record(&mut self, pair: Pair<'_, Rule>) -> Box<[Field]> {

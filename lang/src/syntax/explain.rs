@@ -82,6 +82,7 @@ impl<'a> Around<'a> {
             .or_else(|| self.equals())
             .or_else(|| self.missing_operand())
             .or_else(|| self.unit_behind_call())
+            .or_else(|| self.unit_twice())
             .or_else(|| self.missing_brackets())
             .or_else(|| self.missing_comma())
             .or_else(|| self.missing_field_comma())
@@ -164,6 +165,10 @@ impl<'a> Around<'a> {
     /// With what stands for a `:` behind a word.
     fn colon(&self, colon: &Token<'_>, word: &Token<'_>, found: Diagnostic) -> Diagnostic {
         let gap = Span::new(self.source, word.end(), colon.end());
+        if self.open.last().is_some_and(|open| self.word(*open) == "[") {
+            let found = self.error("E0023", colon, "no `:` stands in a list");
+            return found.help("pairs stand in brackets: `[(400 nm, 0.5), (700 nm, 1)]`");
+        }
         // `shape: sphere { … }` where objects stand.
         let next = self.tokens.get(self.at + 1).filter(|t| t.kind == TokenKind::Word);
         let opens = self.word(self.at + 2) == "{" && self.inner() != Place::Fields;
@@ -249,11 +254,16 @@ impl<'a> Around<'a> {
     fn missing_brackets(&self) -> Option<Diagnostic> {
         let (current, callee) = (self.current()?, self.before(1)?);
         let is_callee = OF_A_NUMBER.contains(&callee.text);
-        let opens = matches!(self.before(2)?.text, "[" | "," | "(" | "=");
-        if !is_callee || !opens || current.kind != TokenKind::Number || current.first_on_line {
+        let before = self.before(2)?;
+        let opens = before.is_operator() || matches!(before.text, "[" | "," | "(");
+        let next = self.tokens.get(self.at + 1);
+        let is_word = current.kind == TokenKind::Word
+            && next.is_none_or(|next| matches!(next.text, ")" | "]" | ","));
+        let is_value = is_word || current.kind == TokenKind::Number;
+        if !is_callee || !opens || !is_value || current.first_on_line {
             return None;
         }
-        let unit = self.tokens.get(self.at + 1).filter(|t| Unit::named(t.text).is_some());
+        let unit = next.filter(|t| !is_word && Unit::named(t.text).is_some());
         let end = unit.unwrap_or(current).end();
         let message = format!("what is given to `{}` stands in brackets", callee.text);
         let all = Span::new(self.source, callee.end(), end);
@@ -268,8 +278,9 @@ impl<'a> Around<'a> {
             return None;
         }
         let gap = Span::new(self.source, before.end(), before.end());
-        // `scale 2` may be a call.
-        let may_call = before.kind == TokenKind::Word && current.kind != TokenKind::Word;
+        // `scale 2` may be a call, and `x cos(a)` a product.
+        let calls = self.word(self.at + 1) == "(";
+        let may_call = before.kind == TokenKind::Word && (calls || current.kind != TokenKind::Word);
         let grade = if may_call { Grade::Guess } else { Grade::Sure };
         let message = format!("a comma is missing before `{}`", short(current.text));
         Some(self.error("E0014", current, message).mend(gap, ",", grade))
@@ -303,6 +314,24 @@ impl<'a> Around<'a> {
             return Some(found.fix(all, format!("({} {})", &self.text[start..end], unit.text)));
         }
         Some(found.guess(Span::new(self.source, end, unit.start), " * 1 "))
+    }
+
+    /// `1 m m`
+    fn unit_twice(&self) -> Option<Diagnostic> {
+        let is_unit = |t: &&Token<'_>| !t.first_on_line && Unit::named(t.text).is_some();
+        // Reading stops at it, or behind it.
+        let at = [self.at, self.at.checked_sub(1)?].into_iter().find(|i| {
+            let both = i.checked_sub(1).and_then(|before| self.tokens.get(before..=*i));
+            both.is_some_and(|both| both.iter().all(|token| is_unit(&token)))
+        })?;
+        let (unit, again) = (&self.tokens[at - 1], &self.tokens[at]);
+        let value = self.tokens.get(at.checked_sub(2)?)?;
+        let is_value = value.kind == TokenKind::Number || matches!(value.text, ")" | "]");
+        let next = self.tokens.get(at + 1);
+        let ends = next.is_none_or(|t| t.first_on_line || matches!(t.text, "," | "}" | ")" | "]"));
+        let found = self.error("E0203", again, "a number has one unit");
+        let gap = Span::new(self.source, unit.end(), again.end());
+        (is_value && ends).then(|| found.guess(gap, ""))
     }
 
     /// `roughness = 0 metallic = 1`: the word was read as the unit of what stands before it.
@@ -353,7 +382,10 @@ impl<'a> Around<'a> {
             || is_number(i.checked_sub(2));
         let has_unit = is_number(Some(i - 1)) || matches!(value.text, ")" | "]");
         let is_unit = has_unit && Unit::named(word.text).is_some();
-        let is_name = word.kind == TokenKind::Word && !RESERVED.contains(&word.text) && !is_unit;
+        let is_name = word.kind == TokenKind::Word
+            && !RESERVED.contains(&word.text)
+            && !is_unit
+            && !is_category(value.text);
         let is_apart = value.end() < word.start && !word.first_on_line && !given.first_on_line;
         let ends = value.ends_operand() && given.begins_operand() && given.text != "{";
         is_name && is_value && is_apart && ends

@@ -19,6 +19,7 @@ pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| returned(around))
         .or_else(|| steps(around))
         .or_else(|| typed_before(around))
+        .or_else(|| if_behind(around))
         .or_else(|| lone_if(around))
         .or_else(|| named_object(around))
         .or_else(|| set(around))
@@ -91,6 +92,15 @@ fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
     let both = around.span(ty).to(around.span(name));
     let found = told(both, "a type stands behind the name, and `:`");
     Some(found.fix(both, format!("{}: {}", name.text, ty.text)))
+}
+
+/// `let x = 3 if a else 2`
+fn if_behind(around: &Around<'_>) -> Option<Diagnostic> {
+    let word = around.current().filter(|t| t.text == "if" && !t.first_on_line)?;
+    let is_value = (1..=around.at.min(8)).any(|back| around.word(around.at - back) == "=");
+    let ends = around.before(1)?.ends_operand() && around.before(1)?.text != "}";
+    let found = told(around.span(word), "an `if` stands before the values that it chooses from");
+    (is_value && ends).then(|| found.help("it is written `if x > 1 { a } else { b }`"))
 }
 
 /// `let x = if a { 3 }`
@@ -167,20 +177,28 @@ fn a_vector(around: &Around<'_>, all: Range<usize>, numbers: &[&str]) -> Diagnos
     found.guess(span, format!("({})", numbers.join(", ")))
 }
 
-/// `resolution = 48, 30`
+/// `resolution = 48, 30`, `center = -1, 2, 0`
 fn vector_of_fields(around: &Around<'_>) -> Option<Diagnostic> {
-    let first =
-        around.at.checked_sub(2).filter(|first| *first > 0 && around.word(first - 1) == "=")?;
-    let is_number = |i: usize| {
-        around.tokens.get(i).is_some_and(|t| t.kind == TokenKind::Number && !t.first_on_line)
-    };
-    let follows = |i: &usize| is_number(*i) && around.word(i - 1) == "," && is_number(i - 2);
-    let last = (around.at..).step_by(2).take(WIDEST - 1).take_while(follows).last()?;
-    let ends =
-        around.tokens.get(last + 1).is_none_or(|t| t.first_on_line || matches!(t.text, "," | "}"));
-    let texts: Vec<&str> = (first..=last).step_by(2).map(|i| around.word(i)).collect();
+    let first = (around.at.saturating_sub(WIDEST)..around.at).rev();
+    let first = first.into_iter().find(|i| around.word(*i) == "=")? + 1;
+    let (mut next, mut ends) = (first, vec![]);
+    while ends.len() < WIDEST {
+        let number = next + usize::from(around.word(next) == "-");
+        let is_number = around.tokens.get(number).is_some_and(|t| t.kind == TokenKind::Number);
+        if !is_number || around.tokens[next].first_on_line {
+            break;
+        }
+        ends.push(number);
+        if around.word(number + 1) != "," {
+            break;
+        }
+        next = number + 2;
+    }
+    let last = *ends.last().filter(|last| ends.len() > 1 && around.at <= **last)?;
+    let is_over = |t: &Token<'_>| t.first_on_line || matches!(t.text, "," | "}");
     let all = around.tokens[first].start..around.tokens[last].end();
-    ends.then(|| a_vector(around, all, &texts))
+    let texts = around.text[all.clone()].split(',').map(str::trim).collect::<Vec<_>>();
+    around.tokens.get(last + 1).is_none_or(is_over).then(|| a_vector(around, all, &texts))
 }
 
 /// `center = 0 0 0`

@@ -155,6 +155,11 @@ fn hash(around: &Around<'_>) -> Option<Diagnostic> {
     if let Some(found) = directive(around, mark) {
         return Some(found);
     }
+    let gap = rest.len() - rest.trim_start_matches([' ', '\t']).len();
+    if rest[gap..].starts_with('[') && !mark.first_on_line {
+        let span = Span::new(around.source, mark.start, mark.end() + gap + 1);
+        return Some(told(span, "a table of numbers begins with `#[`").guess(span, "#["));
+    }
     if mark.first_on_line || !matches!(digits, 3 | 6) {
         let found = told(around.span(mark), COMMENTS);
         return Some(found.guess(around.span(mark), "//"));
@@ -195,12 +200,30 @@ fn operator(around: &Around<'_>) -> Option<Diagnostic> {
         if let Some(span) = joined(around, first, &[":", "="]) {
             return Some(told(span, "a value is given with `=`").fix(span, "="));
         }
+        if let Some(span) = joined(around, first, &["=", "<"]) {
+            return Some(told(span, "this comparison is written `<=`").fix(span, "<="));
+        }
+        if let Some(span) = joined(around, first, &["==", "="]) {
+            return Some(told(span, "values are compared with `==`").fix(span, "=="));
+        }
+        for op in ["&", "|"] {
+            let mark = around.tokens.get(first).filter(|t| t.text == op);
+            if let Some(span) = mark.map(|mark| around.span(mark)) {
+                let message = format!("conditions are joined with `{op}{op}`");
+                return Some(told(span, message).fix(span, format!("{op}{op}")));
+            }
+        }
         if let Some(span) = joined(around, first, &["*", "*"]) {
             return Some(told(span, "a power is written with `^`").fix(span, "^"));
         }
         if let Some(span) = joined(around, first, &["-", ">"]) {
             if around.inner() == Place::Fields && around.is_word(first.wrapping_sub(1)) {
                 return Some(told(span, "a value is given with `=`, not with `->`").fix(span, "="));
+            }
+            let open = around.open.last().filter(|open| around.word(**open) == "[");
+            if open.is_some_and(|open| around.word(open + 1) == "for") {
+                let message = "what a list is made of stands behind `=>`";
+                return Some(told(span, message).fix(span, "=>"));
             }
             let found = told(span, "what a function gives is not declared");
             let ty = around.tokens.get(first + 2).filter(|ty| ty.kind == TokenKind::Word);
@@ -360,8 +383,12 @@ fn decimal_comma(around: &Around<'_>) -> Option<Diagnostic> {
     if comma.text != "," || !is_number(number) || !is_number(rest) || is_list || !touch {
         return None;
     }
-    let found = told(around.span(comma), "the decimal point is written `.`");
-    Some(found.guess(around.span(comma), "."))
+    let span = around.span(comma);
+    if rest.text.len() == 3 {
+        let found = told(span, "no comma stands in a number, and the decimal point is `.`");
+        return Some(found.guess(span, "").guess(span, "."));
+    }
+    Some(told(span, "the decimal point is written `.`").guess(span, "."))
 }
 
 /// `let x int = 3`, `let go ld = 3`, `param x = 3`, `import "a.scene"`

@@ -54,6 +54,8 @@ pub(super) struct Resolver<'a> {
     pub(super) text: &'a str,
     /// In the body of an object that holds no others.
     in_object: bool,
+    /// In the body of what has fields, which define nothing.
+    has_fields: bool,
     /// Where names that nothing defines are kept instead of being told.
     pub(super) free: Option<BTreeMap<Arc<str>, u32>>,
     /// Names that stand before the statement beside those of `scopes`.
@@ -92,7 +94,8 @@ impl<'a> Resolver<'a> {
     /// Nothing is defined yet.
     pub(super) fn new(text: &'a str, sink: &'a mut Sink) -> Self {
         let (scopes, functions) = (vec![], vec![]);
-        Self { sink, text, scopes, functions, in_object: false, free: None, before: None }
+        let (in_object, has_fields) = (false, false);
+        Self { sink, text, scopes, functions, in_object, has_fields, free: None, before: None }
     }
 
     fn block(&mut self, stmts: &[Stmt], names: &[&Name]) {
@@ -101,7 +104,7 @@ impl<'a> Resolver<'a> {
             for name in defines(stmt) {
                 scope.later.entry(name.text.clone()).or_insert(name.span);
             }
-            for name in stray_names(stmt).filter(|_| self.scopes.is_empty()) {
+            for name in stray_names(stmt).filter(|_| !self.has_fields) {
                 scope.later.entry(name.text).or_insert(name.span);
             }
             scope.mentions.extend(mentions(stmt));
@@ -114,6 +117,13 @@ impl<'a> Resolver<'a> {
             self.stmt(stmt);
         }
         self.scopes.pop();
+    }
+
+    /// The body of what has fields, or none.
+    fn body(&mut self, stmts: &[Stmt], has_fields: bool) {
+        let outer = std::mem::replace(&mut self.has_fields, has_fields);
+        self.block(stmts, &[]);
+        self.has_fields = outer;
     }
 
     fn define(&mut self, name: &Name) {
@@ -183,7 +193,7 @@ impl<'a> Resolver<'a> {
                 self.expr(what);
                 self.label(stmt, label.as_ref());
                 if let Some(block) = body {
-                    self.block(&block.stmts, &[]);
+                    self.body(&block.stmts, true);
                 }
             }
             StmtNode::Set { value, .. } => self.expr(value),
@@ -193,7 +203,7 @@ impl<'a> Resolver<'a> {
             StmtNode::Field(field) => {
                 self.expr(&field.value);
                 // That it stands in no object is told when it is evaluated.
-                if self.scopes.len() == 1 {
+                if !self.has_fields {
                     self.perhaps(stray_names(stmt));
                 }
             }
@@ -268,7 +278,7 @@ impl<'a> Resolver<'a> {
         }
         match &def.body {
             FnBody::Value(value) => self.expr(value),
-            FnBody::Template(block) => self.block(&block.stmts, &[]),
+            FnBody::Template(block) => self.body(&block.stmts, false),
         }
         self.scopes.pop();
         self.functions.pop();
@@ -281,7 +291,7 @@ impl<'a> Resolver<'a> {
         }
         let outer = std::mem::replace(&mut self.in_object, &*object.category.text != "group");
         self.apart(&object.body.stmts);
-        self.block(&object.body.stmts, &[]);
+        self.body(&object.body.stmts, true);
         self.in_object = outer;
     }
 

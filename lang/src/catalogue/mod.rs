@@ -45,7 +45,7 @@ pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0111", "a value for a parameter that is not declared"),
     ("E0112", "a value from the command line that does not fit"),
     ("E0113", "a field outside an object"),
-    ("E0114", "a value that nothing uses (warning)"),
+    ("E0114", "a value that nothing uses"),
     ("E0115", "a requirement of plugins that cannot be understood"),
     ("E0201", "a number without its unit"),
     ("E0202", "a number with another dimension than wanted"),

@@ -96,16 +96,48 @@ impl Div for Dimension {
 
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const BASE: [&str; 7] = ["m", "kg", "s", "K", "cd", "rad", "sr"];
+        const NAMES: [&str; 8] = ["W", "m", "kg", "s", "K", "cd", "rad", "sr"];
+        let [m, kg, s, rest @ ..] = self.0;
+        // Power, and what is made of it, by its own unit.
+        let (w, m, kg, s) =
+            if (kg, s) == (1, -3) { (1, m.saturating_sub(2), 0, 0) } else { (0, m, kg, s) };
+        let [k, cd, rad, sr] = rest;
+        let powers = [w, m, kg, s, k, cd, rad, sr];
+        let named = || NAMES.into_iter().zip(powers);
         let mut first = true;
-        for (name, exponent) in BASE.iter().zip(self.0).filter(|(_, e)| *e != 0) {
+        for (name, power) in named().filter(|(_, power)| *power > 0) {
             let sep = if first { "" } else { "*" };
-            match exponent {
-                1 => write!(f, "{sep}{name}")?,
-                e => write!(f, "{sep}{name}^{e}")?,
+            write!(f, "{sep}{name}")?;
+            if power > 1 {
+                write!(f, "^{power}")?;
+            }
+            first = false;
+        }
+        for (name, power) in named().filter(|(_, power)| *power < 0) {
+            match (first, power) {
+                (true, power) => write!(f, "{name}^{power}")?,
+                (false, -1) => write!(f, "/{name}")?,
+                (false, power) => write!(f, "/{name}^{}", power.unsigned_abs())?,
             }
             first = false;
         }
         if first { write!(f, "1") } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::Unit;
+
+    #[test]
+    fn a_dimension_is_written_as_a_unit_of_it() {
+        let written = ["W/m^2/sr", "W/m^2", "W/sr", "m/s", "m^2", "s^-1", "kg/m^3", "cd/m^2"];
+        for text in written {
+            let dimension = Unit::parse(text).unwrap().dimension;
+            assert_eq!(dimension.to_string(), text);
+            assert_eq!(Unit::parse(&dimension.to_string()).unwrap().dimension, dimension);
+        }
+        assert_eq!(Dimension::NONE.to_string(), "1");
     }
 }

@@ -87,6 +87,17 @@ impl Sink {
         Self::new(self.limit - self.kept[0]).until(self.stop.clone())
     }
 
+    /// Takes out what is kept and not wanted.
+    pub(crate) fn retain(&mut self, is_wanted: &dyn Fn(&Diagnostic) -> bool) {
+        let before = self.n_errors_kept();
+        self.list.retain(|found| is_wanted(found));
+        self.errors -= before - self.n_errors_kept();
+    }
+
+    fn n_errors_kept(&self) -> usize {
+        self.list.iter().filter(|found| found.is_error()).count()
+    }
+
     /// Changes each diagnostic that is kept.
     pub(crate) fn each(&mut self, change: &mut dyn FnMut(&mut Diagnostic)) {
         self.list.iter_mut().for_each(change);
@@ -100,8 +111,7 @@ impl Sink {
 
     /// Takes in what was told of a part.
     pub(crate) fn absorb(&mut self, part: Self) {
-        let kept = part.list.iter().filter(|found| found.is_error()).count();
-        self.errors += part.errors - kept;
+        self.errors += part.errors - part.n_errors_kept();
         self.dropped[0] += part.dropped[0];
         self.dropped[1] += part.dropped[1];
         for found in part.list {

@@ -28,7 +28,7 @@ pub struct Document {
     head: Vec<Diagnostic>,
     pieces: Vec<Piece>,
     /// What does not close, and what stands where no statement is.
-    faults: Vec<Diagnostic>,
+    pub(super) faults: Vec<Diagnostic>,
     /// Brackets that never close, of each part of the file the first.
     unclosed: Vec<usize>,
     /// The names of all statements.
@@ -60,6 +60,10 @@ impl Document {
         out
     }
 
+    pub(super) fn budgets(&self) -> &Budgets {
+        &self.budgets
+    }
+
     /// Its text.
     pub fn text(&self) -> &str {
         &self.text
@@ -84,15 +88,25 @@ impl Document {
     /// many as the budget allows.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         let mut sink = Sink::new(self.budgets.diagnostics);
-        let odd = self.pieces.iter().filter(|piece| !piece.is_alone);
+        let joined = self.joined();
+        let is_joined = |at: usize| joined.iter().any(|(range, _)| range.contains(&at));
+        let odd = self.pieces.iter().filter(|piece| !piece.is_alone && !is_joined(piece.start));
         let own = odd.flat_map(|piece| {
             piece.read.diagnostics.iter().map(|found| placed(found.clone(), piece.start))
         });
-        let around = self.head.iter().chain(&self.faults).cloned();
-        for found in around.chain(own) {
+        let faults = self
+            .faults
+            .iter()
+            .filter(|fault| fault.span().is_none_or(|span| !is_joined(span.range().start)));
+        let around = self.head.iter().chain(faults).cloned();
+        let mended = joined.iter().flat_map(|(_, told)| told.iter().cloned());
+        for found in around.chain(mended).chain(own) {
             sink.push(found);
         }
-        sink.absorb(Sink::clone(&self.names));
+        // Names in statements that are one are looked at when the file is loaded.
+        let mut names = Sink::clone(&self.names);
+        names.retain(&|found| found.span().is_none_or(|span| !is_joined(span.range().start)));
+        sink.absorb(names);
         sink.finish()
     }
 

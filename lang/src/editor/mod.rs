@@ -9,6 +9,7 @@ mod define;
 mod document;
 mod fold;
 mod hover;
+mod joined;
 mod lines;
 mod named;
 mod outline;

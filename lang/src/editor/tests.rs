@@ -139,6 +139,27 @@ fn a_definition_that_is_mended_counts_as_one() {
 }
 
 #[test]
+fn a_brace_that_is_missing_further_up_is_told_for_one_that_closes_nothing() {
+    let text = "scene 1\nlet a = 1\ngroup \"g\" {\n  for i in 0..3 {\n    let b = i = 2\n  }\n}\nlet c = a\n";
+    let mut document = Document::new(text, &Budgets::default());
+    let codes = |document: &Document| {
+        let place = |found: &Diagnostic| document.line_of(found.span().unwrap().range().start);
+        let found = document.diagnostics();
+        found.iter().map(|found| (found.code, place(found))).collect::<Vec<_>>()
+    };
+    let whole = codes(&document);
+    let brace = text.find("3 {").unwrap() + 1;
+    document.edit(brace..brace + 2, "");
+    same(&document, "without the brace");
+    assert_eq!(codes(&document), [&[("E0023", 3)], &whole[..]].concat());
+    document.edit(8..8, "let d = 1\n");
+    same(&document, "further down");
+    document.edit(brace + 10..brace + 10, " {");
+    same(&document, "mended");
+    assert_eq!(codes(&document).len(), whole.len());
+}
+
+#[test]
 fn mistakes_beyond_those_shown_are_counted_as_in_a_whole_reading() {
     let budgets = Budgets { diagnostics: 5, ..Budgets::default() };
     let text = format!("scene 1\nlet r = 1\n{}", "let a = r\nlet b = (r, s, r)\n".repeat(20));

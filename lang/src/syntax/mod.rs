@@ -46,10 +46,11 @@ pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use make::RESERVED;
 pub(crate) use number::parse as parse_number;
 pub(crate) use parse::{
-    Tree, Turns, cut, cut_whole, parse, parse_by_pest, parse_expr, parse_in_turns, read_at,
-    read_head, read_piece,
+    Tree, Turns, cut, cut_whole, joined_at, parse, parse_by_pest, parse_expr, parse_in_turns,
+    read_at, read_head, read_piece,
 };
 pub(crate) use paths::path_around;
+pub(crate) use strays::STRAYS_LOOKED_AT;
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Form, ListTy, Name,
     Object, Op, ParamDef, Stmt, StmtNode, Ty, children,

@@ -140,6 +140,30 @@ pub(crate) fn read_piece(
     (reader.out.stmts, sink.finish())
 }
 
+/// Some statements, up to a brace at `stray` that closes nothing: those that are one if another brace is mended, and
+/// what is told of that.
+pub(crate) fn joined_at(
+    text: &str,
+    range: Range<usize>,
+    stray: usize,
+    budgets: &Budgets,
+) -> Option<(Range<usize>, Vec<Diagnostic>)> {
+    let text = &text[..range.end];
+    let mut found = region(text, range.start, budgets.brackets, &mut |_| false);
+    joined(text, &mut found, budgets.brackets);
+    let is_it = |piece: &&Cut| piece.mend.is_some() && piece.range.contains(&stray);
+    let piece = found.pieces.iter().find(is_it)?.clone();
+    let is_within = |at: usize| piece.range.contains(&at);
+    found.slips.retain(|slip| is_within(slip.mend.0.start));
+    found.faults.retain(|fault| is_within(fault.at()));
+    found.junk_told = true;
+    let mut sink = Sink::new(budgets.diagnostics);
+    let mut reader = Reader::new(text, SourceId(0), budgets, &mut sink);
+    reader.region_faults(range.start, &found);
+    reader.pieces(std::slice::from_ref(&piece));
+    Some((piece.range, sink.finish()))
+}
+
 /// Reads the statement of a piece; what is wrong with it is not told.
 pub(crate) fn read_at(text: &str, piece: &Cut, source: SourceId, budgets: &Budgets) -> Vec<Stmt> {
     let mut sink = Sink::new(budgets.diagnostics);

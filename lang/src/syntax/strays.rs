@@ -14,7 +14,7 @@ use super::lex::{Token, TokenKind, tokens};
 use crate::prescan::{Fault, scan};
 
 /// Statements before a brace among which the mistake is looked for.
-const LOOKED_AT: usize = 100;
+pub(crate) const STRAYS_LOOKED_AT: usize = 100;
 
 /// Bytes that are scanned again, all in all, to find out whether a mend is one.
 const SCANNED: usize = 1 << 20;
@@ -69,7 +69,7 @@ pub(super) fn joined(text: &str, found: &mut Region, limit: usize) {
     for stray in strays {
         let at = stray.at();
         let after = found.pieces.partition_point(|piece| piece.range.start < at);
-        let first = after.saturating_sub(LOOKED_AT).max(done);
+        let first = after.saturating_sub(STRAYS_LOOKED_AT).max(done);
         let is_alone = text[at..].starts_with('}') && !text[at + 1..].starts_with('}');
         let mut search = Search { text, pieces: &found.pieces[first..after], limit, left };
         let slip = if is_alone { search.slip(at) } else { None };

@@ -60,7 +60,8 @@ pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing>
 }
 
 /// A piece with the braces that never close in it closed, or without the brackets that close nothing and with
-/// others for those that close another one, if nothing else is wrong with its brackets; it begins at byte `base` of its text.
+/// others for those that close another one, if nothing else is wrong with its brackets; it begins at byte
+/// `base` of its text.
 pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
     let faults = scan(piece, 0..piece.len(), 0, limit).faults;
     let is_open = |fault: &Fault| matches!(fault, Fault::Unclosed { .. });

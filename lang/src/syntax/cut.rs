@@ -12,14 +12,13 @@ use crate::prescan::{Fault, Scan, scan_until};
 /// does so more often: each time the rest of the text is looked through.
 const RESUMED: usize = 8;
 const RESUMED_BYTES: usize = 1 << 24;
+/// The same at most, however short a text is.
+const MOST_RESUMED: usize = 256;
 
 /// How often reading goes on, in a text of so many bytes, after a bracket that never closes.
 pub(crate) fn resume_limit(bytes: usize) -> usize {
     (RESUMED_BYTES / bytes.max(1)).clamp(RESUMED, MOST_RESUMED)
 }
-
-/// The same of any text.
-const MOST_RESUMED: usize = 256;
 
 /// The bytes of one statement.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -166,7 +166,6 @@ impl Search<'_> {
 fn unopened(line: &[Token<'_>]) -> Option<(usize, What)> {
     let word = |i: usize| line.get(i).map_or("", |token| token.text);
     let is = |i: usize, kind: TokenKind| line.get(i).is_some_and(|token| token.kind == kind);
-    let no_brace = |from: usize| line[from..].iter().all(|token| token.text != "{");
     // Behind `} else` a head may stand, and behind `let x =` an object's.
     let last_else = line.iter().rposition(|token| token.text == "else");
     let from = match (last_else, word(0), word(2)) {
@@ -186,8 +185,15 @@ fn unopened(line: &[Token<'_>]) -> Option<(usize, What)> {
     if last_else.is_some_and(|i| i + 1 == line.len()) {
         return Some((line.len() - 1, What::Unopened("else")));
     }
-    if word(0) == "fn" && is(1, TokenKind::Word) && word(line.len() - 1) == ")" {
-        let is_template = no_brace(0) && line.iter().all(|token| token.text != "=");
+    if word(0) == "fn" && is(1, TokenKind::Word) {
+        // The brackets of its parameters end the line.
+        let mut depth = 0_usize;
+        let end = (2..line.len()).find(|i| {
+            depth += usize::from(word(*i) == "(");
+            depth = depth.saturating_sub(usize::from(word(*i) == ")"));
+            depth == 0
+        });
+        let is_template = end.is_some_and(|end| end > 2 && end + 1 == line.len());
         return is_template.then_some((line.len() - 1, What::Unopened("fn")));
     }
     let is_group = word(from) == "group";

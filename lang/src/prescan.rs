@@ -2,6 +2,7 @@
 //!
 //! No recursion and no allocation per token. Between statements it skips by table and by memchr.
 
+mod brackets;
 mod strings;
 
 use std::ops::Range;
@@ -352,74 +353,6 @@ impl Scanner<'_> {
         (self.operand, self.newline, self.doc) = (block, block, None);
         self.at += 1;
         true
-    }
-
-    /// How many brackets of the rest of the line close none of their kind, if `open` are open.
-    fn misfits(&self, open: &[usize]) -> usize {
-        let rest = &self.bytes[self.at + 1..];
-        let line = &rest[..memchr(b'\n', rest).unwrap_or(rest.len()).min(LOOKED_AT)];
-        // Few are enough: what closes on one line.
-        let mut open: Vec<u8> = open.iter().rev().take(8).rev().map(|o| self.bytes[*o]).collect();
-        let mut misfits = 0;
-        for byte in line {
-            match byte {
-                b'(' | b'[' | b'{' => open.push(*byte),
-                b')' | b']' | b'}' => {
-                    let fits = open.pop().is_some_and(|last| closing(last) == *byte);
-                    misfits += usize::from(!fits);
-                }
-                _ => {}
-            }
-        }
-        misfits
-    }
-
-    /// A bracket that closes nothing: with others beside it, one mistake.
-    fn stray(&mut self) {
-        if self.stray != Some(self.at) {
-            self.out.faults.push(Fault::Stray { at: self.at });
-        }
-        self.stray = Some(self.at + 1);
-    }
-
-    /// Whether a bracket that does not fit the one that was just closed is one too many, rather than
-    /// another one than was meant: a block that began on a line before goes on, and so does the rest of
-    /// this line.
-    fn is_one_too_many(&self, open: usize, byte: u8) -> bool {
-        if byte == b'}'
-            || self.bytes[open] != b'{'
-            || self.open.iter().any(|o| closing(self.bytes[*o]) == byte)
-        {
-            return false;
-        }
-        let with: Vec<usize> = self.open.iter().copied().chain([open]).collect();
-        let (kept, closed) = (self.misfits(&with), self.misfits(&self.open));
-        let before = memchr(b'\n', &self.bytes[open..self.at]).is_some();
-        kept < closed || kept == closed && before
-    }
-
-    fn close_bracket(&mut self, byte: u8) {
-        match self.open.pop() {
-            None => self.stray(),
-            Some(open) if self.is_one_too_many(open, byte) => {
-                self.open.push(open);
-                self.stray();
-            }
-            Some(open) if closing(self.bytes[open]) != byte => {
-                // An outer bracket of this kind closes here too, if the line goes on better so; else
-                // only this one does.
-                let outer = self.open.iter().rposition(|&o| closing(self.bytes[o]) == byte);
-                let goes_on =
-                    |outer: &usize| self.misfits(&self.open[..*outer]) <= self.misfits(&self.open);
-                let outer = outer.filter(goes_on);
-                let left = outer.map_or(0, |outer| self.open.len() - outer);
-                self.open.truncate(outer.unwrap_or(self.open.len()));
-                self.out.faults.push(Fault::Mismatch { open, at: self.at, left });
-            }
-            Some(_) => {}
-        }
-        (self.operand, self.newline) = (true, false);
-        self.at += 1;
     }
 }
 

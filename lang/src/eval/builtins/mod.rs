@@ -3,6 +3,7 @@
 mod color;
 mod math;
 mod motion;
+mod order;
 mod spectrum_file;
 mod sun;
 mod table;
@@ -206,6 +207,12 @@ impl Evaluator<'_> {
         }
         // What a mistake left without a name may belong anywhere.
         if given.iter().any(|given| given.name.is_none() && given.value.is_poison()) {
+            return Value::Poison;
+        }
+        if let Run::Transform(_) = builtin.run
+            && let Some(found) = self.misarranged(builtin.name, &given)
+        {
+            self.tell(found);
             return Value::Poison;
         }
         let n_mistakes = self.mistakes();

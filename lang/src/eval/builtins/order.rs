@@ -1,0 +1,37 @@
+//! Arguments in another order than here, or a vector's numbers without its own brackets.
+
+use luxel_core::diag::Diagnostic;
+
+use super::super::Evaluator;
+use super::super::value::Value;
+use super::Given;
+
+impl Evaluator<'_> {
+    /// What is told of the arguments of a transform as a whole, if they are meant for it in another form.
+    pub(super) fn misarranged(&self, function: &str, given: &[Given]) -> Option<Diagnostic> {
+        let is_number = |given: &Given| matches!(given.value, Value::Number(..));
+        let is_vector = |given: &Given| matches!(given.value, Value::Numbers(_) | Value::Items(_));
+        if given.iter().any(|given| given.name.is_some()) {
+            return None;
+        }
+        let turns = matches!(function, "rotate" | "spin");
+        let all = given.first()?.span.to(given.last()?.span);
+        match given {
+            // `rotate(30 deg, (0, 1, 0))`
+            [angle, axis] if turns && is_number(angle) && is_vector(axis) => {
+                let written = [axis, angle].map(|given| self.written(given.span));
+                let found = Diagnostic::error("E0402", all, "the axis stands first");
+                Some(found.guess(all, written.join(", ")))
+            }
+            // `move(1, 2, 3)`, `rotate(0, 1, 0, 30 deg)`
+            [x, y, z, rest @ ..] if [x, y, z].into_iter().all(is_number) => {
+                let is_one = matches!((function, rest.len()), ("move" | "scale", 0) | (_, 1));
+                let vector = x.span.to(z.span);
+                let found = Diagnostic::error("E0402", vector, "a vector has brackets of its own");
+                let is_one = is_one && (turns || rest.is_empty());
+                is_one.then(|| found.guess(vector, format!("({})", self.written(vector))))
+            }
+            _ => None,
+        }
+    }
+}

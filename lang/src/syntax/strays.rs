@@ -16,8 +16,8 @@ use crate::prescan::{Fault, scan};
 /// Statements before a brace among which the mistake is looked for.
 pub(crate) const STRAYS_LOOKED_AT: usize = 100;
 
-/// Bytes that are scanned again, all in all, to find out whether a mend is one.
-const SCANNED: usize = 1 << 20;
+/// Bytes that are looked at again, all in all, to find mends and whether they are any.
+const READ_AGAIN: usize = 1 << 20;
 
 /// A brace that is missing or one too many.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ impl Slip {
 /// Finds what a `}` that closes nothing closes, or would if another one did not, and joins the statements in
 /// between to one.
 pub(super) fn joined(text: &str, found: &mut Region, limit: usize) {
-    let (mut left, mut done) = (SCANNED, 0);
+    let (mut left, mut done) = (READ_AGAIN, 0);
     let mut faults = std::mem::take(&mut found.faults);
     let strays = faults.extract_if(.., |fault| matches!(fault, Fault::Stray { .. }));
     let strays: Vec<Fault> = strays.collect();
@@ -96,7 +96,7 @@ struct Search<'a> {
     text: &'a str,
     pieces: &'a [Cut],
     limit: usize,
-    /// Bytes that may still be scanned.
+    /// Bytes that may still be looked at.
     left: usize,
 }
 
@@ -105,6 +105,7 @@ impl Search<'_> {
     /// begins.
     fn slip(&mut self, stray: usize) -> Option<(usize, Slip)> {
         let start = self.pieces.first()?.range.start;
+        self.left = self.left.checked_sub(stray - start)?;
         let tokens: Vec<Token<'_>> = tokens(self.text, start..stray).collect();
         let lines: Vec<&[Token<'_>]> = tokens.chunk_by(|_, next| !next.first_on_line).collect();
         (0..lines.len()).rev().find_map(|i| {

@@ -16,8 +16,10 @@ use crate::prescan::{Fault, scan};
 /// Statements before a brace among which the mistake is looked for.
 pub(crate) const STRAYS_LOOKED_AT: usize = 100;
 
-/// Bytes that are looked at again, all in all, to find mends and whether they are any.
+/// Bytes that are looked at again, all in all, to find mends and whether they are any; of a larger text all of
+/// it so often.
 const READ_AGAIN: usize = 1 << 20;
+const TIMES: usize = 8;
 
 /// A brace that is missing or one too many.
 #[derive(Debug)]
@@ -62,7 +64,7 @@ impl Slip {
 /// Finds what a `}` that closes nothing closes, or would if another one did not, and joins the statements in
 /// between to one.
 pub(super) fn joined(text: &str, found: &mut Region, limit: usize) {
-    let (mut left, mut done) = (READ_AGAIN, 0);
+    let (mut left, mut done) = (READ_AGAIN.max(TIMES * text.len()), 0);
     let mut faults = std::mem::take(&mut found.faults);
     let strays = faults.extract_if(.., |fault| matches!(fault, Fault::Stray { .. }));
     let strays: Vec<Fault> = strays.collect();

@@ -277,6 +277,26 @@ fn beside_warnings_and_what_is_set_an_edit_concerns_its_statement() {
 }
 
 #[test]
+fn beside_mistakes_that_stood_there_before_an_edit_concerns_its_statement() {
+    let mut now = ["let r = 5 cm", "shape sphere { radus = 1 m }", "let wrong = r + 2 s", CAMERA]
+        .map(str::to_owned)
+        .to_vec();
+    now.extend((0..60).map(|i| format!("shape disk {{ radius = 2 m, center = (0, {i}, 0) }}")));
+    let settings = Settings { noting: true, ..Settings::default() };
+    let mut edited = Edited::new(settings);
+    let mut n = |lines: &[String]| {
+        let loaded = edited.load(&text_of(lines), "an edit");
+        (edited.kept.n_evaluated().unwrap_or_default(), loaded.diagnostics.len())
+    };
+    assert_eq!(n(&now).1, 2);
+    now[20] = now[20].replace("2 m", "3 m");
+    assert_eq!(n(&now), (1, 2));
+    // One more, further down: the statements between are read again, and evaluated.
+    now[23] = now[23].replace("2 m", "2 s");
+    assert_eq!(n(&now), (4, 3));
+}
+
+#[test]
 fn what_only_hands_a_value_on_is_not_evaluated() {
     let mut now: Vec<String> =
         ["let r = 5 cm", "let grey = material diffuse { reflectance = 0.5 }", CAMERA]

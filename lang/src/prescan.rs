@@ -54,6 +54,14 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// The bracket that never closes, if that is what is wrong.
+    pub fn unclosed(&self) -> Option<usize> {
+        match self {
+            Self::Unclosed { open } => Some(*open),
+            _ => None,
+        }
+    }
+
     /// The byte that is to blame.
     pub fn at(&self) -> usize {
         match self {

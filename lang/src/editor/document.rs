@@ -90,14 +90,13 @@ impl Document {
         let mut sink = Sink::new(self.budgets.diagnostics);
         let joined = self.joined();
         let is_joined = |at: usize| joined.iter().any(|(range, _)| range.contains(&at));
+        let is_left =
+            |found: &Diagnostic| found.span().is_none_or(|span| !is_joined(span.range().start));
         let odd = self.pieces.iter().filter(|piece| !piece.is_alone && !is_joined(piece.start));
         let own = odd.flat_map(|piece| {
             piece.read.diagnostics.iter().map(|found| placed(found.clone(), piece.start))
         });
-        let faults = self
-            .faults
-            .iter()
-            .filter(|fault| fault.span().is_none_or(|span| !is_joined(span.range().start)));
+        let faults = self.faults.iter().filter(|fault| is_left(fault));
         let around = self.head.iter().chain(faults).cloned();
         let mended = joined.iter().flat_map(|(_, told)| told.iter().cloned());
         for found in around.chain(mended).chain(own) {
@@ -105,7 +104,7 @@ impl Document {
         }
         // Names in statements that are one are looked at when the file is loaded.
         let mut names = Sink::clone(&self.names);
-        names.retain(&|found| found.span().is_none_or(|span| !is_joined(span.range().start)));
+        names.retain(&is_left);
         sink.absorb(names);
         sink.finish()
     }

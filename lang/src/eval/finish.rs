@@ -19,11 +19,6 @@ impl Evaluator<'_> {
         self.finished()
     }
 
-    /// Whether what a faulty load made is small enough to be looked at.
-    pub(super) fn is_looked_at(&self) -> bool {
-        !self.stopped && self.scene.nodes.len() <= LOOKED_AT
-    }
-
     /// The same, where what the scene lacks has been told.
     pub(super) fn finished(mut self) -> Loaded {
         let errors = self.sink.errors();
@@ -42,6 +37,11 @@ impl Evaluator<'_> {
         }
         let values = self.noted.map(Noted::values).unwrap_or_default();
         Loaded { scene, rest, diagnostics, sources: self.sources, params: self.params, values }
+    }
+
+    /// Whether what a faulty load made is small enough to be looked at.
+    pub(super) fn is_looked_at(&self) -> bool {
+        !self.stopped && self.scene.nodes.len() <= LOOKED_AT
     }
 
     /// The scene with all that stands in it; `None` once it is over.

@@ -378,13 +378,13 @@ impl<'a> Resolver<'a> {
     /// Tells that a call is a name and its value.
     fn no_equals(&mut self, call: &Expr, name: &Name) {
         let ExprNode::Call { args, .. } = &call.node else { return };
-        let (end, name) = (name.span.end, &name.text);
+        let (start, end, name) = (name.span.start, name.span.end, &name.text);
         let blanks = self.text.get(end as usize..).and_then(|rest| rest.find('(')).unwrap_or(0);
         let value = Span { start: end + u32::try_from(blanks).unwrap_or(0), ..call.span };
         let message = format!("`=` is missing between `{name}` and its value");
         let gap = Span { start: end, end, ..value };
         // `phase henyey_greenstein(0.5)` is an object.
-        let before = self.text.get(..end as usize - name.len()).unwrap_or_default().trim_end();
+        let before = self.text.get(..start as usize).unwrap_or_default().trim_end();
         let last = before.rsplit(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
         let is_kind = last.is_some_and(|word| Kind::of_word(word).is_some());
         let grade = if is_kind { Grade::Guess } else { Grade::Sure };

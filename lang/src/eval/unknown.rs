@@ -34,7 +34,7 @@ const FUNCTIONS: [(&str, &str); 6] = [
 ];
 
 /// Functions of other languages for which there is none here.
-const NONE: [&str; 4] = ["print", "printf", "append", "input"];
+const ABSENT: [&str; 4] = ["print", "printf", "append", "input"];
 
 impl Resolver<'_> {
     /// Whether an argument is a text without its quotes, which is told: `metal(Au)`.
@@ -137,6 +137,13 @@ impl Resolver<'_> {
 
     /// The name that an unknown one most likely stands for.
     fn meant(&self, shown: &str) -> Option<Near<'_>> {
+        let theirs = FUNCTIONS.iter().find(|(theirs, _)| *theirs == shown);
+        if let Some((_, name)) = theirs {
+            return Some(Near { name, grade: Grade::Guess });
+        }
+        if ABSENT.contains(&shown) {
+            return None;
+        }
         let mut known: Vec<&str> = builtins::names().chain(["true", "false"]).collect();
         known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
         known.extend(self.before.into_iter().flat_map(|before| before()));
@@ -152,13 +159,6 @@ impl Resolver<'_> {
         // A picture may be meant by `file` as well as a spectrum.
         let grade = if shown == "file" { Grade::Guess } else { Grade::Sure };
         let ending = ending.map(|name| Near { name, grade });
-        let theirs = FUNCTIONS.iter().find(|(theirs, _)| *theirs == shown);
-        if let Some((_, name)) = theirs {
-            return Some(Near { name, grade: Grade::Guess });
-        }
-        if NONE.contains(&shown) {
-            return None;
-        }
         let alike = || known.iter().copied().find(|known| known.eq_ignore_ascii_case(shown));
         let near = ending.or_else(|| near(shown, known.iter().copied()));
         near.or_else(|| alike().map(|name| Near { name, grade: Grade::Guess }))

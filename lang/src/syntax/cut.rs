@@ -72,12 +72,8 @@ pub(super) fn region(
     is_known: &mut dyn FnMut(usize) -> bool,
 ) -> Region {
     let mut found = scan_until(text, from..text.len(), 0, limit, is_known);
-    let Closing { braces: closes, end: resume } = ended(text, from, &mut found, limit);
-    let open = |fault: &Fault| match fault {
-        Fault::Unclosed { open } => Some(*open),
-        _ => None,
-    };
-    let unclosed = found.faults.iter().filter_map(open).min();
+    let Closing { braces: closes, end: resume } = end_of(text, from, &mut found, limit);
+    let unclosed = found.faults.iter().filter_map(Fault::unclosed).min();
     let end = resume.or(found.met).unwrap_or(text.len());
     let first = found.starts.first().copied().unwrap_or(end);
     let junk_told = found.faults.iter().any(|fault| fault.at() < first);
@@ -94,8 +90,9 @@ pub(super) fn region(
         Cut { faulty: holds(&range), range, mend: None }
     });
     let pieces: Vec<Cut> = pieces.collect();
-    let told =
-        |fault: &Fault| open(fault).is_none() && resume.is_none_or(|resume| fault.at() < resume);
+    let told = |fault: &Fault| {
+        fault.unclosed().is_none() && resume.is_none_or(|resume| fault.at() < resume)
+    };
     let mut faults: Vec<Fault> = found.faults.into_iter().filter(told).collect();
     let alone = unclosed.filter(|_| closes.is_empty());
     let together = closes.chunk_by(|(_, one), (_, other)| one == other);
@@ -107,19 +104,15 @@ pub(super) fn region(
     Region { first, pieces, faults, unclosed, slips, junk_told, closes, next: resume, met }
 }
 
-/// The same of what was found, where brackets that nest too deep are ones that never close if the first of
-/// them most likely does before that.
-fn ended(text: &str, from: usize, found: &mut Scan, limit: usize) -> Closing {
+/// Where brackets that never close most likely do. Those that nest too deep are such brackets, if the first
+/// of them most likely closes before that.
+fn end_of(text: &str, from: usize, found: &mut Scan, limit: usize) -> Closing {
     let deep = |fault: &Fault| match fault {
         Fault::TooDeep { at } => Some(*at),
         _ => None,
     };
     let Some(at) = found.faults.iter().find_map(deep) else {
-        let open = found.faults.iter().filter_map(|fault| match fault {
-            Fault::Unclosed { open } => Some(*open),
-            _ => None,
-        });
-        let unclosed: Vec<usize> = open.collect();
+        let unclosed: Vec<usize> = found.faults.iter().filter_map(Fault::unclosed).collect();
         return ending(text, from, &found.starts, &unclosed, limit);
     };
     let ending = ending(text, from, &found.starts, &found.open, limit);
@@ -131,7 +124,7 @@ fn ended(text: &str, from: usize, found: &mut Scan, limit: usize) -> Closing {
     ending
 }
 
-/// Where brackets that never close most likely do, of statements that begin there.
+/// Where these brackets most likely close, of statements that begin there.
 fn ending(text: &str, from: usize, starts: &[usize], unclosed: &[usize], limit: usize) -> Closing {
     let begins = |open: &usize| match starts.partition_point(|start| start <= open) {
         0 => from,

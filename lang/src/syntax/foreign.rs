@@ -25,7 +25,7 @@ pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| set(around))
         .or_else(|| placed(around))
         .or_else(|| bare_vector(around))
-        .or_else(|| vector_of_fields(around))
+        .or_else(|| vector_with_commas(around))
         .or_else(|| braced_vector(around))
         .or_else(|| called_parameter(around))
 }
@@ -178,9 +178,9 @@ fn a_vector(around: &Around<'_>, all: Range<usize>, numbers: &[&str]) -> Diagnos
 }
 
 /// `resolution = 48, 30`, `center = -1, 2, 0`
-fn vector_of_fields(around: &Around<'_>) -> Option<Diagnostic> {
-    let first = (around.at.saturating_sub(WIDEST)..around.at).rev();
-    let first = first.into_iter().find(|i| around.word(*i) == "=")? + 1;
+fn vector_with_commas(around: &Around<'_>) -> Option<Diagnostic> {
+    let near = around.at.saturating_sub(WIDEST)..around.at;
+    let first = near.rev().find(|i| around.word(*i) == "=")? + 1;
     let (mut next, mut ends) = (first, vec![]);
     while ends.len() < WIDEST {
         let number = next + usize::from(around.word(next) == "-");

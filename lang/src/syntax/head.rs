@@ -69,9 +69,12 @@ pub(super) fn pattern(around: &Around<'_>) -> Option<&'static str> {
     statement::pattern(around.word(start))
 }
 
+/// Words that begin what a block follows.
+pub(super) const BLOCKS: [&str; 2] = ["for", "if"];
+
 /// Whether a block follows what the word begins.
 pub(super) fn opens_block(word: &str) -> bool {
-    matches!(word, "for" | "if")
+    BLOCKS.contains(&word)
 }
 
 /// `shape sphere { … } shape box { … }`: a statement on the line on which another one ends.
@@ -90,16 +93,18 @@ pub(super) fn second(around: &Around<'_>) -> Option<Diagnostic> {
     // A comment between the two stays where it is.
     let blank = around.text[..current.start].trim_end().len();
     let gap = Span::new(around.source, blank, current.start);
-    let message = format!(
-        "`{}` begins a statement, which wants a line of its own, or `;` before it",
-        current.text
-    );
+    let message = begins_statement(current.text);
     // An object may be meant as a parameter of the one before, but for those that are none of any.
     let is_alone = matches!(current.text, "camera" | "film" | "integrator" | "light" | "sampler");
     let is_alike = around.tokens.first().is_some_and(|first| first.text == current.text);
     let grade = if !is_object || is_alone || is_alike { Grade::Sure } else { Grade::Guess };
     let line_break = line_break(around.text);
     Some(around.error("E0023", current, message).mend(gap, line_break, grade))
+}
+
+/// What is said of a word that begins a statement on the line of another one.
+pub(super) fn begins_statement(word: &str) -> String {
+    format!("`{word}` begins a statement, which wants a line of its own, or `;` before it")
 }
 
 /// What ends a line of this text.

@@ -9,7 +9,7 @@ use super::around::is_category;
 use super::closing::{indent, is_field, rewritten};
 use super::cut::{Cut, Region};
 use super::fault::mend;
-use super::head::{BRACES, opens_block};
+use super::head::{BLOCKS, BRACES};
 use super::lex::{Token, TokenKind, tokens};
 use crate::prescan::{Fault, scan};
 
@@ -176,8 +176,7 @@ fn unopened(line: &[Token<'_>]) -> Option<(usize, What)> {
         (None, "let", "=") => 3,
         _ => 0,
     };
-    let block = ["for", "if"].into_iter().find(|known| *known == word(from));
-    if let Some(block) = block.filter(|block| opens_block(block)) {
+    if let Some(block) = BLOCKS.into_iter().find(|known| *known == word(from)) {
         let begins = |i: &usize| is_category(word(i + 1)) && line[*i].ends_operand();
         let end = (from + 1..line.len() - 1).find(begins);
         let head = &line[from..=end.unwrap_or(line.len() - 1)];

@@ -11,6 +11,7 @@ use super::Rule;
 use super::around::is_category;
 use super::build::Builder;
 use super::habits::condition;
+use super::head::begins_statement;
 use super::statement::{is_suffix, of_suffix};
 use super::tree::Name;
 
@@ -83,12 +84,8 @@ impl Builder<'_> {
 
     /// `let b = 4 shape sphere { … }`
     fn statement_as_unit(&self, pair: &Pair<'_, Rule>, span: Span) -> Diagnostic {
-        let message = format!(
-            "`{}` begins a statement, which wants a line of its own, or `;` before it",
-            pair.as_str()
-        );
         let gap = self.written(blank_before(pair));
-        Diagnostic::error("E0204", span, message).guess(gap, "; ")
+        Diagnostic::error("E0204", span, begins_statement(pair.as_str())).guess(gap, "; ")
     }
 }
 

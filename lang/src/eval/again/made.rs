@@ -32,12 +32,12 @@ pub(super) struct Rare {
     pub(super) has_read: bool,
     /// How often its evaluation told something in a load of the whole file.
     pub(super) n_told: usize,
-    pub(super) warnings: Warnings,
+    pub(super) told: Told,
 }
 
-/// Warnings of a statement, whose places lie in it and count from its first byte.
+/// Told of a statement, whose places lie in it and count from its first byte.
 #[derive(Debug, Default)]
-pub(super) struct Warnings {
+pub(super) struct Told {
     /// Of how it is written.
     pub(super) read: Vec<Diagnostic>,
     /// Of what it came to.
@@ -51,8 +51,8 @@ impl Made {
     }
 
     /// What is said of it, to be added to.
-    pub(super) fn warnings_mut(&mut self) -> &mut Warnings {
-        &mut self.rare.get_or_insert_default().warnings
+    pub(super) fn told_mut(&mut self) -> &mut Told {
+        &mut self.rare.get_or_insert_default().told
     }
 }
 
@@ -142,8 +142,8 @@ impl Evaluator<'_> {
         let n_told = self.sink.kept().len() - mark.n_told;
         let is_rare =
             has_asset || has_read || n_told > 0 || !slots.is_empty() || !expectations.is_empty();
-        let warnings = Warnings::default();
-        let rare = || Box::new(Rare { slots, expectations, has_asset, has_read, n_told, warnings });
+        let told = Told::default();
+        let rare = || Box::new(Rare { slots, expectations, has_asset, has_read, n_told, told });
         Made {
             nodes: mark.n_nodes..self.scene.nodes.len(),
             groups: mark.n_groups..self.scene.groups.len(),

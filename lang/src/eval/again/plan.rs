@@ -156,21 +156,19 @@ impl State {
             new.iter().chain(&sets.setters).copied().chain(known).collect();
         let tasks = self.tasks((text, &edit), &after, &firsts, (&new, wanted), (trees, is_over))?;
         let is_wrong_beside = self.is_wrong_beside(&after, &tasks);
-        let read = said;
-        let plan = Plan {
+        Some(Plan {
             edit,
             gone,
             fresh,
             tasks,
             tables,
             n_names,
-            read,
+            read: said,
             names,
             is_wrong_beside,
             sets,
             handed,
-        };
-        Some(plan)
+        })
     }
 
     /// Whether statements have the same to do with names as those that they stand for.

@@ -7,7 +7,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 use luxel_sdk::kind::Kind;
 
 use super::edit::Edit;
-use super::made::Warnings;
+use super::made::Told;
 use super::plan::{After, Plan, Task, read};
 use super::values::KeptValues;
 use super::{State, in_file, source_of};
@@ -73,13 +73,13 @@ impl State {
         }
         let mut sink = Sink::new(self.settings.budgets.diagnostics);
         let now = read.into_iter().zip(gone.start..).map(|(told, i)| (i, told)).collect();
-        merge(&after, now, |warnings| &warnings.read, &mut sink);
+        merge(&after, now, |told| &told.read, &mut sink);
         for found in names {
             sink.push(found);
         }
         let now = tasks.iter().zip(found).filter(|(task, _)| task.is_new);
         let now = now.map(|(task, told)| (task.i, told)).collect();
-        merge(&after, now, |warnings| &warnings.found, &mut sink);
+        merge(&after, now, |told| &told.found, &mut sink);
         if sink.is_full() {
             return None;
         }
@@ -112,13 +112,13 @@ impl State {
 fn merge(
     after: &After<'_>,
     mut now: BTreeMap<usize, Vec<Diagnostic>>,
-    kept: fn(&Warnings) -> &Vec<Diagnostic>,
+    kept: fn(&Told) -> &Vec<Diagnostic>,
     sink: &mut Sink,
 ) {
     for (i, stmt) in after.iter().enumerate() {
         let told = match (now.remove(&i), &stmt.made.rare) {
             (Some(told), _) => told,
-            (None, Some(rare)) => kept(&rare.warnings).clone(),
+            (None, Some(rare)) => kept(&rare.told).clone(),
             (None, None) => continue,
         };
         for found in told {

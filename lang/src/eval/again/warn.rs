@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, Span};
 
-use super::made::{Made, Warnings};
+use super::made::{Made, Told};
 use super::plan::{After, Plan, Task};
 use super::record::{Record, in_statement};
 use super::{State, Statement, in_file, source_of};
@@ -37,14 +37,14 @@ impl Record {
             let at = told.span()?.range().start;
             let i = ranges.partition_point(|range| range.start <= at).checked_sub(1)?;
             let (told, stmt) = (placed(told, place), &mut self.stmts[i]);
-            is_of(&told, stmt.id).then(|| stmt.made.warnings_mut().read.push(told))?;
+            is_of(&told, stmt.id).then(|| stmt.made.told_mut().read.push(told))?;
         }
         let mut found = found.iter();
         for stmt in &mut self.stmts {
             let n_told = stmt.made.rare.as_ref().map_or(0, |rare| rare.n_told);
             for told in found.by_ref().take(n_told) {
                 let told = placed(told, place);
-                is_of(&told, stmt.id).then(|| stmt.made.warnings_mut().found.push(told))?;
+                is_of(&told, stmt.id).then(|| stmt.made.told_mut().found.push(told))?;
             }
         }
         found.next().is_none().then_some(())
@@ -59,7 +59,7 @@ impl Plan {
     }
 }
 
-impl Warnings {
+impl Told {
     /// Whether one of them is a mistake, of how the statement is written if it is evaluated again.
     fn is_wrong(&self, is_evaluated: bool) -> bool {
         let found = if is_evaluated { &[] } else { &self.found[..] };
@@ -73,8 +73,8 @@ impl State {
         let mut new = tasks.iter().filter(|task| task.is_new).map(|task| task.i).peekable();
         let mut is_wrong = |(i, stmt): (usize, &Statement)| {
             let is_evaluated = new.next_if_eq(&i).is_some();
-            let warnings = stmt.made.rare.as_ref().map(|rare| &rare.warnings);
-            warnings.is_some_and(|warnings| warnings.is_wrong(is_evaluated))
+            let told = stmt.made.rare.as_ref().map(|rare| &rare.told);
+            told.is_some_and(|told| told.is_wrong(is_evaluated))
         };
         self.is_wrong && after.iter().enumerate().any(&mut is_wrong)
     }
@@ -94,7 +94,7 @@ impl State {
             }
             let (id, read) = if let Some(old) = plan.old(task.i) {
                 let Statement { id, made, .. } = &self.stmts[old];
-                let read = made.rare.as_ref().map(|rare| rare.warnings.read.clone());
+                let read = made.rare.as_ref().map(|rare| rare.told.read.clone());
                 (*id, read.unwrap_or_default())
             } else {
                 let k = task.i - plan.gone.start;
@@ -104,7 +104,7 @@ impl State {
                 return None;
             }
             if !read.is_empty() || !found.is_empty() {
-                *made.warnings_mut() = Warnings { read, found };
+                *made.told_mut() = Told { read, found };
             }
         }
         Some(())
@@ -114,7 +114,7 @@ impl State {
     pub(super) fn warnings(&self, starts: &[usize]) -> Vec<Diagnostic> {
         let rare = self.stmts.iter().filter_map(|stmt| stmt.made.rare.as_ref());
         let (read, found): (Vec<_>, Vec<_>) =
-            rare.map(|rare| (&rare.warnings.read, &rare.warnings.found)).unzip();
+            rare.map(|rare| (&rare.told.read, &rare.told.found)).unzip();
         let all = read.into_iter().chain(found).flatten();
         all.map(|told| placed(told, |span| in_file(span, starts))).collect()
     }

@@ -25,11 +25,13 @@ impl Evaluator<'_> {
             }
             // `move(1, 2, 3)`, `rotate(0, 1, 0, 30 deg)`
             [x, y, z, rest @ ..] if [x, y, z].into_iter().all(is_number) => {
-                let is_one = matches!((function, rest.len()), ("move" | "scale", 0) | (_, 1));
+                let takes_them = match rest.len() {
+                    0 => matches!(function, "move" | "scale"),
+                    n => turns && n == 1,
+                };
                 let vector = x.span.to(z.span);
                 let found = Diagnostic::error("E0402", vector, "a vector has brackets of its own");
-                let is_one = is_one && (turns || rest.is_empty());
-                is_one.then(|| found.guess(vector, format!("({})", self.written(vector))))
+                takes_them.then(|| found.guess(vector, format!("({})", self.written(vector))))
             }
             _ => None,
         }

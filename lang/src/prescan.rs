@@ -125,25 +125,18 @@ pub fn scan_until(
     limit: usize,
     is_known: &mut dyn FnMut(usize) -> bool,
 ) -> Scan {
-    let bytes = &text.as_bytes()[..range.end];
-    let mut scanner = Scanner {
-        bytes,
-        at: range.start,
-        depth,
-        limit,
-        is_known,
-        open: Vec::with_capacity(limit.min(256) + 1),
-        operand: true,
-        newline: true,
-        in_for: false,
-        follower: None,
-        first: depth == 0,
-        doc: None,
-        stray: None,
-        out: Scan::default(),
+    Scanner { at: range.start, depth, limit, ..Scanner::new(&text[..range.end], is_known) }.run()
+}
+
+/// Whether a text is one statement with nothing wrong with its brackets. Ends where it is not.
+pub(crate) fn is_one(text: &str, limit: usize) -> bool {
+    let mut n_begun = 0;
+    let mut is_second = |_| {
+        n_begun += 1;
+        n_begun > 1
     };
-    scanner.run();
-    scanner.out
+    let found = Scanner { limit, most: 1, ..Scanner::new(text, &mut is_second) }.run();
+    found.faults.is_empty() && found.starts.len() == 1 && found.met.is_none()
 }
 
 /// The bytes of the block comment with which a text begins; `None` if it never ends. The `*` that
@@ -157,7 +150,10 @@ struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
     depth: usize,
+    /// Brackets that may be open.
     limit: usize,
+    /// Faults after which nothing is scanned.
+    most: usize,
     is_known: &'a mut dyn FnMut(usize) -> bool,
     open: Vec<usize>,
     /// Whether what stands before could end an expression.
@@ -175,8 +171,31 @@ struct Scanner<'a> {
     out: Scan,
 }
 
+impl<'a> Scanner<'a> {
+    fn new(text: &'a str, is_known: &'a mut dyn FnMut(usize) -> bool) -> Self {
+        Self {
+            bytes: text.as_bytes(),
+            at: 0,
+            depth: 0,
+            limit: 0,
+            most: FAULTS,
+            is_known,
+            open: vec![],
+            operand: true,
+            newline: true,
+            in_for: false,
+            follower: None,
+            first: true,
+            doc: None,
+            stray: None,
+            out: Scan::default(),
+        }
+    }
+}
+
 impl Scanner<'_> {
-    fn run(&mut self) {
+    fn run(mut self) -> Scan {
+        self.first = self.depth == 0;
         loop {
             if self.open.len() != self.depth {
                 while self.bytes.get(self.at).is_some_and(|b| !STRUCTURAL[usize::from(*b)]) {
@@ -184,8 +203,8 @@ impl Scanner<'_> {
                 }
             }
             let Some(&byte) = self.bytes.get(self.at) else { break };
-            if self.out.faults.len() >= FAULTS {
-                return;
+            if self.out.faults.len() >= self.most {
+                return self.out;
             }
             match byte {
                 b'"' => self.string(),
@@ -194,14 +213,14 @@ impl Scanner<'_> {
                 b'#' if self.next_is(b'[') => self.table(),
                 b'(' | b'[' | b'{' => {
                     if !self.open_bracket(byte) {
-                        return;
+                        return self.out;
                     }
                 }
                 b')' | b']' | b'}' => self.close_bracket(byte),
                 _ => self.between(byte),
             }
             if self.out.met.is_some() {
-                return;
+                return self.out;
             }
         }
         // What a comment has swallowed may have closed them.
@@ -209,6 +228,7 @@ impl Scanner<'_> {
             let unclosed = self.open.iter().map(|&open| Fault::Unclosed { open });
             self.out.faults.extend(unclosed);
         }
+        self.out
     }
 
     fn next_is(&self, byte: u8) -> bool {

@@ -6,7 +6,7 @@ use super::edits::{Edits, Mended};
 use super::fault::mend;
 use super::lex::{TokenKind, tokens};
 use super::recover::fault;
-use crate::prescan::{Fault, scan, scan_until};
+use crate::prescan::{Fault, is_one, scan, scan_until};
 
 /// How a statement most likely ends in which braces never close.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -72,10 +72,8 @@ pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
         let are_apart = mends.is_sorted_by(|(one, _), (next, _)| one.end <= next.start);
         (are_apart.then(|| rewritten(piece, base, &mends))?, false)
     };
-    let found = scan(&mended.text, 0..mended.text.len(), 0, limit);
-    let is_one = found.faults.is_empty() && found.starts.len() == 1;
     // Where a bracket closes nothing, that which opens may be what is missing.
-    (is_one && (is_sure || fault(&mended.text).is_none())).then_some(mended)
+    (is_one(&mended.text, limit) && (is_sure || fault(&mended.text).is_none())).then_some(mended)
 }
 
 /// Which braces close before which byte; `None` if none does so, a block is open at the end whose lines do not

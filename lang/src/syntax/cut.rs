@@ -5,7 +5,8 @@ use std::ops::Range;
 use luxel_core::diag::Diagnostic;
 
 use super::closing::{Closing, closing, indent, is_field};
-use super::strays::{Mend, Slip};
+use super::strays::{Mend, Slip, join, looked_at_again};
+use crate::budgets::Budgets;
 use crate::prescan::{Fault, Scan, scan_until};
 
 /// How often at least reading goes on after a bracket that never closes, and of how many bytes at most if it
@@ -62,6 +63,45 @@ pub(super) struct Region {
     pub(super) next: Option<usize>,
     /// The start that was known, which ended the region.
     pub(super) met: Option<usize>,
+}
+
+/// The regions of a text, one after another.
+pub(super) struct Regions<'a> {
+    text: &'a str,
+    /// Brackets that may be open.
+    limit: usize,
+    /// Where the next begins.
+    next: Option<usize>,
+    /// How many may still follow.
+    left: usize,
+    /// Bytes that may still be looked at for braces that close nothing.
+    again: usize,
+}
+
+impl<'a> Regions<'a> {
+    pub(super) fn new(text: &'a str, from: usize, budgets: &Budgets) -> Self {
+        let (limit, again) = (budgets.brackets, looked_at_again(text));
+        Self { text, limit, next: Some(from), left: resume_limit(text.len()), again }
+    }
+
+    /// The next, which ends at the first start that `is_known`, and where it begins.
+    pub(super) fn cut(
+        &mut self,
+        is_known: &mut dyn FnMut(usize) -> bool,
+    ) -> Option<(usize, Region)> {
+        self.left = self.left.checked_sub(1)?;
+        let from = self.next?;
+        let found = region(self.text, from, self.limit, is_known);
+        self.next = found.next.filter(|next| *next > from);
+        Some((from, found))
+    }
+
+    /// The same up to where it is over, with statements joined that one mistake parts.
+    pub(super) fn joined(&mut self, is_over: &dyn Fn() -> bool) -> Option<(usize, Region)> {
+        let (from, mut found) = self.cut(&mut |_| is_over())?;
+        join(self.text, &mut found, self.limit, &mut self.again);
+        Some((from, found))
+    }
 }
 
 /// Cuts `text[from..]` up to the first start that `is_known`.

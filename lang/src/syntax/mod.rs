@@ -50,7 +50,7 @@ pub(crate) use parse::{
     read_at, read_head, read_piece,
 };
 pub(crate) use paths::path_around;
-pub(crate) use strays::STRAYS_LOOKED_AT;
+pub(crate) use strays::{STRAYS_LOOKED_AT, looked_at_again};
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Form, ListTy, Name,
     Object, Op, ParamDef, Stmt, StmtNode, Ty, children,

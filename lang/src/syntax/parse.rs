@@ -8,14 +8,14 @@ use pest::Parser;
 
 use super::around::Place;
 use super::build::Builder;
-use super::cut::{Cut, Cuts, Region, region, resume_limit};
+use super::cut::{Cut, Cuts, Region, Regions, region};
 use super::direct::{self, Words};
 use super::edits::Edits;
 use super::fault;
 use super::gaps::Gaps;
 use super::lex::{Token, TokenKind, tokens};
 use super::recover::{stopped, whole_before};
-use super::strays::joined;
+use super::strays::join;
 use super::tree::{Expr, ExprNode, Stmt};
 use super::weigh::too_large;
 use super::{Rule, SceneParser};
@@ -82,10 +82,8 @@ pub(crate) fn cut(
     is_known: &mut dyn FnMut(usize) -> bool,
 ) -> Cuts {
     let mut out = Cuts::default();
-    let mut next = Some(from);
-    for _ in 0..resume_limit(text.len()) {
-        let Some(from) = next else { break };
-        let found = region(text, from, budgets.brackets, is_known);
+    let mut regions = Regions::new(text, from, budgets);
+    while let Some((from, found)) = regions.cut(is_known) {
         let mut sink = Sink::new(budgets.diagnostics);
         let source = SourceId(0);
         Reader::new(text, source, budgets, &mut sink).region_faults(from, &found);
@@ -93,16 +91,8 @@ pub(crate) fn cut(
         out.faults.extend(sink.finish());
         out.pieces.extend(found.pieces);
         out.met = found.met;
-        next = found.next.filter(|next| *next > from);
     }
     out
-}
-
-/// What stands from `from` on, up to a brace that never closes, or to where it is over.
-fn whole_region(text: &str, from: usize, budgets: &Budgets, is_over: &dyn Fn() -> bool) -> Region {
-    let mut found = region(text, from, budgets.brackets, &mut |_| is_over());
-    joined(text, &mut found, budgets.brackets);
-    found
 }
 
 /// The bytes of the statements from `from` on, as `parse` reads them; of some once it is over.
@@ -113,12 +103,9 @@ pub(crate) fn cut_whole(
     is_over: &dyn Fn() -> bool,
 ) -> Vec<Cut> {
     let mut pieces = vec![];
-    let mut next = Some(from);
-    for _ in 0..resume_limit(text.len()) {
-        let Some(from) = next else { break };
-        let found = whole_region(text, from, budgets, is_over);
+    let mut regions = Regions::new(text, from, budgets);
+    while let Some((_, found)) = regions.joined(is_over) {
         pieces.extend(found.pieces);
-        next = found.next.filter(|next| *next > from);
     }
     pieces
 }
@@ -141,16 +128,17 @@ pub(crate) fn read_piece(
 }
 
 /// Some statements, up to a brace at `stray` that closes nothing: those that are one if another brace is mended, and
-/// what is told of that.
+/// what is told of that; `again` bytes may be looked at for it.
 pub(crate) fn joined_at(
     text: &str,
     range: Range<usize>,
     stray: usize,
     budgets: &Budgets,
+    again: &mut usize,
 ) -> Option<(Range<usize>, Vec<Diagnostic>)> {
     let text = &text[..range.end];
     let mut found = region(text, range.start, budgets.brackets, &mut |_| false);
-    joined(text, &mut found, budgets.brackets);
+    join(text, &mut found, budgets.brackets, again);
     let is_it = |piece: &&Cut| piece.mend.is_some() && piece.range.contains(&stray);
     let piece = found.pieces.iter().find(is_it)?.clone();
     let is_within = |at: usize| piece.range.contains(&at);
@@ -268,27 +256,17 @@ impl Reader<'_> {
     }
 
     fn file(&mut self, turns: &mut Turns<'_>) {
-        let Some(mut from) = self.head() else { return };
-        for _ in 0..resume_limit(self.text.len()) {
-            match self.region(from, turns) {
-                Some(next) if next > from => from = next,
-                _ => break,
+        let Some(from) = self.head() else { return };
+        let mut regions = Regions::new(self.text, from, self.budgets);
+        while let Some((from, found)) = regions.joined(&self.sink.over()) {
+            self.region_faults(from, &found);
+            let turn = |cut: &Cut| cut.range.start / turns.bytes;
+            for pieces in found.pieces.chunk_by(|one, next| turn(one) == turn(next)) {
+                if !self.turn(pieces, turns.take) {
+                    return;
+                }
             }
         }
-    }
-
-    /// Reads statements from `from` on, which are taken in turns. Gives where to go on after a brace
-    /// that never closes.
-    fn region(&mut self, from: usize, turns: &mut Turns<'_>) -> Option<usize> {
-        let found = whole_region(self.text, from, self.budgets, &self.sink.over());
-        self.region_faults(from, &found);
-        let turn = |cut: &Cut| cut.range.start / turns.bytes;
-        for pieces in found.pieces.chunk_by(|one, next| turn(one) == turn(next)) {
-            if !self.turn(pieces, turns.take) {
-                return None;
-            }
-        }
-        found.next
     }
 
     /// Reads the statements of some pieces on several threads; whether more are wanted.

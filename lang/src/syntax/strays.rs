@@ -11,7 +11,7 @@ use super::cut::{Cut, Region};
 use super::fault::mend;
 use super::head::{BLOCKS, BRACES};
 use super::lex::{Token, TokenKind, tokens};
-use crate::prescan::{Fault, scan};
+use crate::prescan::{Fault, is_one};
 
 /// Statements before a brace among which the mistake is looked for.
 pub(crate) const STRAYS_LOOKED_AT: usize = 100;
@@ -20,6 +20,11 @@ pub(crate) const STRAYS_LOOKED_AT: usize = 100;
 /// it so often.
 const READ_AGAIN: usize = 1 << 20;
 const TIMES: usize = 8;
+
+/// How many bytes of a text may be looked at again.
+pub(crate) fn looked_at_again(text: &str) -> usize {
+    READ_AGAIN.max(TIMES * text.len())
+}
 
 /// A brace that is missing or one too many.
 #[derive(Debug)]
@@ -62,9 +67,9 @@ impl Slip {
 }
 
 /// Finds what a `}` that closes nothing closes, or would if another one did not, and joins the statements in
-/// between to one.
-pub(super) fn joined(text: &str, found: &mut Region, limit: usize) {
-    let (mut left, mut done) = (READ_AGAIN.max(TIMES * text.len()), 0);
+/// between to one; `again` bytes may be looked at for that.
+pub(super) fn join(text: &str, found: &mut Region, limit: usize, again: &mut usize) {
+    let mut done = 0;
     let mut faults = std::mem::take(&mut found.faults);
     let strays = faults.extract_if(.., |fault| matches!(fault, Fault::Stray { .. }));
     let strays: Vec<Fault> = strays.collect();
@@ -73,10 +78,9 @@ pub(super) fn joined(text: &str, found: &mut Region, limit: usize) {
         let after = found.pieces.partition_point(|piece| piece.range.start < at);
         let first = after.saturating_sub(STRAYS_LOOKED_AT).max(done);
         let is_alone = text[at..].starts_with('}') && !text[at + 1..].starts_with('}');
-        let mut search = Search { text, pieces: &found.pieces[first..after], limit, left };
+        let mut search = Search { text, pieces: &found.pieces[first..after], limit, again };
         let slip = if is_alone { search.slip(at) } else { None };
         let other = slip.is_none().then(|| search.other(&mut faults)).flatten();
-        left = search.left;
         let Some((begin, mend)) = slip.as_ref().map(|(i, slip)| (*i, slip.mend.clone())).or(other)
         else {
             faults.push(stray);
@@ -99,7 +103,7 @@ struct Search<'a> {
     pieces: &'a [Cut],
     limit: usize,
     /// Bytes that may still be looked at.
-    left: usize,
+    again: &'a mut usize,
 }
 
 impl Search<'_> {
@@ -107,7 +111,7 @@ impl Search<'_> {
     /// begins.
     fn slip(&mut self, stray: usize) -> Option<(usize, Slip)> {
         let start = self.pieces.first()?.range.start;
-        self.left = self.left.checked_sub(stray - start)?;
+        *self.again = self.again.checked_sub(stray - start)?;
         let tokens: Vec<Token<'_>> = tokens(self.text, start..stray).collect();
         let lines: Vec<&[Token<'_>]> = tokens.chunk_by(|_, next| !next.first_on_line).collect();
         (0..lines.len()).rev().find_map(|i| {
@@ -136,11 +140,10 @@ impl Search<'_> {
         let begin = self.pieces.partition_point(|piece| piece.range.start <= at.start);
         let begin = begin.checked_sub(1)?;
         let range = self.pieces[begin].range.start..self.pieces.last()?.range.end;
-        self.left = self.left.checked_sub(range.len())?;
+        *self.again = self.again.checked_sub(range.len())?;
         let own = at.start - range.start..at.end - range.start;
         let mended = rewritten(&self.text[range], 0, &[(own, *with)]).text;
-        let found = scan(&mended, 0..mended.len(), 0, self.limit);
-        (found.faults.is_empty() && found.starts.len() == 1).then_some(begin)
+        is_one(&mended, self.limit).then_some(begin)
     }
 
     /// What may be wrong with a line, if the next begins at that byte.

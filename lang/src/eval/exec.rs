@@ -9,7 +9,7 @@ use super::Evaluator;
 use super::env::Env;
 use super::stray::Stray;
 use super::value::{FieldValue, Function, Value};
-use crate::syntax::{Block, Expr, ExprNode, Name, Op, RESERVED, Stmt, StmtNode, stray};
+use crate::syntax::{Block, Expr, ExprNode, Name, Op, Stmt, StmtNode};
 
 /// What the statements of a block may say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,8 +147,14 @@ impl Evaluator<'_> {
                 self.place(what, label.as_ref(), block.as_deref(), stmt.span, env);
             }
             StmtNode::Field(field) => {
+                let is_stray = body.place == Place::File;
+                if let Some(object) = is_stray.then(|| self.given_object(field)).flatten() {
+                    let value = self.object(&object, env, None);
+                    self.emit(&value, object.head());
+                    return;
+                }
                 let value = self.field(field, env);
-                if body.place == Place::File {
+                if is_stray {
                     self.stray_field(&field.name, env);
                 }
                 body.fields.push(value);
@@ -164,35 +170,6 @@ impl Evaluator<'_> {
             }
             StmtNode::Call(call) => self.call_stmt(call, env, body),
             _ => {}
-        }
-    }
-
-    fn stray_field(&mut self, name: &Name, env: &Env) {
-        // `let = 3`: that it is no name is told already.
-        if RESERVED.contains(&&*name.text) {
-            return;
-        }
-        let message = format!("`{}` stands in no object", name.text);
-        let start = Span { end: name.span.start, ..name.span };
-        let found = Diagnostic::error("E0113", name.span, message);
-        if env.get(&name.text).is_some() {
-            self.tell(found.help("a name keeps its value: give the new one a name of its own"));
-            return;
-        }
-        let names: Vec<Name> = stray(name).collect();
-        let found = found.help("a name is defined with `let`");
-        self.tell(match &names[..] {
-            // `letx = 3`
-            [all, rest] => {
-                let at = all.text.len() - rest.text.len();
-                let gap =
-                    Span::new(name.span.source, start.range().start + at, start.range().start + at);
-                found.guess(gap, " ")
-            }
-            _ => found.guess(start, "let "),
-        });
-        for name in names {
-            env.define(&name.text, Value::Poison);
         }
     }
 

@@ -1,4 +1,4 @@
-//! Objects without a name in others that hold none.
+//! What stands where it cannot: objects without a name in others that hold none, fields in no object.
 
 use luxel_core::diag::{Diagnostic, Grade, Span};
 use luxel_core::registry::Registry;
@@ -7,8 +7,10 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Type};
 
 use super::Evaluator;
+use super::env::Env;
 use super::exec::Body;
-use crate::syntax::{Name, Object};
+use super::value::Value;
+use crate::syntax::{ExprNode, Field, Name, Object, RESERVED, stray};
 
 /// The parameters of a class that take an object of a kind.
 pub(super) fn takers(class: &Class, kind: Kind) -> impl Iterator<Item = &'static Param> {
@@ -61,6 +63,62 @@ impl Evaluator<'_> {
             let grade = if open.len() == 1 && is_whole { Grade::Sure } else { Grade::Guess };
             let help = format!("give it to a parameter: `{} = {word} …`", param.name);
             self.tell(found.help(help).mend(start, format!("{} = ", param.name), grade));
+        }
+    }
+
+    /// The object that a field of a file is meant to be, which is told: `integrator = path { … }`.
+    pub(super) fn given_object(&mut self, field: &Field) -> Option<Object> {
+        let (name, value) = (&field.name, &field.value);
+        Kind::of_word(&name.text)?;
+        let ExprNode::Object(object) = &value.node else { return None };
+        let is_whole = object.category.text == name.text;
+        let is_kind = object.kind.is_none() && Kind::of_word(&object.category.text).is_none();
+        if !is_whole && !is_kind {
+            return None;
+        }
+        let found = Diagnostic::error("E0113", name.span, "an object stands in a file without `=`");
+        let before = |start| Span { start, end: value.span.start, ..name.span };
+        if is_whole {
+            self.tell(found.guess(before(name.span.start), ""));
+            return Some(Object::clone(object));
+        }
+        self.tell(found.guess(before(name.span.end), " "));
+        let kind = Some(object.category.clone());
+        Some(Object { category: name.clone(), kind, ..Object::clone(object) })
+    }
+
+    /// Tells of a field of a file.
+    pub(super) fn stray_field(&mut self, name: &Name, env: &Env) {
+        // `let = 3`: that it is no name is told already.
+        if RESERVED.contains(&&*name.text) {
+            return;
+        }
+        let message = format!("`{}` stands in no object", name.text);
+        let start = Span { end: name.span.start, ..name.span };
+        let found = Diagnostic::error("E0113", name.span, message);
+        if env.get(&name.text).is_some() {
+            self.tell(found.help("a name keeps its value: give the new one a name of its own"));
+            return;
+        }
+        let names: Vec<Name> = stray(name).collect();
+        if Kind::of_word(&name.text).is_some() {
+            let help = format!("an object is written `{} NAME {{ … }}`", name.text);
+            self.tell(found.help(help));
+            return;
+        }
+        let found = found.help("a name is defined with `let`");
+        self.tell(match &names[..] {
+            // `letx = 3`
+            [all, rest] => {
+                let at = all.text.len() - rest.text.len();
+                let gap =
+                    Span::new(name.span.source, start.range().start + at, start.range().start + at);
+                found.guess(gap, " ")
+            }
+            _ => found.guess(start, "let "),
+        });
+        for name in names {
+            env.define(&name.text, Value::Poison);
         }
     }
 }

@@ -108,7 +108,11 @@ impl Resolver<'_> {
             .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
         let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };
         let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
-        let meant = self.meant(shown);
+        let meant = self.meant(shown).filter(|meant| meant.name != shown);
+        let member = meant.is_none().then(|| member_of_function(name, joined, span)).flatten();
+        if let Some(found) = member {
+            return found;
+        }
         if Unit::named(shown).is_some() {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
         } else if Kind::of_word(shown).is_some() {
@@ -185,6 +189,19 @@ impl Resolver<'_> {
         let is_it = mended.len() > end - start && Unit::parse(&mended).is_ok();
         is_it.then(|| (Span::new(name.source, start, end), mended))
     }
+}
+
+/// `metal.Au`
+fn member_of_function(name: &Name, joined: &str, span: Span) -> Option<Diagnostic> {
+    let member = joined.strip_prefix(&*name.text)?.strip_prefix('.')?;
+    builtins::value(&name.text)?;
+    let found = Diagnostic::error("E0101", span, format!("there is no `{joined}`"));
+    if builtins::value(member).is_some() {
+        return Some(found.meant(span, Some(Near { name: member, grade: Grade::Guess })));
+    }
+    let found = found.help(format!("`{}` is a function", name.text));
+    let is_named = NAMED.contains(&&*name.text);
+    Some(if is_named { found.guess(span, format!("{}(\"{member}\")", name.text)) } else { found })
 }
 
 /// The chain of functions from `from` over `name` back to `from`, if there is one.

@@ -8,40 +8,18 @@ use super::foreign::foreign;
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
 use super::paths::unquoted;
+use super::signs::sign;
 use super::statement::statement;
 use super::type_names;
-
-/// Signs that editors and other notations write, and what stands here for them.
-const SIGNS: [(&str, &str, &str); 16] = [
-    ("–", "-", "this dash is no minus sign"),
-    ("—", "-", "this dash is no minus sign"),
-    ("−", "-", "this minus sign is not the keyboard's"),
-    ("‐", "-", "this hyphen is no minus sign"),
-    ("×", "*", "a product is written with `*`"),
-    ("·", "*", "a product is written with `*`"),
-    ("⋅", "*", "a product is written with `*`"),
-    ("÷", "/", "a quotient is written with `/`"),
-    ("≤", "<=", "this comparison is written `<=`"),
-    ("≥", ">=", "this comparison is written `>=`"),
-    ("≠", "!=", "this comparison is written `!=`"),
-    ("…", "..", "a range is written with `..`"),
-    ("²", "^2", "a power is written with `^`"),
-    ("³", "^3", "a power is written with `^`"),
-    ("°", " deg", "degrees are written `deg`"),
-    ("π", "pi", "this number is called `pi`"),
-];
 
 /// What is said of `#` where a comment is meant.
 pub(super) const COMMENTS: &str = "a comment begins with `//`";
 
-/// Quotes beside the keyboard's two.
-const QUOTES: [&str; 9] = ["“", "”", "„", "‟", "«", "»", "‘", "’", "'"];
+const ONE_WORD: &str = "a name is one word";
 
 /// Why the place cannot be read, if it looks like another language's way.
 pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
     sign(around)
-        .or_else(|| quotes(around))
-        .or_else(|| lettered(around))
         .or_else(|| unquoted(around))
         .or_else(|| hash(around))
         .or_else(|| foreign(around))
@@ -54,6 +32,7 @@ pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| share(around))
         .or_else(|| decimal_comma(around))
         .or_else(|| definition(around))
+        .or_else(|| two_words(around))
         .or_else(|| object(around))
         .or_else(|| given(around))
 }
@@ -64,87 +43,6 @@ fn joined(around: &Around<'_>, first: usize, texts: &[&str]) -> Option<Span> {
     let touch = tokens.windows(2).all(|pair| pair[0].end() == pair[1].start);
     let same = tokens.iter().zip(texts).all(|(token, text)| token.text == *text);
     (touch && same).then(|| around.span(&tokens[0]).to(around.span(&tokens[texts.len() - 1])))
-}
-
-/// A sign of typography, or a blank that is none to the grammar.
-fn sign(around: &Around<'_>) -> Option<Diagnostic> {
-    let mark = around.current()?;
-    let c = mark.text.chars().next()?;
-    if c.is_whitespace() || matches!(c, '\u{200B}'..='\u{200D}' | '\u{2060}') {
-        let message = format!("this blank (U+{:04X}) is none to the language", u32::from(c));
-        return Some(told(around.span(mark), message).fix(around.span(mark), " "));
-    }
-    if let Some(found) = temperature(around).or_else(|| letter(around, c)) {
-        return Some(found);
-    }
-    let (_, here, message) = SIGNS.iter().find(|(sign, ..)| *sign == mark.text)?;
-    Some(told(around.span(mark), *message).fix(around.span(mark), *here))
-}
-
-/// `20 °C`
-fn temperature(around: &Around<'_>) -> Option<Diagnostic> {
-    let mark = around.current().filter(|mark| mark.text == "°")?;
-    let scale = around.tokens.get(around.at + 1).filter(|t| t.start == mark.end())?;
-    let span = around.span(mark).to(around.span(scale));
-    let found = told(span, "a temperature is measured in kelvin");
-    match scale.text {
-        "C" => {
-            let number = around.before(1).filter(|t| t.kind == TokenKind::Number);
-            let degrees: Option<f64> = number.and_then(|t| t.text.parse().ok());
-            let (Some(number), Some(degrees)) = (number, degrees) else { return Some(found) };
-            let all = around.span(number).to(span);
-            Some(found.guess(all, format!("{} K", ((degrees + 273.15) * 100.0).round() / 100.0)))
-        }
-        "F" => Some(found),
-        _ => None,
-    }
-}
-
-/// `größe`
-fn letter(around: &Around<'_>, c: char) -> Option<Diagnostic> {
-    let mark = around.current().filter(|_| c.is_alphabetic() && c != 'π')?;
-    let touches =
-        around.before(1).is_some_and(|t| t.kind == TokenKind::Word && t.end() == mark.start)
-            || around
-                .tokens
-                .get(around.at + 1)
-                .is_some_and(|t| t.kind == TokenKind::Word && t.start == mark.end());
-    let found = told(around.span(mark), format!("`{c}` stands in no name"));
-    touches.then(|| found.help("names are made of the letters a to z and A to Z, digits and `_`"))
-}
-
-/// `'a'`, `“a”`
-fn quotes(around: &Around<'_>) -> Option<Diagnostic> {
-    let mark = around.current().filter(|mark| QUOTES.contains(&mark.text))?;
-    let found = told(around.span(mark), "a string stands between `\"`");
-    let line = around.text[mark.end()..around.end].split('\n').next()?;
-    let end = QUOTES.iter().chain(&["\""]).filter_map(|quote| line.find(quote)).min();
-    let Some(length) = end else { return Some(found) };
-    let quote = line[length..].chars().next().map_or(0, char::len_utf8);
-    let all = Span::new(around.source, mark.start, mark.end() + length + quote);
-    Some(found.guess(all, format!("\"{}\"", &line[..length])))
-}
-
-/// `f"text"`
-fn lettered(around: &Around<'_>) -> Option<Diagnostic> {
-    let back = around.at.saturating_sub(1);
-    [back, around.at].into_iter().find_map(|i| {
-        let (letter, text) = (around.tokens.get(i)?, around.tokens.get(i + 1)?);
-        let touch = letter.end() == text.start && letter.text.len() <= 2;
-        if letter.kind != TokenKind::Word || text.kind != TokenKind::Text || !touch {
-            return None;
-        }
-        let span = around.span(letter);
-        let found = told(span, "no letter stands before a string");
-        // With the letter, `{k}` is another text elsewhere, and `\n` may be.
-        Some(match text.text {
-            text if text.contains('{') => found
-                .help("a string stands for itself: nothing is put in for `{…}`")
-                .guess(span, ""),
-            text if text.contains('\\') => found.guess(span, ""),
-            _ => found.fix(span, ""),
-        })
-    })
 }
 
 /// `# comment` and `#ff8000`
@@ -391,6 +289,19 @@ fn decimal_comma(around: &Around<'_>) -> Option<Diagnostic> {
     Some(told(span, "the decimal point is written `.`").guess(span, "."))
 }
 
+/// `base color = 3`
+fn two_words(around: &Around<'_>) -> Option<Diagnostic> {
+    around.current().filter(|sign| sign.text == "=")?;
+    let (first, second) = (around.before(2)?, around.before(1)?);
+    let are_words = [first, second].iter().all(|word| word.kind == TokenKind::Word);
+    let is_field = around.begins(around.at - 2) && around.inner() == Place::Fields;
+    if !are_words || !is_field || second.first_on_line || is_category(first.text) {
+        return None;
+    }
+    let gap = Span::new(around.source, first.end(), second.start);
+    Some(told(around.span(first).to(around.span(second)), ONE_WORD).guess(gap, "_"))
+}
+
 /// `let x int = 3`, `let go ld = 3`, `param x = 3`, `import "a.scene"`
 fn definition(around: &Around<'_>) -> Option<Diagnostic> {
     let (last, before) = (around.before(1)?, around.before(2));
@@ -411,10 +322,7 @@ fn definition(around: &Around<'_>) -> Option<Diagnostic> {
                 let found = told(around.span(second), "a type stands behind `:`");
                 return Some(found.fix(gap, ": "));
             }
-            Some(
-                told(around.span(last).to(around.span(second)), "a name is one word")
-                    .guess(gap, "_"),
-            )
+            Some(told(around.span(last).to(around.span(second)), ONE_WORD).guess(gap, "_"))
         }
         ("param", Some(equals)) if is_word && equals.text == "=" => {
             let message = format!("the parameter `{}` needs a type", last.text);

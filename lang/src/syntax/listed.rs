@@ -1,6 +1,6 @@
 //! Lists as other languages write them: what they are made of first, and blanks for commas.
 
-use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::diag::{Diagnostic, Grade, Span};
 
 use super::around::Around;
 use super::lex::{Token, TokenKind};
@@ -10,7 +10,7 @@ const SHORT: usize = 200;
 
 /// Why the place cannot be read, if it is in such a list.
 pub(super) fn listed(around: &Around<'_>) -> Option<Diagnostic> {
-    comprehension(around).or_else(|| signs(around))
+    comprehension(around).or_else(|| blanks(around)).or_else(|| indices(around))
 }
 
 /// `[x * 2 for x in 0..4]`
@@ -31,8 +31,8 @@ fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     Some(found.guess(all, format!("{over} => {}", value.trim_start())))
 }
 
-/// `[1 -2 3]`: with commas where they are missing it would be read as `[1 - 2, 3]`.
-fn signs(around: &Around<'_>) -> Option<Diagnostic> {
+/// `[1 2 3]`, and `[1 -2 3]`: with commas where they are missing it would be read as `[1 - 2, 3]`.
+fn blanks(around: &Around<'_>) -> Option<Diagnostic> {
     let current = around.current().filter(|token| token.kind == TokenKind::Number)?;
     let open = *around.open.last().filter(|open| matches!(around.word(**open), "[" | "("))?;
     let inside = &around.tokens[open + 1..around.closing(open)?];
@@ -47,14 +47,15 @@ fn signs(around: &Around<'_>) -> Option<Diagnostic> {
         let is_apart = before.end() < minus.start && minus.end() == number.start;
         is_number(before) && is_minus(minus) && is_apart
     });
-    if !are_numbers || !has_signs {
+    // Where one comma is missing it is told by itself.
+    if !are_numbers || !has_signs && inside.len() < 3 {
         return None;
     }
     let message = format!("a comma is missing before `{}`", current.text);
     let found = around.error("E0014", current, message);
     let all = Span::new(around.source, inside.first()?.start, inside.last()?.end());
     if all.range().len() > SHORT {
-        return Some(found);
+        return has_signs.then_some(found);
     }
     let mut numbers = String::new();
     for (i, token) in inside.iter().enumerate() {
@@ -62,5 +63,21 @@ fn signs(around: &Around<'_>) -> Option<Diagnostic> {
         numbers += if i == 0 || is_signed { "" } else { ", " };
         numbers += token.text;
     }
-    Some(found.guess(all, numbers))
+    Some(found.mend(all, numbers, if has_signs { Grade::Guess } else { Grade::Sure }))
+}
+
+/// `rgb.srgb[0.8, 0.7, 0.6]`
+fn indices(around: &Around<'_>) -> Option<Diagnostic> {
+    around.current().filter(|comma| comma.text == ",")?;
+    let open = *around.open.last().filter(|open| around.word(**open) == "[")?;
+    let word = around.tokens.get(open.checked_sub(1)?)?;
+    if word.kind != TokenKind::Word || word.end() != around.tokens[open].start {
+        return None;
+    }
+    let close = around.closing(open)?;
+    let inside = around.tokens[open].end()..around.tokens[close].start;
+    let all = around.span(&around.tokens[open]).to(around.span(&around.tokens[close]));
+    let found = Diagnostic::error("E0023", all, "a function is called with `(` and `)`");
+    let is_short = inside.len() <= SHORT;
+    Some(if is_short { found.guess(all, format!("({})", &around.text[inside])) } else { found })
 }

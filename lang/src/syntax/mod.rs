@@ -28,6 +28,7 @@ mod parse;
 mod paths;
 mod peers;
 mod recover;
+mod signs;
 mod statement;
 #[cfg(test)]
 mod tests;

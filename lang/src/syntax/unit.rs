@@ -12,6 +12,7 @@ use super::around::is_category;
 use super::build::Builder;
 use super::habits::condition;
 use super::head::begins_statement;
+use super::signs::{KELVIN, kelvin};
 use super::statement::{is_suffix, of_suffix};
 use super::tree::Name;
 
@@ -58,6 +59,10 @@ impl Builder<'_> {
             self.sink.push(found.fix(all, ""));
             return None;
         }
+        if matches!(text, "C" | "degC" | "celsius" | "degF") {
+            self.sink.push(self.temperature(pair, span));
+            return None;
+        }
         if is_category(text) {
             self.sink.push(self.statement_as_unit(pair, span));
             self.begun = Some((pair.as_span().end(), Name { text: text.into(), span }));
@@ -80,6 +85,18 @@ impl Builder<'_> {
         }
         self.sink.push(diagnostic);
         None
+    }
+
+    /// `20 C`, `68 degF`
+    fn temperature(&self, pair: &Pair<'_, Rule>, span: Span) -> Diagnostic {
+        let found = Diagnostic::error("E0204", span, KELVIN);
+        let blank = blank_before(pair).start;
+        let before = &pair.get_input()[..blank];
+        let is_part = |c: char| c.is_ascii_digit() || c == '.';
+        let number = &before[before.trim_end_matches(is_part).len()..];
+        let kelvin = kelvin(number).filter(|_| !pair.as_str().ends_with('F'));
+        let Some(kelvin) = kelvin else { return found };
+        found.guess(self.written(blank - number.len()..pair.as_span().end()), kelvin)
     }
 
     /// `let b = 4 shape sphere { … }`

@@ -14,6 +14,7 @@ mod budgets;
 mod catalogue;
 #[cfg(test)]
 mod chance;
+mod consequences;
 mod eval;
 mod fmt;
 mod shares;
@@ -148,7 +149,13 @@ pub struct Loaded {
 /// Never panics and never runs for ever, whatever the bytes: budgets bound time, memory and stack
 /// (2 MiB suffice at the default budgets).
 pub fn load(path: &Path, files: &dyn Files, registry: &Registry, settings: &Settings) -> Loaded {
-    eval::load(path, files, registry, settings)
+    sifted(eval::load(path, files, registry, settings))
+}
+
+/// Without what follows from other mistakes.
+fn sifted(mut loaded: Loaded) -> Loaded {
+    consequences::sift(&mut loaded.diagnostics);
+    loaded
 }
 
 /// What is kept of a load, so that the next one of the same file goes on from it.
@@ -168,7 +175,7 @@ impl Kept {
         registry: &Registry,
         settings: &Settings,
     ) -> Loaded {
-        eval::again::load(&mut self.0, path, files, registry, settings)
+        sifted(eval::again::load(&mut self.0, path, files, registry, settings))
     }
 
     /// How many statements of the file the last load evaluated, if it gave something to go on from.

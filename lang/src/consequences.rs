@@ -1,0 +1,61 @@
+//! Mistakes that are told of what was not written to its end: their cause is told already.
+
+use luxel_core::diag::{Diagnostic, Span};
+
+/// Takes out what is said of the value of an expression in which something cannot be read, as of a call that
+/// lacks what stands behind a missing bracket.
+pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>) {
+    let is_cause = |found: &&Diagnostic| found.is_error() && found.code.starts_with("E00");
+    let causes = diagnostics.iter().filter(is_cause);
+    let places = |found: &Diagnostic| {
+        let mended = found.fixes.iter().map(|fix| fix.span);
+        found.span().into_iter().chain(mended).collect::<Vec<Span>>()
+    };
+    let mut causes: Vec<Span> = causes.flat_map(places).collect();
+    causes.sort_unstable();
+    diagnostics.retain(|found| {
+        let is_of_value = found.code.starts_with("E02") || found.code.starts_with("E04");
+        let span = found.span().filter(|_| is_of_value && found.is_error());
+        !span.is_some_and(|span| holds_one(span, &causes))
+    });
+}
+
+/// Whether one of some places, which are in order, lies in a larger one.
+fn holds_one(span: Span, places: &[Span]) -> bool {
+    let first = places.partition_point(|at| (at.source, at.start) < (span.source, span.start));
+    let begin_within = |at: &&Span| at.source == span.source && at.start <= span.end;
+    let mut within = places[first..].iter().take_while(begin_within);
+    within.any(|at| at.end <= span.end && *at != span)
+}
+
+#[cfg(test)]
+mod tests {
+    use luxel_core::diag::SourceId;
+
+    use super::*;
+
+    #[test]
+    fn values_around_what_cannot_be_read_are_not_judged() {
+        let error = |code, file, start, end| {
+            Diagnostic::error(code, Span::new(SourceId(file), start, end), "")
+        };
+        let cause = || error("E0009", 0, 20, 21).guess(Span::new(SourceId(0), 19, 19), ")");
+        let kept = |found: Diagnostic| {
+            let mut all = vec![found, cause()];
+            sift(&mut all);
+            all.len() == 2
+        };
+        assert!(!kept(error("E0403", 0, 10, 19)) && !kept(error("E0214", 0, 19, 30)));
+        for (code, file, start, end) in [
+            ("E0403", 0, 10, 18),
+            ("E0403", 0, 20, 21),
+            ("E0403", 1, 10, 30),
+            ("E0214", 0, 22, 30),
+            ("E0101", 0, 10, 30),
+        ] {
+            assert!(kept(error(code, file, start, end)), "{code} {file} {start}");
+        }
+        let warning = Diagnostic::warning("E0403", Span::new(SourceId(0), 10, 30), "");
+        assert!(kept(warning));
+    }
+}

@@ -18,7 +18,7 @@ const CAMERA: &str = "camera perspective { fov = 40 deg, look = look_at(from = (
                       to = (0, 0, 0) m, up = (0, 1, 0)) }";
 
 /// Statements that depend on others, emit, share, declare, read other files, or are wrong.
-const LINES: [&str; 63] = [
+const LINES: [&str; 71] = [
     "let r = 5 cm",
     "let r = 25 cm",
     "let grey = material diffuse { reflectance = 0.5 }",
@@ -82,6 +82,14 @@ const LINES: [&str; 63] = [
     "let far = 70 cm / size",
     "let bright = 3 W/m^2/sr",
     "let bright = rgb.linear_srgb(1, 2, 3) W/m^2/sr",
+    "shape sphere { radius = r, center = (1.5 m, r, -2 * r), material = grey }",
+    "shape sphere { radius = r, center = (0, r, 3 cm) }",
+    "shape sphere \"four\" { radius = 1 m, center = ( far , -4 mm, r + (far) ) }",
+    "shape sphere { radius = 1 m, center = (1, near, -2) }",
+    "shape sphere { radius = 1 m, center = (near, near, 1 m) }",
+    "let near = 3",
+    "let near = 4 mm",
+    "let near = 0",
 ];
 
 /// Half-written things, and what ends statements.
@@ -189,16 +197,18 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
         let set = if seed % 4 == 0 { vec![("size".to_owned(), "0.6".to_owned())] } else { vec![] };
         // Some are spent by one statement more.
         let budgets = Budgets {
-            nodes: if seed % 3 == 0 { 1_000_000 } else { 41 },
-            names: if seed % 2 == 0 { 500_000 } else { 10 },
+            nodes: if seed % 3 == 0 { 1_000_000 } else { 49 },
+            names: if seed % 2 == 0 { 500_000 } else { 11 },
             ..Budgets::default()
         };
         let noting = seed % 5 != 1;
         let without_scene = seed % 7 == 1;
         let settings = Settings { set, budgets, noting, without_scene, ..Settings::default() };
         let mut edited = Edited::new(settings);
-        let good =
-            [0, 2, 59, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24, 52, 53, 54, 56, 57, 58];
+        let good = [
+            0, 2, 59, 68, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24, 52, 53, 54, 56, 57,
+            58, 63, 64, 65, 66,
+        ];
         let more: &[usize] = [&[][..], &[33, 34], &[42, 43], &[44, 48]][pick(&mut rng, 4)];
         let mut lines: Vec<String> =
             good.iter().chain(more).map(|i| LINES[*i].to_owned()).collect();

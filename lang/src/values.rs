@@ -1,9 +1,12 @@
 //! Values that names had in a load, as text, for editors.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use luxel_core::diag::SourceId;
+use luxel_sdk::params::Dimension;
 
 /// A name: the text in which it stands, and its first byte there.
 pub(crate) type Place = (SourceId, u32);
@@ -32,10 +35,10 @@ pub struct Values {
 
 impl Values {
     /// The value of the name whose first byte stands there.
-    pub fn at(&self, source: SourceId, byte: usize) -> Option<&str> {
+    pub fn at(&self, source: SourceId, byte: usize) -> Option<Cow<'_, str>> {
         let (place, byte) = self.in_statement(source, byte);
         let at = u32::try_from(byte).ok()?;
-        let elsewhere = || self.others.get(&(place, at)).map(|(_, value)| &**value);
+        let elsewhere = || self.others.get(&(place, at)).map(|(_, value)| Cow::Borrowed(&**value));
         self.own.value(place, at).or_else(elsewhere)
     }
 
@@ -49,7 +52,7 @@ impl Values {
     }
 
     /// Every value, by the text in which its name stands and its first byte there.
-    pub fn all(&self) -> BTreeMap<(SourceId, usize), &str> {
+    pub fn all(&self) -> BTreeMap<(SourceId, usize), Cow<'_, str>> {
         let starts: BTreeMap<SourceId, usize> =
             self.stmts.iter().map(|(start, id)| (*id, *start)).collect();
         let placed = |source: SourceId, at: u32| {
@@ -57,7 +60,8 @@ impl Values {
             start.map_or((source, at as usize), |start| (SourceId(0), start + at as usize))
         };
         let others = self.others.iter();
-        let others = others.map(|((source, at), (_, value))| (placed(*source, *at), &**value));
+        let others = others
+            .map(|((source, at), (_, value))| (placed(*source, *at), Cow::Borrowed(&**value)));
         let own = self.stmts.iter().flat_map(|(_, id)| {
             let notes = self.own.of(*id).unwrap_or_default().iter();
             let value = |at: u32| Some((placed(*id, at), self.own.value(*id, at)?));
@@ -82,10 +86,10 @@ impl Layers {
     }
 
     /// The value of the name that stands there in a statement.
-    fn value(&self, statement: SourceId, at: u32) -> Option<&str> {
+    fn value(&self, statement: SourceId, at: u32) -> Option<Cow<'_, str>> {
         let notes = self.of(statement)?;
         let i = notes.binary_search_by_key(&at, |note| note.0).ok()?;
-        Some(self.handed.value((statement, at)).unwrap_or(&notes[i].1))
+        Some(self.handed.value((statement, at)).unwrap_or(Cow::Borrowed(&notes[i].1)))
     }
 
     /// Puts newer ones on top. Each layer has less than half as many as the one below: there are few.
@@ -105,7 +109,7 @@ impl Layers {
     }
 
     /// Gives names other values, as far as something was noted of them.
-    pub(crate) fn hand_on(&mut self, newer: Vec<(Place, Arc<str>)>) {
+    pub(crate) fn hand_on(&mut self, newer: Vec<(Place, Shown)>) {
         if !newer.is_empty() {
             self.handed = Arc::new(self.handed.with(newer));
         }
@@ -114,16 +118,35 @@ impl Layers {
 
 /// Values that names got without their statements being evaluated, in order.
 #[derive(Debug, Default)]
-pub(crate) struct HandedOn(Vec<(Place, Arc<str>)>);
+pub(crate) struct HandedOn(Vec<(Place, Shown)>);
+
+/// A value as it is shown, or that is put into words once it is looked at.
+#[derive(Clone, Debug)]
+pub(crate) enum Shown {
+    Text(Arc<str>),
+    Vector(Arc<Unsaid>),
+}
+
+/// A vector of numbers of a dimension, in SI units.
+#[derive(Debug)]
+pub(crate) struct Unsaid {
+    pub(crate) numbers: ArrayVec<f64, 4>,
+    pub(crate) measure: Dimension,
+    /// Puts it into words.
+    pub(crate) say: fn(&[f64], Dimension) -> String,
+}
 
 impl HandedOn {
-    fn value(&self, place: Place) -> Option<&str> {
+    fn value(&self, place: Place) -> Option<Cow<'_, str>> {
         let i = self.0.binary_search_by_key(&place, |(place, _)| *place).ok()?;
-        Some(&self.0[i].1)
+        Some(match &self.0[i].1 {
+            Shown::Text(text) => Cow::Borrowed(&**text),
+            Shown::Vector(it) => Cow::Owned((it.say)(&it.numbers, it.measure)),
+        })
     }
 
     /// With newer ones.
-    fn with(&self, newer: Vec<(Place, Arc<str>)>) -> Self {
+    fn with(&self, newer: Vec<(Place, Shown)>) -> Self {
         let mut all: Vec<_> = self.0.iter().cloned().chain(newer).collect();
         // Finds that there are two runs, and keeps the newer of two behind the older.
         all.sort_by_key(|(place, _)| *place);
@@ -139,7 +162,7 @@ impl HandedOn {
 
     /// Without those of statements that have been evaluated.
     fn without(&self, newer: &Layer) -> Self {
-        let is_older = |((statement, _), _): &&(Place, _)| !newer.contains_key(statement);
+        let is_older = |((statement, _), _): &&(Place, Shown)| !newer.contains_key(statement);
         Self(self.0.iter().filter(is_older).cloned().collect())
     }
 }
@@ -155,8 +178,10 @@ mod tests {
         notes.iter().map(|(id, notes)| (SourceId(*id), of(notes))).collect()
     }
 
-    fn handed(values: &[(u32, u32, &str)]) -> Vec<(Place, Arc<str>)> {
-        let one = |(id, at, value): &(u32, u32, &str)| ((SourceId(*id), *at), (*value).into());
+    fn handed(values: &[(u32, u32, &str)]) -> Vec<(Place, Shown)> {
+        let one = |(id, at, value): &(u32, u32, &str)| {
+            ((SourceId(*id), *at), Shown::Text((*value).into()))
+        };
         values.iter().map(one).collect()
     }
 
@@ -164,7 +189,7 @@ mod tests {
     fn of_what_is_noted_and_handed_on_the_newest_counts() {
         let mut layers = Layers::default();
         let all = |layers: &Layers| {
-            let value = |id, at| layers.value(SourceId(id), at).map(str::to_owned);
+            let value = |id, at| layers.value(SourceId(id), at).map(Cow::into_owned);
             [value(1, 4), value(1, 9), value(2, 4), value(3, 4)].map(Option::unwrap_or_default)
         };
         layers.push(layer(&[(1, &[(4, "a"), (9, "b")]), (2, &[(4, "c")])]));

@@ -1,5 +1,6 @@
 //! Evaluation apart from answering: after a pause, and given up for a newer text.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -112,7 +113,7 @@ pub(super) struct Valued {
 
 impl Valued {
     /// The value of the name whose first byte stands there now.
-    pub(super) fn at(&self, path: &Path, mut byte: usize) -> Option<&str> {
+    pub(super) fn at(&self, path: &Path, mut byte: usize) -> Option<Cow<'_, str>> {
         for (_, range, length) in self.edits.iter().rev().filter(|edit| edit.0 == path) {
             let end = range.start + length;
             if byte > end {

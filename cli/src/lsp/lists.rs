@@ -1,5 +1,6 @@
 //! What may be written, and what is told of what is written.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use luxel_lang::editor::{Item, ItemKind, OnDisk, complete, hover};
@@ -63,8 +64,9 @@ impl Server {
         let Some(found) = hover(&self.files, &at.path, at.byte, &self.plugins.registry) else {
             return Value::Null;
         };
-        let evaluated =
-            || found.of.and_then(|place| self.value(&place.path, place.range.0).map(str::to_owned));
+        let evaluated = || {
+            found.of.and_then(|place| self.value(&place.path, place.range.0).map(Cow::into_owned))
+        };
         let value = found.value.or_else(evaluated);
         let code = format!("```scene\n{}\n```", found.code);
         let value = value.map(|value| format!("{}: {value}", found.value_is));
@@ -78,7 +80,7 @@ impl Server {
     }
 
     /// The value that a name had in the last evaluation.
-    fn value(&self, path: &Path, at: usize) -> Option<&str> {
+    fn value(&self, path: &Path, at: usize) -> Option<Cow<'_, str>> {
         self.judged.values().find_map(|judged| judged.values.at(path, at))
     }
 }

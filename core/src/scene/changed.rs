@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use super::compact::{IsOver, STRIDE, look};
+use super::compact::IsOver;
+use super::gather::in_parts;
 use super::terms::{Sum, Terms, is_own};
-use super::{Arguments, NodeId, Scene, Value};
+use super::{Argument, Arguments, NodeId, Scene, Value};
 
 /// Another value for a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +14,8 @@ pub struct Changed {
     pub node: u32,
     /// Which of its parameters.
     pub argument: u32,
+    /// Which number of a vector, that becomes another one; `None` of the whole value.
+    pub item: Option<u8>,
     /// Which of the values that there are.
     pub value: u32,
 }
@@ -24,10 +27,25 @@ struct Said {
     after: Terms,
 }
 
+/// Puts what changes of one parameter into its value.
+fn put(value: &mut Value, changes: &[Changed], values: &[Value]) {
+    for change in changes {
+        let new = &values[change.value as usize];
+        match (&mut *value, change.item, new) {
+            (Value::Vector(numbers), Some(i), Value::Number(x, _)) => {
+                if let Some(number) = numbers.get_mut(usize::from(i)) {
+                    *number = *x;
+                }
+            }
+            _ => *value = new.clone(),
+        }
+    }
+}
+
 impl Scene {
     /// Gives parameters other values, in a scene whose nodes are hashed.
     ///
-    /// `changes` go by node and parameter. `runs` are nodes that follow one another, of which one may refer to
+    /// `changes` go by node and parameter, of a vector by number. `runs` are nodes that follow one another, of which one may refer to
     /// another before it in its run; nothing else refers to a node that changes, and no value does. `None`,
     /// and a scene of no use, once it is over.
     pub fn change(
@@ -36,7 +54,6 @@ impl Scene {
         (changes, values): (&[Changed], &[Value]),
         is_over: IsOver<'_>,
     ) -> Option<()> {
-        let mut said = Said::default();
         let beside = self.nodes.chunk_by(|one, other| one.params.is_beside(&other.params));
         let lengths: Vec<usize> = beside.map(<[_]>::len).collect();
         let (mut start, mut left) = (0, changes);
@@ -45,7 +62,7 @@ impl Scene {
             let n = left.iter().take_while(|change| (change.node as usize) < end).count();
             let (own, others) = left.split_at(n);
             if !own.is_empty() {
-                self.change_beside(start..end, (own, values), &mut said, is_over)?;
+                self.change_beside(start..end, (own, values), is_over)?;
             }
             (start, left) = (end, others);
         }
@@ -58,26 +75,41 @@ impl Scene {
         &mut self,
         nodes: Range<usize>,
         (changes, values): (&[Changed], &[Value]),
-        said: &mut Said,
         is_over: IsOver<'_>,
     ) -> Option<()> {
         let lists = self.nodes[nodes.clone()].iter_mut().map(|node| &mut node.params);
         let (mut all, ranges) = Arguments::taken(lists);
-        for few in changes.chunks(STRIDE) {
-            look(is_over)?;
-            for change in few {
-                let (i, k) = (change.node as usize, change.argument as usize);
-                let argument = &mut all[ranges[i - nodes.start].start as usize + k];
-                let value = &values[change.value as usize];
-                let child = |id: NodeId| self.node(id).hash;
-                let before = said.before.param((k, argument.name), &argument.value, child);
-                let after = said.after.param((k, argument.name), value, child);
-                argument.value = value.clone();
-                let node = &mut self.nodes[i];
-                let is_own = is_own(node.kind, argument.name);
-                for hash in [&mut node.hash].into_iter().chain(is_own.then_some(&mut self.own[i])) {
-                    *hash = Sum::of(hash).minus(before).plus(after).hash();
-                }
+        let place = |change: &Changed| {
+            ranges[change.node as usize - nodes.start].start as usize + change.argument as usize
+        };
+        let is_one = |one: &Changed, other: &Changed| {
+            (one.node, one.argument) == (other.node, other.argument)
+        };
+        let each: Vec<&[Changed]> = changes.chunk_by(is_one).collect();
+        let terms = |some: &[&[Changed]], out: &mut Vec<Sum>| {
+            let (mut said, child) = (Said::default(), |id: NodeId| self.node(id).hash);
+            for changes in some {
+                let Argument { name, value, .. } = &all[place(&changes[0])];
+                let at = (changes[0].argument as usize, *name);
+                let before = said.before.param(at, value, child);
+                let after = if let [Changed { item: None, value, .. }] = changes {
+                    said.after.param(at, &values[*value as usize], child)
+                } else {
+                    let mut new = value.clone();
+                    put(&mut new, changes, values);
+                    said.after.param(at, &new, child)
+                };
+                out.push(after.minus(before));
+            }
+        };
+        let terms = in_parts(&each, is_over, &terms)?;
+        for (changes, term) in each.iter().zip(terms) {
+            let (argument, i) = (&mut all[place(&changes[0])], changes[0].node as usize);
+            put(&mut argument.value, changes, values);
+            let node = &mut self.nodes[i];
+            let is_own = is_own(node.kind, argument.name);
+            for hash in [&mut node.hash].into_iter().chain(is_own.then_some(&mut self.own[i])) {
+                *hash = Sum::of(hash).plus(term).hash();
             }
         }
         for (node, params) in self.nodes[nodes].iter_mut().zip(Arguments::of_one(all, ranges)) {
@@ -119,7 +151,7 @@ mod tests {
             scene
         };
         let mut scene = made([0.0, 1.0, 2.0, 3.0, 4.0]);
-        let change = |node, value| Changed { node, argument: 0, value };
+        let change = |node, value| Changed { node, argument: 0, item: None, value };
         let values = [7.0, 8.0].map(number);
         // What refers to the first is behind it in its run, what refers to the fourth too.
         let put = |scene: &mut Scene, changes: &[Changed]| {
@@ -129,6 +161,29 @@ mod tests {
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 4.0]));
         put(&mut scene, &[change(4, 1)]);
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 8.0]));
+    }
+
+    #[test]
+    fn of_a_vector_some_numbers_are_changed() {
+        let made = |vectors: [[f64; 3]; 2]| {
+            let node = |vector: [f64; 3]| {
+                let mut node = numbered(1.0, None);
+                node.params.to_mut()[0].value = Value::vector(vector);
+                node
+            };
+            let nodes = vectors.map(node).into();
+            let mut scene = Scene { nodes, ..Scene::default() };
+            scene.prepare(&|span| span, &|| false).unwrap();
+            scene
+        };
+        let mut scene = made([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        let change = |node, item, value| Changed { node, argument: 0, item, value };
+        let values = [number(7.0), number(8.0), Value::vector([0.0; 3])];
+        let changes = [change(0, Some(0), 0), change(0, Some(2), 1), change(1, Some(1), 1)];
+        scene.change(&[], (&changes, &values), &|| false).unwrap();
+        assert_eq!(scene, made([[7.0, 2.0, 8.0], [4.0, 8.0, 6.0]]));
+        scene.change(&[], (&[change(1, None, 2)], &values), &|| false).unwrap();
+        assert_eq!(scene, made([[7.0, 2.0, 8.0], [0.0; 3]]));
     }
 
     fn number(x: f64) -> Value {

@@ -10,11 +10,12 @@ use luxel_core::scene::Color;
 use luxel_sdk::color::{
     Curve, Outside, blackbody, emission_rgb, glass, illuminant, metal, reflectance_rgb, srgb_encode,
 };
+use luxel_sdk::params::Dimension;
 
 use super::Evaluator;
 use super::readable::{number, readable};
 use super::value::Value;
-use crate::syntax::Name;
+use crate::syntax::{Form, Name};
 use crate::values::{Elsewhere, Layer, Values};
 
 /// Values that are kept of one load, at most.
@@ -115,6 +116,11 @@ impl Evaluator<'_> {
 fn is_shown(value: &Value) -> bool {
     use Value::{Builtin, Function, Module, Object, Poison};
     !matches!(value, Poison | Object(_) | Module(_) | Function(_) | Builtin(_))
+}
+
+/// How an editor shows a vector of numbers of a dimension, in SI units.
+pub(super) fn shown_vector(numbers: &[f64], dimension: Dimension) -> String {
+    as_shown(&Value::numbers(numbers.to_vec(), dimension, Form::Tuple))
 }
 
 fn as_shown(value: &Value) -> String {

@@ -59,8 +59,11 @@ pub(crate) fn si(x: f64, dimension: Dimension) -> String {
     if dimension.is_none() { number(x) } else { format!("{} {}", number(x), si_unit(dimension)) }
 }
 
+/// With seven digits. Most numbers have no more, and of these it takes long to find all that are none.
 fn rounded(x: f64) -> f64 {
-    format!("{x:.6e}").parse().unwrap_or(x)
+    let shortest = format!("{x:e}");
+    let digits = shortest.bytes().take_while(|byte| *byte != b'e').filter(u8::is_ascii_digit);
+    if digits.count() <= 7 { x } else { format!("{x:.6e}").parse().unwrap_or(x) }
 }
 
 fn listed(mut first: Vec<String>, length: usize, form: Form) -> String {

@@ -7,17 +7,19 @@ use std::sync::Arc;
 
 use luxel_core::diag::{SourceId, Span};
 use luxel_core::registry::Registry;
-use luxel_core::scene::{self, Changed, IsOver, NodeId};
+use luxel_core::scene::{self, Changed, IsOver, Node, NodeId};
 
 use super::formula::Formula;
 use super::handing::{Place, Wanted, is_simple};
 use super::made::Cost;
 use super::values::KeptValues;
-use super::{State, Statement, source_of};
+use super::{State, Statement, source_of, vector};
 use crate::eval::Evaluator;
 use crate::eval::env::Env;
+use crate::eval::note::shown_vector;
 use crate::eval::value::{FieldValue, ObjectValue, Value};
-use crate::syntax::Name;
+use crate::syntax::{Form, Name};
+use crate::values::{Shown, Unsaid};
 
 /// What hands on changed values.
 #[derive(Debug, Default)]
@@ -162,20 +164,36 @@ impl State {
             Value::Object(object) => wanted.is_node && !is_deep(object),
             Value::Number(..) => !wanted.is_node && !formula.is_vector(),
             Value::Numbers(_) | Value::Items(_) => {
-                !wanted.is_node && (formula.is_vector() || formula.is_name())
+                let is_whole = wanted.n_items == 0 && !wanted.is_node;
+                is_whole && (formula.is_vector() || formula.is_name())
             }
-            _ => !wanted.is_node && formula.is_name(),
+            _ => wanted.n_items == 0 && !wanted.is_node && formula.is_name(),
         };
         let class = evaluator.registry.class(wanted.kind, &wanted.class).filter(|_| fits)?;
         let param = Registry::params(class).find(|param| param.name == wanted.param)?;
         let shown = evaluator.shown(&value).map(Arc::from);
+        // One number of a vector fits where a vector of it does.
+        let (value, measure) = match value {
+            Value::Number(x, measure) if wanted.n_items > 0 => {
+                let is_alike = vector::dimension(param) == Some(measure);
+                let all = vec![x; usize::from(wanted.n_items)];
+                (Value::numbers(all, measure, Form::Tuple), is_alike.then_some(measure))
+            }
+            value => (value, None),
+        };
         // Nothing can be told of it: it would be told of every place.
         let span = Span::new(source_of(u32::MAX), 0, 0);
         let name = Name { text: param.name.into(), span };
         let field = FieldValue { name, value, span, file: env.file.clone() };
         let spent = |of: &Evaluator<'_>| (of.sink.kept().len(), of.held.get());
         let (before, first) = (spent(evaluator), evaluator.steps);
-        let value = evaluator.conform(param, &field)?;
+        let value = match (evaluator.conform(param, &field)?, measure) {
+            (scene::Value::Vector(numbers), Some(measure)) => {
+                scene::Value::Number(*numbers.first()?, measure)
+            }
+            (_, None) if wanted.n_items > 0 => return None,
+            (value, _) => value,
+        };
         let steps = evaluator.steps - first;
         let is_fit = before == spent(evaluator) && is_simple(&value, &evaluator.scene.nodes);
         is_fit.then_some(FittedValue { value, shown, steps })
@@ -198,24 +216,51 @@ impl State {
             value
         };
         let values: Vec<_> = values.into_iter().map(kept).collect();
-        let change = |(_, Place { node, argument, wanted, .. }): (SourceId, Place)| Changed {
+        let change = |(_, Place { node, argument, item, wanted, .. }): (SourceId, Place)| Changed {
             node,
             argument,
+            item,
             value: of_wanted[wanted as usize],
         };
         let mut changes: Vec<_> = handed.places.into_iter().map(change).collect();
-        changes.sort_unstable_by_key(|change| (change.node, change.argument));
+        changes.sort_unstable_by_key(|change| (change.node, change.argument, change.item));
         self.scene.change(&handed.runs, (&changes, &values), is_over)
     }
 }
 
 impl KeptValues {
-    /// With the values that are handed on.
-    pub(super) fn handed_on(mut self, handed: &Handed, fitted: &Fitted) -> Self {
-        let value = |(statement, place): &(SourceId, Place)| {
-            Some(((*statement, place.field), fitted.at(place).shown.clone()?))
+    /// With the values that are handed on, of vectors some of whose numbers are those of `nodes`.
+    pub(super) fn handed_on(mut self, handed: &Handed, fitted: &Fitted, nodes: &[Node]) -> Self {
+        let is_one = |(one, a): &(SourceId, Place), (other, b): &(SourceId, Place)| {
+            (one, a.node, a.argument) == (other, b.node, b.argument)
         };
-        self.own.hand_on(handed.places.iter().filter_map(value).collect());
+        let shown = handed.places.chunk_by(is_one).filter_map(|places| {
+            let (statement, place) = places[0];
+            let shown = fitted.at(&place).shown.clone()?;
+            let shown = match place.item {
+                None => Shown::Text(shown),
+                Some(_) => fitted.vector(places, nodes)?,
+            };
+            Some(((statement, place.field), shown))
+        });
+        self.own.hand_on(shown.collect());
         self
+    }
+}
+
+impl Fitted {
+    /// A vector some of whose numbers get new values.
+    fn vector(&self, places: &[(SourceId, Place)], nodes: &[Node]) -> Option<Shown> {
+        let (_, Place { node, argument, .. }) = places[0];
+        let argument = nodes[node as usize].params.get(argument as usize)?;
+        let scene::Value::Vector(numbers) = &argument.value else { return None };
+        let (mut numbers, mut measured) = (numbers.clone(), None);
+        for (_, place) in places {
+            let scene::Value::Number(x, measure) = self.at(place).value else { return None };
+            *numbers.get_mut(usize::from(place.item?))? = x;
+            measured = Some(measure);
+        }
+        let vector = Unsaid { numbers, measure: measured?, say: shown_vector };
+        Some(Shown::Vector(Arc::new(vector)))
     }
 }

@@ -6,10 +6,12 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use luxel_core::scene::{self, IsOver, Node, NodeId};
+use luxel_core::registry::Registry;
+use luxel_core::scene::{self, Argument, IsOver, Node, NodeId};
 use luxel_sdk::kind::Kind;
 
 use super::formula::{Formula, MOST_ITEMS};
+use super::vector;
 use super::{Statement, source_of};
 use crate::Budgets;
 use crate::eval::numbered::Known;
@@ -20,6 +22,10 @@ use crate::syntax::{Expr, ExprNode, Object, Stmt, StmtNode, children};
 /// Texts that are looked at, at most, in each share of the file: what is reckoned with others is evaluated.
 const TEXTS: usize = 1 << 12;
 
+/// Vectors that are taken as a whole, in each share of the file: what many statements say alike is evaluated
+/// once.
+const WHOLE: usize = 2;
+
 /// What values are handed on, and where.
 #[derive(Debug, Default)]
 pub(super) struct Handing {
@@ -28,6 +34,8 @@ pub(super) struct Handing {
     pub(super) formulas: Vec<Formula>,
     /// Which of those a text is, if it is one.
     of_texts: HashMap<Arc<str>, Option<u32>>,
+    /// How many vectors are.
+    n_vectors: usize,
     pub(super) wanted: Vec<Wanted>,
     /// Which of those each formula is.
     of_formulas: Vec<Vec<u32>>,
@@ -38,9 +46,10 @@ pub(super) struct Handing {
 pub(super) struct Place {
     /// Where in its statement the parameter's name stands.
     pub(super) field: u32,
-    /// Of which node, and which of its parameters.
+    /// Of which node, and which of its parameters; of a vector, which number, if not all of it.
     pub(super) node: u32,
     pub(super) argument: u32,
+    pub(super) item: Option<u8>,
     /// What is wanted there.
     pub(super) wanted: u32,
 }
@@ -54,6 +63,8 @@ pub(super) struct Wanted {
     pub(super) param: &'static str,
     /// It was an object.
     pub(super) is_node: bool,
+    /// Of a vector of so many numbers it is one; 0 where it is the whole value.
+    pub(super) n_items: u8,
 }
 
 /// What a statement hands on.
@@ -84,6 +95,7 @@ pub(super) struct Written<'a> {
     pub(super) nodes: &'a [Node],
     pub(super) names: &'a Known,
     pub(super) budgets: &'a Budgets,
+    pub(super) registry: &'a Registry,
     /// How many statements define names that every scene has, which may stand for others further down.
     pub(super) n_shadows: usize,
 }
@@ -161,10 +173,11 @@ impl Handing {
             self.of_texts.insert(text, Some(i));
             formulas.push(i);
         }
-        let number = |Wanted { formula, kind, class, param, is_node }: &Wanted| {
-            self.number(formulas[*formula as usize], (*kind, class), (param, *is_node))
+        let number = |wanted: Wanted| {
+            let formula = formulas[wanted.formula as usize];
+            self.number(Wanted { formula, ..wanted })
         };
-        let numbers: Vec<u32> = other.wanted.iter().map(number).collect();
+        let numbers: Vec<u32> = other.wanted.into_iter().map(number).collect();
         let renamed = |place: Place| Place { wanted: numbers[place.wanted as usize], ..place };
         self.places.extend(other.places.into_iter().map(renamed));
         self
@@ -185,8 +198,7 @@ impl Handing {
         Hands { places: narrow(first)..narrow(self.places.len()), names }
     }
 
-    /// Adds the parameters of a node whose values are reckoned from names that are used. Of each of these is
-    /// known how often it is used elsewhere; nothing, once it was met more often.
+    /// Adds the parameters of a node whose values are reckoned from names that are used.
     fn add_node(
         &mut self,
         (stmt, node): (&Statement, usize),
@@ -215,18 +227,66 @@ impl Handing {
             let before = text[..range.start].trim_end().strip_suffix('=');
             let before = before.and_then(|before| before.trim_end().strip_suffix(argument.name));
             let Some(before) = before else { continue };
-            let Some(formula) = self.formula(value, written) else { continue };
-            for (name, times) in self.formulas[formula as usize].names() {
-                let met = uses.iter().zip(left.iter_mut()).find(|((used, _), _)| *used == name);
-                if let Some((_, left)) = met {
-                    *left = left.and_then(|left| left.checked_sub(times));
-                }
-            }
+            let parts = self.parts(it, argument, value, written);
             let is_node = matches!(argument.value, scene::Value::Node(_));
-            let wanted = self.number(formula, (it.kind, &it.class), (argument.name, is_node));
-            let field = narrow(before.len());
-            self.places.push(Place { field, node: narrow(node), argument: k, wanted });
+            for (item, n_items, formula) in parts {
+                self.use_names(formula, uses, left);
+                let (kind, class, param) = (it.kind, it.class.clone(), argument.name);
+                let wanted = self.number(Wanted { formula, kind, class, param, is_node, n_items });
+                let (field, node) = (narrow(before.len()), narrow(node));
+                self.places.push(Place { field, node, argument: k, item, wanted });
+            }
         }
+    }
+
+    /// Counts the names of a formula among those that are used. Of each of these is known how often it is used
+    /// elsewhere; nothing, once it was met more often.
+    fn use_names(&self, formula: u32, uses: &[(u32, u32)], left: &mut [Option<u32>]) {
+        for (name, times) in self.formulas[formula as usize].names() {
+            let met = uses.iter().zip(left.iter_mut()).find(|((used, _), _)| *used == name);
+            if let Some((_, left)) = met {
+                *left = left.and_then(|left| left.checked_sub(times));
+            }
+        }
+    }
+
+    /// The formulas in a parameter's value: of each item of a vector, where that can be, and of how many, or of
+    /// the whole.
+    fn parts(
+        &mut self,
+        node: &Node,
+        argument: &Argument,
+        text: &str,
+        written: &Written<'_>,
+    ) -> Vec<(Option<u8>, u8, u32)> {
+        let is_rare = self.n_vectors >= WHOLE && !self.of_texts.contains_key(text);
+        let of_items = || {
+            let scene::Value::Vector(numbers) = &argument.value else { return None };
+            let class = written.registry.class(node.kind, &node.class)?;
+            let param = Registry::params(class).find(|param| param.name == argument.name)?;
+            let items = vector::items(text, vector::dimension(param)?)?;
+            (items.len() == numbers.len()).then_some((items, numbers))
+        };
+        let mut of_item = |(i, (item, x)): (u8, (&Range<usize>, &f64)), n_items| {
+            let text = text[item.clone()].trim();
+            if vector::literal(text).is_some() {
+                return Some(None);
+            }
+            // What stands for a bare zero is shown as one.
+            if x.abs() <= 0.0 {
+                return None;
+            }
+            self.formula(text, written).map(|formula| Some((Some(i), n_items, formula)))
+        };
+        if let Some((items, numbers)) = is_rare.then(of_items).flatten() {
+            let n_items = u8::try_from(items.len()).unwrap_or(u8::MAX);
+            let each = (0..).zip(items.iter().zip(numbers));
+            let parts: Option<Vec<_>> = each.map(|it| of_item(it, n_items)).collect();
+            if let Some(parts) = parts {
+                return parts.into_iter().flatten().collect();
+            }
+        }
+        self.formula(text, written).map(|formula| (None, 0, formula)).into_iter().collect()
     }
 
     /// Which of the formulas a text is, if it is one.
@@ -244,29 +304,21 @@ impl Handing {
     }
 
     fn put(&mut self, formula: Formula) -> u32 {
+        self.n_vectors += usize::from(formula.is_vector());
         self.formulas.push(formula);
         self.of_formulas.push(vec![]);
         narrow(self.formulas.len() - 1)
     }
 
-    /// Which of those that are wanted the value of a formula is, or an object, for a parameter of a class.
-    fn number(
-        &mut self,
-        formula: u32,
-        (kind, class): (Kind, &Arc<str>),
-        (param, is_node): (&'static str, bool),
-    ) -> u32 {
-        let is_it = |i: &&u32| {
-            let it = &self.wanted[**i as usize];
-            it.param == param && it.is_node == is_node && it.kind == kind && it.class == *class
-        };
-        let known = &mut self.of_formulas[formula as usize];
-        if let Some(i) = known.iter().find(is_it) {
+    /// Which of those that are wanted this is.
+    fn number(&mut self, wanted: Wanted) -> u32 {
+        let known = &mut self.of_formulas[wanted.formula as usize];
+        if let Some(i) = known.iter().find(|i| self.wanted[**i as usize] == wanted) {
             return *i;
         }
         let i = narrow(self.wanted.len());
         known.push(i);
-        self.wanted.push(Wanted { formula, kind, class: class.clone(), param, is_node });
+        self.wanted.push(wanted);
         i
     }
 }

@@ -24,6 +24,7 @@ mod sets;
 mod slice;
 mod told;
 mod values;
+mod vector;
 mod warn;
 
 use std::collections::BTreeSet;

@@ -56,6 +56,7 @@ impl State {
             nodes: &self.scene.nodes,
             names: &self.names,
             budgets: &self.settings.budgets,
+            registry: evaluator.registry,
             n_shadows: self.n_shadows,
         };
         for (task, made) in tasks.into_iter().zip(made).filter(|(task, _)| task.is_new) {

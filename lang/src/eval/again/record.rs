@@ -201,8 +201,14 @@ impl Evaluator<'_> {
             moved.for_each(|stmt| stmt.names.move_together());
             let all = stmts.iter().take_while(|_| !is_over());
             let tables = Tables::of(&names, all.map(|stmt| &stmt.names)).0;
-            let (nodes, budgets) = (&scene.nodes, &settings.budgets);
-            let written = Written { text: &text, nodes, names: &names, budgets, n_shadows };
+            let written = Written {
+                text: &text,
+                nodes: &scene.nodes,
+                names: &names,
+                budgets: &settings.budgets,
+                registry: self.registry,
+                n_shadows,
+            };
             (tables, Handing::of(&mut stmts, &written, &is_over))
         });
         let Some((tables, handing)) = found.filter(|_| !is_over()) else {

@@ -1,5 +1,6 @@
 //! What the manual says of every function, tried.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use luxel_core::diag::Diagnostic;
@@ -19,7 +20,7 @@ fn evaluated(expression: &str) -> (Option<String>, Vec<Diagnostic>) {
     let mut loaded = crate::load(Path::new("example.scene"), &files, &Registry::new(), &settings);
     // A scene without a camera is told so.
     loaded.diagnostics.retain(|found| found.code != "E0409");
-    (loaded.values.all().into_values().next().map(str::to_owned), loaded.diagnostics)
+    (loaded.values.all().into_values().next().map(Cow::into_owned), loaded.diagnostics)
 }
 
 #[test]

@@ -13,8 +13,11 @@ struct Item {
 }
 
 impl Layout<'_> {
-    /// Puts the bracket at `open` and all in it; `after` columns stand behind it.
+    /// Puts the bracket at `open` and all in it, of nothing no lines; `after` columns stand behind it.
     pub(super) fn bracket(&mut self, open: usize, after: usize) {
+        if self.mate(open) == open + 1 {
+            return self.flat(open, open + 2, self.out.indent);
+        }
         match self.pieces[open].text {
             "{" => self.braces(open),
             _ => self.list(open, after),

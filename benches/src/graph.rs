@@ -54,6 +54,8 @@ pub(crate) fn run() -> Result<(), String> {
     let alike = objects.replace(center, "(1.2 m, r, -3.25 m)");
     let moved = |i: usize| object(i).replace(center, &format!("({i} mm, r, -3.25 m)"));
     let apart = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), moved));
+    let own = |i: usize| object(i).replace("radius = r,", &format!("radius = r / {},", i + 1));
+    let reckoned = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), own));
     let wrong = objects.replacen("radius = r", "radus = r", 1);
     let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
     let case = |name, text: &str, (from, to)| {
@@ -74,6 +76,7 @@ pub(crate) fn run() -> Result<(), String> {
         case("objects, a length that all reckon with", &reckoning, length),
         case("objects, a length in one vector of all", &alike, length),
         case("objects, a length in a vector of each", &apart, length),
+        case("objects, a length that each reckons with", &reckoned, length),
         case("objects, a mistake", &objects, (number.0, "ball 50001\" { center = (1.2 s")),
         Case { mistakes: 1, ..case("objects, a number, where a mistake stands", &wrong, number) },
         case("objects, a number beside a `set` and a warning", &told, number),

@@ -124,10 +124,10 @@ pub(crate) struct HandedOn(Vec<(Place, Shown)>);
 #[derive(Clone, Debug)]
 pub(crate) enum Shown {
     Text(Arc<str>),
-    Vector(Arc<Unsaid>),
+    Later(Arc<Unsaid>),
 }
 
-/// A vector of numbers of a dimension, in SI units.
+/// Numbers of a dimension, in SI units.
 #[derive(Debug)]
 pub(crate) struct Unsaid {
     pub(crate) numbers: ArrayVec<f64, 4>,
@@ -141,7 +141,7 @@ impl HandedOn {
         let i = self.0.binary_search_by_key(&place, |(place, _)| *place).ok()?;
         Some(match &self.0[i].1 {
             Shown::Text(text) => Cow::Borrowed(&**text),
-            Shown::Vector(it) => Cow::Owned((it.say)(&it.numbers, it.measure)),
+            Shown::Later(it) => Cow::Owned((it.say)(&it.numbers, it.measure)),
         })
     }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use glam::Vec3;
 use luxel_core::diag::{SourceId, Span};
 use luxel_core::scene::Color;
@@ -16,7 +17,7 @@ use super::Evaluator;
 use super::readable::{number, readable};
 use super::value::Value;
 use crate::syntax::{Form, Name};
-use crate::values::{Elsewhere, Layer, Values};
+use crate::values::{Elsewhere, Layer, Shown, Unsaid, Values};
 
 /// Values that are kept of one load, at most.
 pub(super) const KEPT: usize = 100_000;
@@ -109,6 +110,18 @@ impl Evaluator<'_> {
     /// How a value is shown that a name may have, if values are wanted.
     pub(super) fn shown(&self, value: &Value) -> Option<String> {
         (self.noted.is_some() && is_shown(value)).then(|| as_shown(value))
+    }
+
+    /// The same, of a number once it is looked at.
+    pub(super) fn shown_later(&self, value: &Value) -> Option<Shown> {
+        match value {
+            Value::Number(x, measure) if self.noted.is_some() => {
+                let say = |numbers: &[f64], measure| as_shown(&Value::Number(numbers[0], measure));
+                let numbers = ArrayVec::from_iter([*x]);
+                Some(Shown::Later(Arc::new(Unsaid { numbers, measure: *measure, say })))
+            }
+            _ => self.shown(value).map(|text| Shown::Text(text.into())),
+        }
     }
 }
 

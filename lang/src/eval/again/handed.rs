@@ -1,7 +1,7 @@
 //! Statements that only hand a changed value on: the parameters that it became get the new one, and nothing
 //! of the statements is evaluated.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ struct FittedValue {
     /// By the numbers of nodes that were evaluated.
     value: scene::Value,
     /// How an editor shows it, if it does.
-    shown: Option<Arc<str>>,
+    shown: Option<Shown>,
     /// Steps that it takes to fit.
     steps: u64,
 }
@@ -130,14 +130,14 @@ impl State {
     ) -> Option<Fitted> {
         let is_over = evaluator.sink.over();
         let n_told = evaluator.sink.kept().len();
-        let mut values: BTreeMap<u32, Value> = BTreeMap::new();
+        let mut values: Vec<Option<Value>> = vec![None; self.handing.formulas.len()];
         let mut of_wanted = vec![u32::MAX; self.handing.wanted.len()];
         let mut fitted = vec![];
         for i in &handed.wanted {
             let wanted = &self.handing.wanted[*i as usize];
             let formula = &self.handing.formulas[wanted.formula as usize];
-            let value = values.entry(wanted.formula);
-            let value = value.or_insert_with(|| evaluator.eval(&formula.expr, env)).clone();
+            let value = &mut values[wanted.formula as usize];
+            let value = value.get_or_insert_with(|| evaluator.eval(&formula.expr, env)).clone();
             if is_over() || evaluator.sink.kept().len() > n_told {
                 return None;
             }
@@ -171,7 +171,7 @@ impl State {
         };
         let class = evaluator.registry.class(wanted.kind, &wanted.class).filter(|_| fits)?;
         let param = Registry::params(class).find(|param| param.name == wanted.param)?;
-        let shown = evaluator.shown(&value).map(Arc::from);
+        let shown = evaluator.shown_later(&value);
         // One number of a vector fits where a vector of it does.
         let (value, measure) = match value {
             Value::Number(x, measure) if wanted.n_items > 0 => {
@@ -238,7 +238,7 @@ impl KeptValues {
             let (statement, place) = places[0];
             let shown = fitted.at(&place).shown.clone()?;
             let shown = match place.item {
-                None => Shown::Text(shown),
+                None => shown,
                 Some(_) => fitted.vector(places, nodes)?,
             };
             Some(((statement, place.field), shown))
@@ -261,6 +261,6 @@ impl Fitted {
             measured = Some(measure);
         }
         let vector = Unsaid { numbers, measure: measured?, say: shown_vector };
-        Some(Shown::Vector(Arc::new(vector)))
+        Some(Shown::Later(Arc::new(vector)))
     }
 }

@@ -45,9 +45,9 @@ fn put(value: &mut Value, changes: &[Changed], values: &[Value]) {
 impl Scene {
     /// Gives parameters other values, in a scene whose nodes are hashed.
     ///
-    /// `changes` go by node and parameter, of a vector by number. `runs` are nodes that follow one another, of which one may refer to
-    /// another before it in its run; nothing else refers to a node that changes, and no value does. `None`,
-    /// and a scene of no use, once it is over.
+    /// `changes` go by node and parameter, of a vector by number. `runs` are nodes that follow one another, of
+    /// which one may refer to another before it in its run; nothing else refers to a node that changes, and no
+    /// value does. `None`, and a scene of no use, once it is over.
     pub fn change(
         &mut self,
         runs: &[Range<usize>],

@@ -148,7 +148,7 @@ impl Evaluator<'_> {
             }
             StmtNode::Field(field) => {
                 let is_stray = body.place == Place::File;
-                if let Some(object) = is_stray.then(|| self.given_object(field)).flatten() {
+                if let Some(object) = is_stray.then(|| self.given_object(field, env)).flatten() {
                     let value = self.object(&object, env, None);
                     self.emit(&value, object.head());
                     return;

@@ -67,7 +67,7 @@ impl Evaluator<'_> {
     }
 
     /// The object that a field of a file is meant to be, which is told: `integrator = path { … }`.
-    pub(super) fn given_object(&mut self, field: &Field) -> Option<Object> {
+    pub(super) fn given_object(&mut self, field: &Field, env: &Env) -> Option<Object> {
         let (name, value) = (&field.name, &field.value);
         Kind::of_word(&name.text)?;
         let ExprNode::Object(object) = &value.node else { return None };
@@ -76,6 +76,7 @@ impl Evaluator<'_> {
         if !is_whole && !is_kind {
             return None;
         }
+        env.define(&name.text, Value::Poison);
         let found = Diagnostic::error("E0113", name.span, "an object stands in a file without `=`");
         let before = |start| Span { start, end: value.span.start, ..name.span };
         if is_whole {
@@ -101,21 +102,19 @@ impl Evaluator<'_> {
             return;
         }
         let names: Vec<Name> = stray(name).collect();
-        if Kind::of_word(&name.text).is_some() {
-            let help = format!("an object is written `{} NAME {{ … }}`", name.text);
-            self.tell(found.help(help));
-            return;
-        }
-        let found = found.help("a name is defined with `let`");
+        let is_defined = "a name is defined with `let`";
         self.tell(match &names[..] {
             // `letx = 3`
             [all, rest] => {
                 let at = all.text.len() - rest.text.len();
                 let gap =
                     Span::new(name.span.source, start.range().start + at, start.range().start + at);
-                found.guess(gap, " ")
+                found.help(is_defined).guess(gap, " ")
             }
-            _ => found.guess(start, "let "),
+            _ if Kind::of_word(&name.text).is_some() => {
+                found.help(format!("an object is written `{} NAME {{ … }}`", name.text))
+            }
+            _ => found.help(is_defined).guess(start, "let "),
         });
         for name in names {
             env.define(&name.text, Value::Poison);

@@ -134,6 +134,12 @@ impl Edited {
         Self { registry, kept, settings, other, n_short: 0, n_told: 0 }
     }
 
+    /// How many statements are evaluated after an edit, and how many diagnostics there are.
+    fn counted(&mut self, lines: &[String]) -> (usize, usize) {
+        let loaded = self.load(&text_of(lines), "an edit");
+        (self.kept.n_evaluated().unwrap_or_default(), loaded.diagnostics.len())
+    }
+
     fn load(&mut self, text: &str, step: &str) -> Loaded {
         let files = || {
             let other: Arc<[u8]> = self.other.as_bytes().into();
@@ -251,9 +257,15 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
     );
 }
 
+/// Some lines, and many that one edit need not concern.
+fn with_disks(first: &[&str]) -> Vec<String> {
+    let disk = |i| format!("shape disk {{ radius = 2 m, center = (0, {i}, 0) }}");
+    first.iter().map(|line| (*line).to_owned()).chain((0..60).map(disk)).collect()
+}
+
 #[test]
 fn beside_warnings_and_what_is_set_an_edit_concerns_its_statement() {
-    let mut now = [
+    let mut now = with_disks(&[
         "let r = 5 cm",
         "let q = 1 cm",
         "material dielectric { }",
@@ -262,16 +274,9 @@ fn beside_warnings_and_what_is_set_an_edit_concerns_its_statement() {
         "shape sphere \"one\" { radius = 1 m }",
         "set one.radius = 2 * q",
         CAMERA,
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    now.extend((0..60).map(|i| format!("shape disk {{ radius = 2 m, center = (0, {i}, 0) }}")));
-    let settings = Settings { noting: true, ..Settings::default() };
-    let mut edited = Edited::new(settings);
-    let mut n = |lines: &[String]| {
-        let loaded = edited.load(&text_of(lines), "an edit");
-        (edited.kept.n_evaluated().unwrap_or_default(), loaded.diagnostics.len())
-    };
+    ]);
+    let mut edited = Edited::new(Settings { noting: true, ..Settings::default() });
+    let mut n = |lines: &[String]| edited.counted(lines);
     assert_eq!(n(&now).1, 2);
     // One of many and what it uses.
     now[20] = now[20].replace("2 m", "r");
@@ -288,22 +293,46 @@ fn beside_warnings_and_what_is_set_an_edit_concerns_its_statement() {
 
 #[test]
 fn beside_mistakes_that_stood_there_before_an_edit_concerns_its_statement() {
-    let mut now = ["let r = 5 cm", "shape sphere { radus = 1 m }", "let wrong = r + 2 s", CAMERA]
-        .map(str::to_owned)
-        .to_vec();
-    now.extend((0..60).map(|i| format!("shape disk {{ radius = 2 m, center = (0, {i}, 0) }}")));
-    let settings = Settings { noting: true, ..Settings::default() };
-    let mut edited = Edited::new(settings);
-    let mut n = |lines: &[String]| {
-        let loaded = edited.load(&text_of(lines), "an edit");
-        (edited.kept.n_evaluated().unwrap_or_default(), loaded.diagnostics.len())
-    };
+    let first = ["let r = 5 cm", "shape sphere { radus = 1 m }", "let wrong = r + 2 s", CAMERA];
+    let mut now = with_disks(&first);
+    let mut edited = Edited::new(Settings { noting: true, ..Settings::default() });
+    let mut n = |lines: &[String]| edited.counted(lines);
     assert_eq!(n(&now).1, 2);
     now[20] = now[20].replace("2 m", "3 m");
     assert_eq!(n(&now), (1, 2));
     // One more, further down: the statements between are read again, and evaluated.
     now[23] = now[23].replace("2 m", "2 s");
     assert_eq!(n(&now), (4, 3));
+}
+
+#[test]
+fn of_vectors_that_each_shape_has_for_itself_the_numbers_are_handed_on() {
+    let ball = |i: usize| {
+        let center = match i % 5 {
+            0 => format!("({} mm, r, -2 * r)", i + 1),
+            1 => format!("(r, -(r / 2), {i}.5 m)"),
+            2 => format!("({i}, 3, -1)"),
+            3 => format!("(0, r, -{i} cm)"),
+            _ => format!("(bare, r, {i} cm)"),
+        };
+        format!("shape sphere {{ radius = 1 m, center = {center} }}")
+    };
+    let mut lines = ["let r = 5 cm", "let bare = 0", CAMERA].map(str::to_owned).to_vec();
+    lines.extend((0..60).map(ball));
+    let mut edited = Edited::new(Settings { noting: true, ..Settings::default() });
+    let mut n = |first: &str| {
+        first.clone_into(&mut lines[0]);
+        edited.counted(&lines)
+    };
+    assert_eq!(n("let r = 5 cm"), (65, 0));
+    // The length, and the zero beside it.
+    assert_eq!(n("let r = 7 cm"), (2, 0));
+    assert_eq!(n("let r = 0 m"), (2, 0));
+    assert_eq!(n("let r = -2 m"), (2, 0));
+    // A bare zero is shown otherwise, and what measures something else fits nowhere: a load from nothing.
+    assert_eq!(n("let r = 0").1, 0);
+    assert_eq!(n("let r = 3 m").1, 0);
+    assert!(n("let r = 1 s").1 > 0);
 }
 
 #[test]

@@ -30,9 +30,27 @@ fn holds_one(span: Span, places: &[Span]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use luxel_core::diag::SourceId;
+    use luxel_core::files::MemoryFiles;
+    use luxel_core::registry::Registry;
 
     use super::*;
+    use crate::{Settings, load};
+
+    #[test]
+    fn a_call_is_not_said_to_lack_what_stands_behind_a_missing_bracket() {
+        let codes = |call: &str| {
+            let text = format!("scene 1\nlet c = {{ a = rgb.srgb(0.8, 0.7{call} }}\n");
+            let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+            let path = Path::new("a.scene");
+            let told = load(path, &files, &Registry::new(), &Settings::default()).diagnostics;
+            told.iter().map(|found| found.code).collect::<Vec<_>>()
+        };
+        assert_eq!(codes(")"), ["E0403", "E0409"]);
+        assert_eq!(codes(""), ["E0009", "E0409"]);
+    }
 
     #[test]
     fn values_around_what_cannot_be_read_are_not_judged() {

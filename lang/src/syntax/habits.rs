@@ -15,6 +15,7 @@ use super::type_names;
 /// What is said of `#` where a comment is meant.
 pub(super) const COMMENTS: &str = "a comment begins with `//`";
 
+/// What is said of two words that stand for one name.
 const ONE_WORD: &str = "a name is one word";
 
 /// Why the place cannot be read, if it looks like another language's way.

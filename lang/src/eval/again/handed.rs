@@ -175,9 +175,11 @@ impl State {
         // One number of a vector fits where a vector of it does.
         let (value, measure) = match value {
             Value::Number(x, measure) if wanted.n_items > 0 => {
-                let is_alike = vector::dimension(param) == Some(measure);
+                if vector::dimension(param) != Some(measure) {
+                    return None;
+                }
                 let all = vec![x; usize::from(wanted.n_items)];
-                (Value::numbers(all, measure, Form::Tuple), is_alike.then_some(measure))
+                (Value::numbers(all, measure, Form::Tuple), Some(measure))
             }
             value => (value, None),
         };
@@ -191,7 +193,6 @@ impl State {
             (scene::Value::Vector(numbers), Some(measure)) => {
                 scene::Value::Number(*numbers.first()?, measure)
             }
-            (_, None) if wanted.n_items > 0 => return None,
             (value, _) => value,
         };
         let steps = evaluator.steps - first;

@@ -67,6 +67,13 @@ pub(super) struct Wanted {
     pub(super) n_items: u8,
 }
 
+/// A formula in a parameter's value: as a `Place` and a `Wanted` have it.
+struct Part {
+    item: Option<u8>,
+    n_items: u8,
+    formula: u32,
+}
+
 /// What a statement hands on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hands {
@@ -229,7 +236,7 @@ impl Handing {
             let Some(before) = before else { continue };
             let parts = self.parts(it, argument, value, written);
             let is_node = matches!(argument.value, scene::Value::Node(_));
-            for (item, n_items, formula) in parts {
+            for Part { item, n_items, formula } in parts {
                 self.use_names(formula, uses, left);
                 let (kind, class, param) = (it.kind, it.class.clone(), argument.name);
                 let wanted = self.number(Wanted { formula, kind, class, param, is_node, n_items });
@@ -250,43 +257,47 @@ impl Handing {
         }
     }
 
-    /// The formulas in a parameter's value: of each item of a vector, where that can be, and of how many, or of
-    /// the whole.
+    /// The formulas in a parameter's value: those in its items, if it is a vector of its own, or the whole.
     fn parts(
         &mut self,
         node: &Node,
         argument: &Argument,
         text: &str,
         written: &Written<'_>,
-    ) -> Vec<(Option<u8>, u8, u32)> {
-        let is_rare = self.n_vectors >= WHOLE && !self.of_texts.contains_key(text);
-        let of_items = || {
-            let scene::Value::Vector(numbers) = &argument.value else { return None };
-            let class = written.registry.class(node.kind, &node.class)?;
-            let param = Registry::params(class).find(|param| param.name == argument.name)?;
-            let items = vector::items(text, vector::dimension(param)?)?;
-            (items.len() == numbers.len()).then_some((items, numbers))
-        };
-        let mut of_item = |(i, (item, x)): (u8, (&Range<usize>, &f64)), n_items| {
-            let text = text[item.clone()].trim();
+    ) -> Vec<Part> {
+        let is_of_its_own = self.n_vectors >= WHOLE && !self.of_texts.contains_key(text);
+        let items = is_of_its_own.then(|| self.items((node, argument), text, written)).flatten();
+        items.unwrap_or_else(|| {
+            let whole = self.formula(text, written);
+            whole.map(|formula| Part { item: None, n_items: 0, formula }).into_iter().collect()
+        })
+    }
+
+    /// The formulas in the items of a vector that is written out; `None` if it must be taken as a whole.
+    fn items(
+        &mut self,
+        (node, argument): (&Node, &Argument),
+        text: &str,
+        written: &Written<'_>,
+    ) -> Option<Vec<Part>> {
+        let scene::Value::Vector(numbers) = &argument.value else { return None };
+        let class = written.registry.class(node.kind, &node.class)?;
+        let param = Registry::params(class).find(|param| param.name == argument.name)?;
+        let items = vector::items(text, vector::dimension(param)?)?;
+        let n_items = u8::try_from(items.len()).ok().filter(|_| items.len() == numbers.len())?;
+        let mut parts = vec![];
+        for (i, (item, x)) in (0..).zip(items.into_iter().zip(numbers)) {
+            let text = text[item].trim();
             if vector::literal(text).is_some() {
-                return Some(None);
+                continue;
             }
             // What stands for a bare zero is shown as one.
             if x.abs() <= 0.0 {
                 return None;
             }
-            self.formula(text, written).map(|formula| Some((Some(i), n_items, formula)))
-        };
-        if let Some((items, numbers)) = is_rare.then(of_items).flatten() {
-            let n_items = u8::try_from(items.len()).unwrap_or(u8::MAX);
-            let each = (0..).zip(items.iter().zip(numbers));
-            let parts: Option<Vec<_>> = each.map(|it| of_item(it, n_items)).collect();
-            if let Some(parts) = parts {
-                return parts.into_iter().flatten().collect();
-            }
+            parts.push(Part { item: Some(i), n_items, formula: self.formula(text, written)? });
         }
-        self.formula(text, written).map(|formula| (None, 0, formula)).into_iter().collect()
+        Some(parts)
     }
 
     /// Which of the formulas a text is, if it is one.

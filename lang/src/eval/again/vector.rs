@@ -4,13 +4,12 @@ use std::ops::Range;
 
 use luxel_sdk::params::{Dimension, Param, Unit};
 
-/// Numbers of a vector, at most.
-const MOST: usize = 4;
+use super::formula::MOST_ITEMS;
 
 /// The items of a text that is a vector, by their bytes.
 ///
-/// `None` of any other text, or if it is not known that each of them measures what its parameter does, whatever
-/// a name among them comes to be: then bare numbers may stand there, which count in units of the file, and
+/// `None` of any other text, or if it is not known that each of them measures what its parameter does,
+/// whatever a name among them comes to be: then bare numbers may stand there, which count in units of the file, and
 /// bare zeros.
 pub(super) fn items(text: &str, dimension: Dimension) -> Option<Vec<Range<usize>>> {
     let inside = text.strip_prefix('(')?.strip_suffix(')')?;
@@ -31,7 +30,7 @@ pub(super) fn items(text: &str, dimension: Dimension) -> Option<Vec<Range<usize>
             _ => {}
         }
     }
-    let is_whole = start == text.len() && (2..=MOST).contains(&out.len());
+    let is_whole = start == text.len() && (2..=MOST_ITEMS).contains(&out.len());
     let mut literals = out.iter().filter_map(|item| literal(&text[item.clone()])).peekable();
     let is_measured = dimension.is_none() || literals.peek().is_some();
     (is_whole && is_measured && literals.all(|measure| measure == dimension)).then_some(out)

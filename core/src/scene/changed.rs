@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::compact::IsOver;
-use super::gather::in_parts;
+use super::parts::{each_in_parts, in_parts};
 use super::terms::{Sum, Terms, is_own};
-use super::{Argument, Arguments, NodeId, Scene, Value};
+use super::{Argument, Arguments, Hash, Node, NodeId, Scene, Value};
 
 /// Another value for a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +25,36 @@ pub struct Changed {
 struct Said {
     before: Terms,
     after: Terms,
+}
+
+/// Neighbours whose parameters are one piece of memory.
+struct Block<'a> {
+    /// The number of the first.
+    first: usize,
+    nodes: &'a mut [Node],
+    own: &'a mut [Hash],
+    /// The changes of each parameter, and what they add to its node's hash.
+    each: &'a [&'a [Changed]],
+    terms: &'a [Sum],
+}
+
+impl Block<'_> {
+    fn change(self, values: &[Value]) {
+        let Self { first, nodes, own, each, terms } = self;
+        let (mut all, ranges) = Arguments::taken(nodes.iter_mut().map(|node| &mut node.params));
+        for (changes, term) in each.iter().zip(terms) {
+            let i = changes[0].node as usize - first;
+            let argument = &mut all[ranges[i].start as usize + changes[0].argument as usize];
+            put(&mut argument.value, changes, values);
+            let is_own = is_own(nodes[i].kind, argument.name);
+            for hash in [&mut nodes[i].hash].into_iter().chain(is_own.then_some(&mut own[i])) {
+                *hash = Sum::of(hash).plus(*term).hash();
+            }
+        }
+        for (node, params) in nodes.iter_mut().zip(Arguments::of_one(all, ranges)) {
+            node.params = params;
+        }
+    }
 }
 
 /// Puts what changes of one parameter into its value.
@@ -54,68 +84,53 @@ impl Scene {
         (changes, values): (&[Changed], &[Value]),
         is_over: IsOver<'_>,
     ) -> Option<()> {
-        let beside = self.nodes.chunk_by(|one, other| one.params.is_beside(&other.params));
-        let lengths: Vec<usize> = beside.map(<[_]>::len).collect();
-        let (mut start, mut left) = (0, changes);
-        for length in lengths {
-            let end = start + length;
-            let n = left.iter().take_while(|change| (change.node as usize) < end).count();
-            let (own, others) = left.split_at(n);
-            if !own.is_empty() {
-                self.change_beside(start..end, (own, values), is_over)?;
-            }
-            (start, left) = (end, others);
-        }
-        self.hash_outer(runs);
-        Some(())
-    }
-
-    /// The same of neighbours whose parameters are one piece of memory; what refers to them is as it was.
-    fn change_beside(
-        &mut self,
-        nodes: Range<usize>,
-        (changes, values): (&[Changed], &[Value]),
-        is_over: IsOver<'_>,
-    ) -> Option<()> {
-        let lists = self.nodes[nodes.clone()].iter_mut().map(|node| &mut node.params);
-        let (mut all, ranges) = Arguments::taken(lists);
-        let place = |change: &Changed| {
-            ranges[change.node as usize - nodes.start].start as usize + change.argument as usize
-        };
         let is_one = |one: &Changed, other: &Changed| {
             (one.node, one.argument) == (other.node, other.argument)
         };
         let each: Vec<&[Changed]> = changes.chunk_by(is_one).collect();
         let terms = |some: &[&[Changed]], out: &mut Vec<Sum>| {
-            let (mut said, child) = (Said::default(), |id: NodeId| self.node(id).hash);
-            for changes in some {
-                let Argument { name, value, .. } = &all[place(&changes[0])];
-                let at = (changes[0].argument as usize, *name);
-                let before = said.before.param(at, value, child);
-                let after = if let [Changed { item: None, value, .. }] = changes {
-                    said.after.param(at, &values[*value as usize], child)
-                } else {
-                    let mut new = value.clone();
-                    put(&mut new, changes, values);
-                    said.after.param(at, &new, child)
-                };
-                out.push(after.minus(before));
-            }
+            let mut said = Said::default();
+            out.extend(some.iter().map(|changes| self.term(changes, values, &mut said)));
         };
         let terms = in_parts(&each, is_over, &terms)?;
-        for (changes, term) in each.iter().zip(terms) {
-            let (argument, i) = (&mut all[place(&changes[0])], changes[0].node as usize);
-            put(&mut argument.value, changes, values);
-            let node = &mut self.nodes[i];
-            let is_own = is_own(node.kind, argument.name);
-            for hash in [&mut node.hash].into_iter().chain(is_own.then_some(&mut self.own[i])) {
-                *hash = Sum::of(hash).plus(term).hash();
-            }
-        }
-        for (node, params) in self.nodes[nodes].iter_mut().zip(Arguments::of_one(all, ranges)) {
-            node.params = params;
-        }
+        each_in_parts(self.blocks(&each, &terms), &|block: Block<'_>| block.change(values));
+        self.hash_outer(runs);
         Some(())
+    }
+
+    /// What the changes of one parameter add to the hash of its node; what refers to it is as it was.
+    fn term(&self, changes: &[Changed], values: &[Value], said: &mut Said) -> Sum {
+        let Changed { node, argument, .. } = changes[0];
+        let Argument { name, value, .. } = &self.nodes[node as usize].params[argument as usize];
+        let (at, child) = ((argument as usize, *name), |id: NodeId| self.node(id).hash);
+        let before = said.before.param(at, value, child);
+        let after = if let [Changed { item: None, value, .. }] = changes {
+            said.after.param(at, &values[*value as usize], child)
+        } else {
+            let mut new = value.clone();
+            put(&mut new, changes, values);
+            said.after.param(at, &new, child)
+        };
+        after.minus(before)
+    }
+
+    /// The nodes whose parameters are one piece of memory, as far as they change, with what becomes of each.
+    fn blocks<'a>(&'a mut self, each: &'a [&'a [Changed]], terms: &'a [Sum]) -> Vec<Block<'a>> {
+        let mut out = vec![];
+        let (mut first, mut each, mut terms) = (0, each, terms);
+        let mut own = self.own.as_mut_slice();
+        let beside = |one: &Node, other: &Node| one.params.is_beside(&other.params);
+        for nodes in self.nodes.chunk_by_mut(beside) {
+            let (hashes, others) = std::mem::take(&mut own).split_at_mut(nodes.len());
+            let end = first + nodes.len();
+            let n = each.iter().take_while(|changes| (changes[0].node as usize) < end).count();
+            if n > 0 {
+                let (each, terms) = (&each[..n], &terms[..n]);
+                out.push(Block { first, nodes, own: hashes, each, terms });
+            }
+            (own, first, each, terms) = (others, end, &each[n..], &terms[n..]);
+        }
+        out
     }
 
     /// Hashes the nodes of runs that refer to others of their run.
@@ -136,6 +151,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::compact::STRIDE;
     use crate::scene::compact::tests::node;
     use crate::scene::{Argument, Node};
 
@@ -161,6 +177,24 @@ mod tests {
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 4.0]));
         put(&mut scene, &[change(4, 1)]);
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 8.0]));
+    }
+
+    #[test]
+    fn nodes_whose_parameters_lie_far_apart_are_changed_at_once() {
+        let n = u32::try_from(2 * STRIDE + 7).unwrap();
+        let made = |x: &dyn Fn(u32) -> f64| {
+            let nodes = (0..n).map(|i| numbered(x(i), None)).collect();
+            let mut scene = Scene { nodes, ..Scene::default() };
+            scene.prepare(&|span| span, &|| false).unwrap();
+            scene
+        };
+        let is_changed = |i: u32| i % 3 == 1 && i / 1000 != 5;
+        let mut scene = made(&f64::from);
+        let change = |node| Changed { node, argument: 0, item: None, value: node % 2 };
+        let changes: Vec<_> = (0..n).filter(|i| is_changed(*i)).map(change).collect();
+        scene.change(&[], (&changes, &[-1.0, -2.0].map(number)), &|| false).unwrap();
+        let new = |i: u32| if is_changed(i) { -1.0 - f64::from(i % 2) } else { f64::from(i) };
+        assert!(scene == made(&new));
     }
 
     #[test]

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use luxel_sdk::params::leave;
 
-use super::compact::{IsOver, Order, STRIDE, UNMET, look};
+use super::compact::{IsOver, Order, UNMET, look};
+use super::parts::in_parts;
 use super::{
     Argument, Arguments, Expectation, Group, GroupId, Node, NodeId, Placed, Scene, Target, Value,
 };
@@ -114,39 +115,6 @@ impl Scene {
     }
 }
 
-/// What `f` adds for each few neighbours of a list, on as many threads as there are cores, in order;
-/// `None` once it is over.
-pub(super) fn in_parts<T: Sync, R: Send + 'static>(
-    list: &[T],
-    is_over: IsOver<'_>,
-    f: &(dyn Fn(&[T], &mut Vec<R>) + Sync),
-) -> Option<Vec<R>> {
-    let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let length = list.len().div_ceil(n_cores).max(STRIDE);
-    let of_part = |part: &[T], room: usize| {
-        let mut out = Vec::with_capacity(room);
-        part.chunks(STRIDE).take_while(|_| !is_over()).for_each(|few| f(few, &mut out));
-        out
-    };
-    let mut parts = list.chunks(length);
-    let Some(first) = parts.next() else { return Some(vec![]) };
-    let all = std::thread::scope(|scope| {
-        let of_part = &of_part;
-        let others: Vec<_> =
-            parts.map(|part| scope.spawn(move || of_part(part, part.len()))).collect();
-        let mut all = of_part(first, list.len());
-        for other in others {
-            all.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-        }
-        all
-    });
-    if is_over() {
-        leave(all);
-        return None;
-    }
-    Some(all)
-}
-
 /// Adds what stands in a part as it is.
 fn add<T: Clone>(part: &[T], out: &mut Vec<T>) {
     out.extend_from_slice(part);
@@ -241,6 +209,7 @@ mod tests {
     use super::*;
     use crate::diag::SourceId;
     use crate::scene::Pose;
+    use crate::scene::compact::STRIDE;
     use crate::scene::compact::tests::node;
 
     fn placed(target: Target, at: usize) -> Placed {

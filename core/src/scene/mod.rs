@@ -14,6 +14,7 @@ mod expect;
 mod feature;
 mod gather;
 mod hash;
+mod parts;
 mod pose;
 mod print;
 mod setting;

@@ -6,6 +6,7 @@ use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::{Dimension, Unit};
 
 use super::Evaluator;
+use super::arithmetic::measured;
 use super::builtins;
 use super::env::Env;
 use super::value::{FieldValue, Items, Range, Value};
@@ -19,7 +20,10 @@ impl Evaluator<'_> {
         }
         // Leaves need no room on the stack.
         match &expr.node {
-            ExprNode::Number(x, unit) => return scaled_number(*x, unit.as_deref()),
+            ExprNode::Number(x, unit) => {
+                let (x, dimension) = measured(*x, unit.as_deref());
+                return Value::Number(x, dimension);
+            }
             ExprNode::Text(text) => return Value::Text(text.clone()),
             ExprNode::Bool(value) => return Value::Bool(*value),
             ExprNode::Path(path) => return self.path(path, env),
@@ -366,9 +370,4 @@ impl Elements {
             Self::Range(first, count) => (index < *count).then(|| Value::plain(first + index)),
         }
     }
-}
-
-fn scaled_number(x: f64, unit: Option<&Unit>) -> Value {
-    let unit = unit.copied().unwrap_or(Unit::ONE);
-    Value::Number(x * unit.scale, unit.dimension)
 }

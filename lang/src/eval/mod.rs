@@ -5,6 +5,7 @@
 //! lists, and budgets bound steps, lists, nodes, files and nesting.
 
 pub(crate) mod again;
+mod arithmetic;
 pub(crate) mod builtins;
 mod by_name;
 mod call;

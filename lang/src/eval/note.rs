@@ -115,14 +115,16 @@ impl Evaluator<'_> {
     /// The same, of a number once it is looked at.
     pub(super) fn shown_later(&self, value: &Value) -> Option<Shown> {
         match value {
-            Value::Number(x, measure) if self.noted.is_some() => {
-                let say = |numbers: &[f64], measure| as_shown(&Value::Number(numbers[0], measure));
-                let numbers = ArrayVec::from_iter([*x]);
-                Some(Shown::Later(Arc::new(Unsaid { numbers, measure: *measure, say })))
-            }
+            Value::Number(x, measure) if self.noted.is_some() => Some(number_later(*x, *measure)),
             _ => self.shown(value).map(|text| Shown::Text(text.into())),
         }
     }
+}
+
+/// How a number is shown, in SI units, once it is looked at.
+pub(super) fn number_later(x: f64, measure: Dimension) -> Shown {
+    let say = |numbers: &[f64], measure| as_shown(&Value::Number(numbers[0], measure));
+    Shown::Later(Arc::new(Unsaid { numbers: ArrayVec::from_iter([x]), measure, say }))
 }
 
 /// Of an object or a function, the text says more.

@@ -4,6 +4,7 @@ use luxel_core::diag::{Diagnostic, Span};
 use luxel_sdk::params::Dimension;
 
 use super::Evaluator;
+use super::arithmetic::{Measured, Unjoined, joined};
 use super::env::Env;
 use super::expr::LARGE;
 use super::value::{Range, Value};
@@ -159,34 +160,13 @@ impl Evaluator<'_> {
         Ok(all)
     }
 
-    fn numbers(
-        &mut self,
-        op: Op,
-        (x, dx): (f64, Dimension),
-        (y, dy): (f64, Dimension),
-        span: Span,
-    ) -> Value {
-        let alike = !matches!(op, Op::Mul | Op::Div | Op::Pow | Op::And | Op::Or);
-        if alike && dx != dy {
+    fn numbers(&mut self, op: Op, a: Measured, b: Measured, span: Span) -> Value {
+        let ((x, dx), (y, dy)) = (a, b);
+        let is_alike = !matches!(op, Op::Mul | Op::Div | Op::Pow | Op::And | Op::Or);
+        if is_alike && dx != dy {
             return self.mismatch(op, dx, dy, span);
         }
-        let (value, dimension) = match op {
-            Op::Add => (x + y, dx),
-            Op::Sub => (x - y, dx),
-            Op::Mul => (x * y, dx * dy),
-            Op::Div | Op::Rem if y.abs() <= 0.0 => {
-                return self.poison("E0209", span, "division by zero");
-            }
-            Op::Div => (x / y, dx / dy),
-            Op::Rem => (x.rem_euclid(y), dx),
-            Op::Pow => {
-                if let Some(dimension) = power_dimension(dx, y, dy) {
-                    (x.powf(y), dimension)
-                } else {
-                    let message = "an exponent is a plain number, whole where the base has a unit";
-                    return self.poison("E0203", span, message);
-                }
-            }
+        match op {
             Op::Range | Op::RangeTo => {
                 let inclusive = op == Op::RangeTo;
                 return Value::Range(Range { start: x, end: y, inclusive, dimension: dx });
@@ -197,9 +177,21 @@ impl Evaluator<'_> {
             Op::Ge => return Value::Bool(x >= y),
             Op::Eq => return Value::Bool(x.total_cmp(&y).is_eq() || (x <= y && y <= x)),
             Op::Ne => return Value::Bool(x < y || y < x),
-            _ => return self.no_operator(op, &Value::Number(x, dx), &Value::Number(y, dy), span),
-        };
-        self.finite(value, dimension, span)
+            _ => {}
+        }
+        match joined(op, a, b) {
+            Ok((x, dimension)) => Value::Number(x, dimension),
+            Err(Unjoined::Dimensions) => self.mismatch(op, dx, dy, span),
+            Err(Unjoined::Zero) => self.poison("E0209", span, "division by zero"),
+            Err(Unjoined::Exponent) => {
+                let message = "an exponent is a plain number, whole where the base has a unit";
+                self.poison("E0203", span, message)
+            }
+            Err(Unjoined::Infinite) => self.infinite(span),
+            Err(Unjoined::Operator) => {
+                self.no_operator(op, &Value::Number(x, dx), &Value::Number(y, dy), span)
+            }
+        }
     }
 
     /// A number, or a told mistake where it is none.
@@ -207,6 +199,10 @@ impl Evaluator<'_> {
         if x.is_finite() {
             return Value::Number(x, dimension);
         }
+        self.infinite(span)
+    }
+
+    fn infinite(&mut self, span: Span) -> Value {
         self.poison("E0209", span, "the result is not a finite number")
     }
 
@@ -316,16 +312,4 @@ pub(super) fn with_zeros(items: &[Value]) -> Option<(Vec<f64>, Dimension)> {
         _ => None,
     };
     Some((items.iter().map(number).collect::<Option<_>>()?, dimension))
-}
-
-fn power_dimension(base: Dimension, exponent: f64, of_exponent: Dimension) -> Option<Dimension> {
-    if !of_exponent.is_none() {
-        return None;
-    }
-    if base.is_none() {
-        return Some(base);
-    }
-    let whole = exponent.fract().abs() <= 0.0 && exponent.abs() <= 9.0;
-    #[expect(clippy::cast_possible_truncation, reason = "a whole number up to 9")]
-    whole.then(|| base.powi(exponent as i8)).flatten()
 }

@@ -2,14 +2,20 @@
 
 use std::sync::Arc;
 
+use luxel_core::diag::Span;
+
 use super::source_of;
 use crate::Budgets;
+use crate::eval::arithmetic::{Measured, joined, measured};
 use crate::eval::numbered::Known;
 use crate::sink::Sink;
 use crate::syntax::{Expr, ExprNode, Form, Op, parse_expr};
 
 /// Items of a vector, at most.
 pub(super) const MOST_ITEMS: usize = 3;
+
+/// The number that a word stands for, if it does.
+pub(super) type Words<'a> = &'a dyn Fn(&str) -> Option<Measured>;
 
 /// A name, or numbers that are reckoned with: numbers, names, operators and brackets alone; or a vector of
 /// two or three such.
@@ -50,10 +56,50 @@ impl Formula {
         matches!(self.expr.node, ExprNode::Items { .. })
     }
 
+    /// The number that it comes to, with the numbers that `word` has for its words; `None` where it is not
+    /// one for all of them, or a mistake.
+    pub(super) fn number(&self, word: Words<'_>) -> Option<Measured> {
+        number(&self.expr, word).filter(|(x, _)| x.is_finite())
+    }
+
     /// The names that the file knows, and how often each stands there.
     pub(super) fn names(&self) -> impl Iterator<Item = (u32, u32)> {
         self.names.iter().copied()
     }
+}
+
+/// What an expression comes to that is reckoned.
+fn number(expr: &Expr, word: Words<'_>) -> Option<Measured> {
+    match &expr.node {
+        ExprNode::Number(x, unit) => Some(measured(*x, unit.as_deref())),
+        ExprNode::Path(path) => word(&path.first()?.text),
+        ExprNode::Paren { inner, unit } => {
+            let (x, dimension) = number(inner, word)?;
+            let is_bare = unit.is_none() || dimension.is_none();
+            is_bare.then(|| unit.as_deref().map_or((x, dimension), |it| measured(x, Some(it))))
+        }
+        ExprNode::Unary { inner, .. } => number(inner, word).map(|(x, dimension)| (-x, dimension)),
+        ExprNode::Chain { first, rest } => {
+            let (mut a, mut left) = (number(first, word)?, &rest[..]);
+            while let [(op, _, operand), others @ ..] = left {
+                // Powers are taken from the right.
+                if *op == Op::Pow {
+                    return joined(*op, a, powers(operand, others, word)?).ok();
+                }
+                a = joined(*op, a, number(operand, word)?).ok()?;
+                left = others;
+            }
+            Some(a)
+        }
+        _ => None,
+    }
+}
+
+/// A power of powers.
+fn powers(base: &Expr, rest: &[(Op, Span, Expr)], word: Words<'_>) -> Option<Measured> {
+    let base = number(base, word)?;
+    let [(op, _, exponent), others @ ..] = rest else { return Some(base) };
+    joined(*op, base, powers(exponent, others, word)?).ok()
 }
 
 fn read(text: &str, budgets: &Budgets) -> Option<Expr> {
@@ -96,6 +142,8 @@ fn is_reckoned(expr: &Expr, words: &mut Vec<Arc<str>>) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use luxel_sdk::params::Dimension;
+
     use super::*;
 
     #[test]
@@ -127,6 +175,31 @@ mod tests {
         ];
         for text in no {
             assert_eq!(words(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_what_an_evaluation_makes_of_them() {
+        let word = |word: &str| match word {
+            "r" => Some((0.5, Dimension::LENGTH)),
+            "k" => Some((3.0, Dimension::NONE)),
+            _ => None,
+        };
+        let of = |text: &str| number(&read(text, &Budgets::default()).unwrap(), &word);
+        let (none, length) = (Dimension::NONE, Dimension::LENGTH);
+        for (text, wanted) in [
+            ("r", Some((0.5, length))),
+            ("-(-r) * 2 - 1 cm", Some((0.99, length))),
+            ("7 - 4 - 2", Some((1.0, none))),
+            ("2 ^ k ^ 2", Some((512.0, none))),
+            ("(k + 1) cm / r", Some((0.08, none))),
+            ("(r) cm", None),
+            ("r + k", None),
+            ("r / (k - 3)", None),
+            ("k ^ r", None),
+            ("k * q", None),
+        ] {
+            assert_eq!(of(text), wanted, "{text}");
         }
     }
 }

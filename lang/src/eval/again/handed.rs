@@ -1,7 +1,7 @@
 //! Statements that only hand a changed value on: the parameters that it became get the new one, and nothing
 //! of the statements is evaluated.
 
-use std::collections::BTreeSet;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use luxel_core::registry::Registry;
 use luxel_core::scene::{self, Changed, IsOver, Node, NodeId};
 
 use super::formula::Formula;
-use super::handing::{Place, Wanted, is_simple};
+use super::handing::{Handing, Place, Wanted, is_simple};
 use super::made::Cost;
 use super::values::KeptValues;
 use super::{State, Statement, source_of, vector};
@@ -18,6 +18,7 @@ use crate::eval::Evaluator;
 use crate::eval::env::Env;
 use crate::eval::note::shown_vector;
 use crate::eval::value::{FieldValue, ObjectValue, Value};
+use crate::shares;
 use crate::syntax::{Form, Name};
 use crate::values::{Shown, Unsaid};
 
@@ -29,10 +30,10 @@ pub(super) struct Handed {
     most_nodes: usize,
     /// By statement.
     places: Vec<(SourceId, Place)>,
-    /// What is wanted there, by number.
-    wanted: BTreeSet<u32>,
-    /// The names that it is reckoned from.
-    names: BTreeSet<u32>,
+    /// What is wanted there, by number, each once.
+    wanted: Vec<u32>,
+    /// The names that it is reckoned from, each once.
+    names: Vec<u32>,
 }
 
 /// What becomes of the values that are handed on.
@@ -44,14 +45,14 @@ pub(super) struct Fitted {
 }
 
 /// A value for a parameter.
-#[derive(Debug)]
-struct FittedValue {
+#[derive(Clone, Debug)]
+pub(super) struct FittedValue {
     /// By the numbers of nodes that were evaluated.
-    value: scene::Value,
+    pub(super) value: scene::Value,
     /// How an editor shows it, if it does.
-    shown: Option<Shown>,
+    pub(super) shown: Option<Shown>,
     /// Steps that it takes to fit.
-    steps: u64,
+    pub(super) steps: u64,
 }
 
 impl Fitted {
@@ -71,9 +72,43 @@ impl Handed {
         self.places.is_empty()
     }
 
-    /// The names that values are reckoned from.
+    /// What is wanted, by number, each once.
+    pub(super) fn wanted(&self) -> &[u32] {
+        &self.wanted
+    }
+
+    /// The names that values are reckoned from, each once.
     pub(super) fn names(&self) -> impl Iterator<Item = u32> {
         self.names.iter().copied()
+    }
+}
+
+impl Handing {
+    /// What statements hand on of what has `changed`, by its number, and the numbers of those that do more.
+    fn handed(
+        &self,
+        stmts: &[(usize, &Statement)],
+        is_changed: &[bool],
+        changed: &[bool],
+    ) -> (Handed, Vec<usize>) {
+        let (mut out, mut others) = (Handed::default(), vec![]);
+        for (i, stmt) in stmts {
+            let mut uses = stmt.names.uses().enumerate();
+            if !uses.all(|(k, (name, _))| !is_changed[name as usize] || stmt.hands.only_hands_on(k))
+            {
+                others.push(*i);
+                continue;
+            }
+            let places = self.places_of(&stmt.hands).iter();
+            let places = places.filter(|place| changed[place.wanted as usize]);
+            out.places.extend(places.map(|place| (source_of(stmt.id), *place)));
+            let nodes = &stmt.made.nodes;
+            out.most_nodes = out.most_nodes.max(nodes.len());
+            if nodes.len() > 1 {
+                out.runs.push(nodes.clone());
+            }
+        }
+        (out, others)
     }
 }
 
@@ -90,34 +125,27 @@ impl State {
         is_changed: &[bool],
     ) -> (Handed, Vec<usize>) {
         let handing = &self.handing;
-        let names = |wanted: &Wanted| handing.formulas[wanted.formula as usize].names();
-        let changed = |wanted: &Wanted| names(wanted).any(|(name, _)| is_changed[name as usize]);
-        let changed: Vec<bool> = handing.wanted.iter().map(changed).collect();
-        let mut is_met = vec![false; handing.wanted.len()];
+        let numbers = || 0..u32::try_from(handing.n_wanted()).unwrap_or(u32::MAX);
+        let is_name_changed = |(name, _): (u32, u32)| is_changed[name as usize];
+        let changed: Vec<bool> =
+            numbers().map(|i| handing.formula(i).names().any(is_name_changed)).collect();
+        let some = |stmts: &[(usize, &Statement)]| handing.handed(stmts, is_changed, &changed);
+        let parts = shares::map(stmts, |(_, stmt)| stmt.range.len(), some);
         let (mut out, mut others) = (Handed::default(), vec![]);
-        for (i, stmt) in stmts {
-            let mut uses = stmt.names.uses().enumerate();
-            if !uses.all(|(k, (name, _))| !is_changed[name as usize] || stmt.hands.only_hands_on(k))
-            {
-                others.push(*i);
-                continue;
-            }
-            for place in &handing.places[stmt.hands.places()] {
-                if changed[place.wanted as usize] {
-                    is_met[place.wanted as usize] = true;
-                    out.places.push((source_of(stmt.id), *place));
-                }
-            }
-            let nodes = &stmt.made.nodes;
-            out.most_nodes = out.most_nodes.max(nodes.len());
-            if nodes.len() > 1 {
-                out.runs.push(nodes.clone());
-            }
+        let mut is_met = vec![false; handing.n_wanted()];
+        let mut is_named = vec![false; is_changed.len()];
+        for (part, left) in parts {
+            part.places.iter().for_each(|(_, place)| is_met[place.wanted as usize] = true);
+            out.places.extend(part.places);
+            out.runs.extend(part.runs);
+            out.most_nodes = out.most_nodes.max(part.most_nodes);
+            others.extend(left);
         }
-        let met = (0..).zip(&is_met).filter(|(_, is_met)| **is_met);
-        out.wanted = met.map(|(i, _)| i).collect();
-        let wanted = out.wanted.iter().map(|i| &handing.wanted[*i as usize]);
-        out.names = wanted.flat_map(names).map(|(name, _)| name).collect();
+        out.wanted = numbers().filter(|i| is_met[*i as usize]).collect();
+        for i in &out.wanted {
+            handing.formula(*i).names().for_each(|(name, _)| is_named[name as usize] = true);
+        }
+        out.names = (0..).zip(is_named).filter_map(|(i, is_named)| is_named.then_some(i)).collect();
         (out, others)
     }
 
@@ -130,18 +158,25 @@ impl State {
     ) -> Option<Fitted> {
         let is_over = evaluator.sink.over();
         let n_told = evaluator.sink.kept().len();
-        let mut values: Vec<Option<Value>> = vec![None; self.handing.formulas.len()];
-        let mut of_wanted = vec![u32::MAX; self.handing.wanted.len()];
-        let mut fitted = vec![];
-        for i in &handed.wanted {
-            let wanted = &self.handing.wanted[*i as usize];
-            let formula = &self.handing.formulas[wanted.formula as usize];
-            let value = &mut values[wanted.formula as usize];
-            let value = value.get_or_insert_with(|| evaluator.eval(&formula.expr, env)).clone();
-            if is_over() || evaluator.sink.kept().len() > n_told {
+        let reckoned = self.reckoned(handed, env, evaluator);
+        let mut values: HashMap<u32, Value> = HashMap::new();
+        let mut of_wanted = vec![u32::MAX; self.handing.n_wanted()];
+        let mut fitted = Vec::with_capacity(reckoned.len());
+        for (i, reckoned) in handed.wanted.iter().zip(reckoned) {
+            if is_over() {
                 return None;
             }
             of_wanted[*i as usize] = u32::try_from(fitted.len()).ok()?;
+            if let Some(reckoned) = reckoned {
+                fitted.push(reckoned);
+                continue;
+            }
+            let (wanted, formula) = (self.handing.wanted(*i), self.handing.formula(*i));
+            let value = values.entry(wanted.formula);
+            let value = value.or_insert_with(|| evaluator.eval(&formula.expr, env)).clone();
+            if evaluator.sink.kept().len() > n_told {
+                return None;
+            }
             fitted.push(self.fit((wanted, formula), value, (handed, env), evaluator)?);
         }
         Some(Fitted { values: fitted, of_wanted })

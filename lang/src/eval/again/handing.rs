@@ -30,13 +30,13 @@ const WHOLE: usize = 2;
 #[derive(Debug, Default)]
 pub(super) struct Handing {
     /// By statement; also of statements that are gone.
-    pub(super) places: Vec<Place>,
-    pub(super) formulas: Vec<Formula>,
+    places: Vec<Place>,
+    formulas: Vec<Formula>,
     /// Which of those a text is, if it is one.
     of_texts: HashMap<Arc<str>, Option<u32>>,
     /// How many vectors are.
     n_vectors: usize,
-    pub(super) wanted: Vec<Wanted>,
+    wanted: Vec<Wanted>,
     /// Which of those each formula is.
     of_formulas: Vec<Vec<u32>>,
 }
@@ -83,10 +83,6 @@ pub(super) struct Hands {
 }
 
 impl Hands {
-    pub(super) fn places(&self) -> Range<usize> {
-        self.places.start as usize..self.places.end as usize
-    }
-
     /// Whether it only hands on the name that is the `i`th of those it uses.
     pub(super) fn only_hands_on(&self, i: usize) -> bool {
         u32::try_from(i)
@@ -190,6 +186,26 @@ impl Handing {
         self
     }
 
+    /// Where a statement hands something on.
+    pub(super) fn places_of(&self, hands: &Hands) -> &[Place] {
+        &self.places[hands.places.start as usize..hands.places.end as usize]
+    }
+
+    /// How many are wanted.
+    pub(super) fn n_wanted(&self) -> usize {
+        self.wanted.len()
+    }
+
+    /// What is wanted, by its number.
+    pub(super) fn wanted(&self, i: u32) -> &Wanted {
+        &self.wanted[i as usize]
+    }
+
+    /// The formula whose value is wanted, by the number of what is.
+    pub(super) fn formula(&self, i: u32) -> &Formula {
+        &self.formulas[self.wanted(i).formula as usize]
+    }
+
     /// Adds what a statement hands on, if it does nothing but make objects that nobody names.
     pub(super) fn add(&mut self, stmt: &Statement, written: &Written<'_>) -> Hands {
         let first = self.places.len();
@@ -268,7 +284,7 @@ impl Handing {
         let is_of_its_own = self.n_vectors >= WHOLE && !self.of_texts.contains_key(text);
         let items = is_of_its_own.then(|| self.items((node, argument), text, written)).flatten();
         items.unwrap_or_else(|| {
-            let whole = self.formula(text, written);
+            let whole = self.formula_of(text, written);
             whole.map(|formula| Part { item: None, n_items: 0, formula }).into_iter().collect()
         })
     }
@@ -295,13 +311,13 @@ impl Handing {
             if x.abs() <= 0.0 {
                 return None;
             }
-            parts.push(Part { item: Some(i), n_items, formula: self.formula(text, written)? });
+            parts.push(Part { item: Some(i), n_items, formula: self.formula_of(text, written)? });
         }
         Some(parts)
     }
 
     /// Which of the formulas a text is, if it is one.
-    fn formula(&mut self, text: &str, written: &Written<'_>) -> Option<u32> {
+    fn formula_of(&mut self, text: &str, written: &Written<'_>) -> Option<u32> {
         if let Some(known) = self.of_texts.get(text) {
             return *known;
         }

@@ -19,6 +19,7 @@ mod handing;
 mod made;
 mod plan;
 mod put;
+mod reckoned;
 mod record;
 mod sets;
 mod slice;

@@ -1,0 +1,98 @@
+//! What formulas come to that are numbers: each by itself, so that threads share them.
+
+use std::collections::{BTreeMap, HashMap};
+
+use luxel_core::registry::Registry;
+use luxel_core::scene::{self, Given, conform};
+use luxel_sdk::params::Dimension;
+
+use super::State;
+use super::handed::{FittedValue, Handed};
+use super::handing::{Handing, Wanted};
+use super::vector;
+use crate::eval::Evaluator;
+use crate::eval::arithmetic::Measured;
+use crate::eval::builtins;
+use crate::eval::env::Env;
+use crate::eval::note::number_later;
+use crate::eval::value::Value;
+use crate::shares;
+
+/// From what numbers are reckoned, and what becomes of them.
+struct Reckoning<'a> {
+    handing: &'a Handing,
+    registry: &'a Registry,
+    /// What bare numbers count, by dimension.
+    units: &'a BTreeMap<Dimension, f64>,
+    /// Names of the file, with the numbers that they stand for, if they do.
+    words: HashMap<&'a str, Option<Measured>>,
+    /// Whether anybody is shown values.
+    is_shown: bool,
+}
+
+impl State {
+    /// For each that is wanted its value, if it is a number that fits. Of the others, nothing is known.
+    pub(super) fn reckoned(
+        &self,
+        handed: &Handed,
+        env: &Env,
+        evaluator: &Evaluator<'_>,
+    ) -> Vec<Option<FittedValue>> {
+        let number = |value: Value| match value {
+            Value::Number(x, measure) => Some((x, measure)),
+            _ => None,
+        };
+        let names = handed.names().map(|name| self.names.name(name));
+        let reckoning = Reckoning {
+            handing: &self.handing,
+            registry: evaluator.registry,
+            units: &env.file.units,
+            words: names.filter_map(|name| Some((name, number(env.get(name)?)))).collect(),
+            is_shown: evaluator.noted.is_some(),
+        };
+        let is_over = evaluator.sink.over();
+        let length = |i: &u32| reckoning.handing.formula(*i).text.len();
+        let some = |part: &[u32]| -> Vec<Option<FittedValue>> {
+            part.iter().map(|i| reckoning.value(*i).filter(|_| !is_over())).collect()
+        };
+        shares::map(handed.wanted(), length, some).concat()
+    }
+}
+
+impl Reckoning<'_> {
+    /// The number that a word stands for, if it does.
+    fn word(&self, word: &str) -> Option<Measured> {
+        self.words.get(word).copied().unwrap_or_else(|| match builtins::value(word) {
+            Some(Value::Number(x, measure)) => Some((x, measure)),
+            _ => None,
+        })
+    }
+
+    /// The value of one that is wanted, by its number.
+    fn value(&self, i: u32) -> Option<FittedValue> {
+        let Wanted { kind, class, param, is_node, n_items, .. } = self.handing.wanted(i);
+        if *is_node {
+            return None;
+        }
+        let (x, measure) = self.handing.formula(i).number(&|word| self.word(word))?;
+        let class = self.registry.class(*kind, class)?;
+        let param = Registry::params(class).find(|it| it.name == *param)?;
+        let units = |dimension: Dimension| self.units.get(&dimension).copied();
+        let given = match n_items {
+            0 => Given::Number(x, measure),
+            n if vector::dimension(param) == Some(measure) => {
+                Given::Numbers(vec![x; usize::from(*n)].into(), measure)
+            }
+            _ => return None,
+        };
+        let value = match (conform(param, given, &units).ok()?, n_items) {
+            (value @ scene::Value::Number(..), 0) => value,
+            (scene::Value::Vector(numbers), 1..) => {
+                scene::Value::Number(*numbers.first()?, measure)
+            }
+            _ => return None,
+        };
+        let shown = self.is_shown.then(|| number_later(x, measure));
+        Some(FittedValue { value, shown, steps: 0 })
+    }
+}

@@ -28,11 +28,12 @@ impl Hashing {
         self
     }
 
-    pub(super) fn finish(mut self) -> Hash {
-        match &mut self.hasher {
-            Some(hasher) => *hasher.update(&self.bytes).finalize().as_bytes(),
-            None => *blake3::hash(&self.bytes).as_bytes(),
-        }
+    /// The hash of what came. It stays where it is: what is moved takes as long as what is hashed.
+    pub(super) fn finish(&mut self) -> Hash {
+        let Some(hasher) = &mut self.hasher else { return *blake3::hash(&self.bytes).as_bytes() };
+        hasher.update(&self.bytes);
+        self.bytes.clear();
+        *hasher.finalize().as_bytes()
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use luxel_core::registry::Registry;
 use luxel_core::scene::{self, Given, conform};
-use luxel_sdk::params::Dimension;
+use luxel_sdk::params::{Dimension, Param};
 
 use super::State;
 use super::handed::{FittedValue, Handed};
@@ -53,13 +53,17 @@ impl State {
         let is_over = evaluator.sink.over();
         let length = |i: &u32| reckoning.handing.formula(*i).text.len();
         let some = |part: &[u32]| -> Vec<Option<FittedValue>> {
-            part.iter().map(|i| reckoning.value(*i).filter(|_| !is_over())).collect()
+            let mut last = None;
+            part.iter().map(|i| reckoning.value(*i, &mut last).filter(|_| !is_over())).collect()
         };
-        shares::map(handed.wanted(), length, some).concat()
+        shares::map(handed.wanted(), length, some).into_iter().flatten().collect()
     }
 }
 
-impl Reckoning<'_> {
+/// A parameter that was wanted, and what is known of it.
+type Last<'a> = Option<(&'a Wanted, &'a Param)>;
+
+impl<'a> Reckoning<'a> {
     /// The number that a word stands for, if it does.
     fn word(&self, word: &str) -> Option<Measured> {
         self.words.get(word).copied().unwrap_or_else(|| match builtins::value(word) {
@@ -68,24 +72,36 @@ impl Reckoning<'_> {
         })
     }
 
+    /// The parameter that a value is wanted for. Mostly it is the one of the last.
+    fn param(&self, wanted: &'a Wanted, last: &mut Last<'a>) -> Option<&'a Param> {
+        let is_last = |(one, _): &(&Wanted, _)| {
+            (one.kind, one.param) == (wanted.kind, wanted.param) && one.class == wanted.class
+        };
+        if !last.as_ref().is_some_and(is_last) {
+            let class = self.registry.class(wanted.kind, &wanted.class)?;
+            let param = Registry::params(class).find(|param| param.name == wanted.param)?;
+            *last = Some((wanted, param));
+        }
+        last.map(|(_, param)| param)
+    }
+
     /// The value of one that is wanted, by its number.
-    fn value(&self, i: u32) -> Option<FittedValue> {
-        let Wanted { kind, class, param, is_node, n_items, .. } = self.handing.wanted(i);
-        if *is_node {
+    fn value(&self, i: u32, last: &mut Last<'a>) -> Option<FittedValue> {
+        let wanted = self.handing.wanted(i);
+        if wanted.is_node {
             return None;
         }
         let (x, measure) = self.handing.formula(i).number(&|word| self.word(word))?;
-        let class = self.registry.class(*kind, class)?;
-        let param = Registry::params(class).find(|it| it.name == *param)?;
+        let param = self.param(wanted, last)?;
         let units = |dimension: Dimension| self.units.get(&dimension).copied();
-        let given = match n_items {
+        let given = match wanted.n_items {
             0 => Given::Number(x, measure),
             n if vector::dimension(param) == Some(measure) => {
-                Given::Numbers(vec![x; usize::from(*n)].into(), measure)
+                Given::Numbers(vec![x; usize::from(n)].into(), measure)
             }
             _ => return None,
         };
-        let value = match (conform(param, given, &units).ok()?, n_items) {
+        let value = match (conform(param, given, &units).ok()?, wanted.n_items) {
             (value @ scene::Value::Number(..), 0) => value,
             (scene::Value::Vector(numbers), 1..) => {
                 scene::Value::Number(*numbers.first()?, measure)

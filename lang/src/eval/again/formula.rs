@@ -2,20 +2,19 @@
 
 use std::sync::Arc;
 
-use luxel_core::diag::Span;
+use luxel_sdk::params::Unit;
 
 use super::source_of;
 use crate::Budgets;
 use crate::eval::arithmetic::{Measured, joined, measured};
+use crate::eval::builtins;
 use crate::eval::numbered::Known;
+use crate::eval::value::Value;
 use crate::sink::Sink;
 use crate::syntax::{Expr, ExprNode, Form, Op, parse_expr};
 
 /// Items of a vector, at most.
 pub(super) const MOST_ITEMS: usize = 3;
-
-/// The number that a word stands for, if it does.
-pub(super) type Words<'a> = &'a dyn Fn(&str) -> Option<Measured>;
 
 /// A name, or numbers that are reckoned with: numbers, names, operators and brackets alone; or a vector of
 /// two or three such.
@@ -26,80 +25,94 @@ pub(super) type Words<'a> = &'a dyn Fn(&str) -> Option<Measured>;
 #[derive(Debug)]
 pub(super) struct Formula {
     pub(super) text: Arc<str>,
-    pub(super) expr: Expr,
-    /// The names that the file knows, by number, and how often each stands there.
-    names: Vec<(u32, u32)>,
+    form: Of,
+    steps: Box<[Step]>,
+}
+
+/// What a formula is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Of {
+    /// A name alone, which may stand for anything.
+    Name,
+    Number,
+    Vector,
+}
+
+/// A step of a reckoning, which puts a number on those before or joins the last ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Step {
+    Number(Measured),
+    /// That of a name that the file knows, by number.
+    Name(u32),
+    /// The last one, which is bare, in this unit.
+    Measure(Unit),
+    Negate,
+    Join(Op),
 }
 
 impl Formula {
     /// A text as one; `None` of any other.
     pub(super) fn of(text: &str, budgets: &Budgets, known: &Known) -> Option<Self> {
         let expr = read(text, budgets)?;
-        let words = words(&expr)?;
-        let mut names: Vec<(u32, u32)> = vec![];
-        for number in words.iter().filter_map(|word| known.of(word)) {
-            match names.iter_mut().find(|(name, _)| *name == number) {
-                Some((_, times)) => *times += 1,
-                None => names.push((number, 1)),
+        let mut steps = vec![];
+        let form = match &expr.node {
+            ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
+                items.iter().try_for_each(|item| reckon(item, known, &mut steps))?;
+                Of::Vector
             }
-        }
-        Some(Self { text: text.into(), expr, names })
+            node => {
+                reckon(&expr, known, &mut steps)?;
+                if matches!(node, ExprNode::Path(_)) { Of::Name } else { Of::Number }
+            }
+        };
+        Some(Self { text: text.into(), form, steps: steps.into() })
+    }
+
+    /// It, to be evaluated.
+    pub(super) fn expr(&self, budgets: &Budgets) -> Option<Expr> {
+        read(&self.text, budgets)
     }
 
     /// Whether it is a name alone, which may stand for anything.
     pub(super) fn is_name(&self) -> bool {
-        matches!(self.expr.node, ExprNode::Path(_))
+        self.form == Of::Name
     }
 
     /// Whether it is a vector of what is reckoned.
     pub(super) fn is_vector(&self) -> bool {
-        matches!(self.expr.node, ExprNode::Items { .. })
+        self.form == Of::Vector
     }
 
-    /// The number that it comes to, with the numbers that `word` has for its words; `None` where it is not
-    /// one for all of them, or a mistake.
-    pub(super) fn number(&self, word: Words<'_>) -> Option<Measured> {
-        number(&self.expr, word).filter(|(x, _)| x.is_finite())
+    /// The names that the file knows, each as often as it stands there.
+    pub(super) fn names(&self) -> impl Iterator<Item = u32> {
+        self.steps.iter().filter_map(|step| match step {
+            Step::Name(name) => Some(*name),
+            _ => None,
+        })
     }
 
-    /// The names that the file knows, and how often each stands there.
-    pub(super) fn names(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.names.iter().copied()
-    }
-}
-
-/// What an expression comes to that is reckoned.
-fn number(expr: &Expr, word: Words<'_>) -> Option<Measured> {
-    match &expr.node {
-        ExprNode::Number(x, unit) => Some(measured(*x, unit.as_deref())),
-        ExprNode::Path(path) => word(&path.first()?.text),
-        ExprNode::Paren { inner, unit } => {
-            let (x, dimension) = number(inner, word)?;
-            let is_bare = unit.is_none() || dimension.is_none();
-            is_bare.then(|| unit.as_deref().map_or((x, dimension), |it| measured(x, Some(it))))
-        }
-        ExprNode::Unary { inner, .. } => number(inner, word).map(|(x, dimension)| (-x, dimension)),
-        ExprNode::Chain { first, rest } => {
-            let (mut a, mut left) = (number(first, word)?, &rest[..]);
-            while let [(op, _, operand), others @ ..] = left {
-                // Powers are taken from the right.
-                if *op == Op::Pow {
-                    return joined(*op, a, powers(operand, others, word)?).ok();
+    /// The number that it comes to, with those that names stand for; `None` where it is none, or a mistake.
+    pub(super) fn number(&self, name: &dyn Fn(u32) -> Option<Measured>) -> Option<Measured> {
+        let mut open: Vec<Measured> = vec![];
+        for step in &self.steps {
+            let next = match step {
+                Step::Number(number) => *number,
+                Step::Name(number) => name(*number)?,
+                Step::Negate => open.pop().map(|(x, dimension)| (-x, dimension))?,
+                Step::Measure(unit) => {
+                    let (x, dimension) = open.pop()?;
+                    dimension.is_none().then(|| measured(x, Some(unit)))?
                 }
-                a = joined(*op, a, number(operand, word)?).ok()?;
-                left = others;
-            }
-            Some(a)
+                Step::Join(op) => {
+                    let right = open.pop()?;
+                    joined(*op, open.pop()?, right).ok()?
+                }
+            };
+            open.push(next);
         }
-        _ => None,
+        let number = open.pop().filter(|(x, _)| x.is_finite());
+        number.filter(|_| open.is_empty() && !self.is_vector())
     }
-}
-
-/// A power of powers.
-fn powers(base: &Expr, rest: &[(Op, Span, Expr)], word: Words<'_>) -> Option<Measured> {
-    let base = number(base, word)?;
-    let [(op, _, exponent), others @ ..] = rest else { return Some(base) };
-    joined(*op, base, powers(exponent, others, word)?).ok()
 }
 
 fn read(text: &str, budgets: &Budgets) -> Option<Expr> {
@@ -108,36 +121,46 @@ fn read(text: &str, budgets: &Budgets) -> Option<Expr> {
     expr.filter(|_| sink.kept().is_empty())
 }
 
-/// The names in a formula; `None` if an expression is none.
-fn words(expr: &Expr) -> Option<Vec<Arc<str>>> {
-    let mut words = vec![];
-    let is_one = match &expr.node {
-        ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
-            items.iter().all(|item| is_reckoned(item, &mut words))
+/// Adds the steps of an expression; `None` if it is not reckoned from numbers.
+fn reckon(expr: &Expr, known: &Known, steps: &mut Vec<Step>) -> Option<()> {
+    match &expr.node {
+        ExprNode::Number(x, unit) => steps.push(Step::Number(measured(*x, unit.as_deref()))),
+        ExprNode::Path(path) => {
+            let [word] = &path[..] else { return None };
+            steps.push(match (known.of(&word.text), builtins::value(&word.text)) {
+                (Some(name), _) => Step::Name(name),
+                (None, Some(Value::Number(x, dimension))) => Step::Number((x, dimension)),
+                _ => return None,
+            });
         }
-        _ => is_reckoned(expr, &mut words),
-    };
-    is_one.then_some(words)
+        ExprNode::Paren { inner, unit } => {
+            reckon(inner, known, steps)?;
+            steps.extend(unit.as_deref().map(|unit| Step::Measure(*unit)));
+        }
+        ExprNode::Unary { op: Op::Sub, inner } => {
+            reckon(inner, known, steps)?;
+            steps.push(Step::Negate);
+        }
+        ExprNode::Chain { first, rest } => {
+            reckon(first, known, steps)?;
+            for (op, _, operand) in rest {
+                reckon(operand, known, steps)?;
+                if *op != Op::Pow {
+                    steps.push(joins(*op).then_some(Step::Join(*op))?);
+                }
+            }
+            // Powers are taken from the right.
+            steps
+                .extend(rest.iter().filter(|(op, ..)| *op == Op::Pow).map(|_| Step::Join(Op::Pow)));
+        }
+        _ => return None,
+    }
+    Some(())
 }
 
-/// Whether an expression is one of numbers, and the names in it.
-fn is_reckoned(expr: &Expr, words: &mut Vec<Arc<str>>) -> bool {
-    match &expr.node {
-        ExprNode::Number(..) => true,
-        ExprNode::Path(path) => {
-            words.extend(path.first().map(|name| name.text.clone()));
-            path.len() == 1
-        }
-        ExprNode::Paren { inner, .. } => is_reckoned(inner, words),
-        ExprNode::Unary { op, inner } => *op == Op::Sub && is_reckoned(inner, words),
-        ExprNode::Chain { first, rest } => {
-            let joins =
-                |op: &Op| matches!(op, Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Rem | Op::Pow);
-            let mut is_so = |operand: &Expr| is_reckoned(operand, words);
-            is_so(first) && rest.iter().all(|(op, _, operand)| joins(op) && is_so(operand))
-        }
-        _ => false,
-    }
+/// Whether an operator makes numbers of numbers.
+fn joins(op: Op) -> bool {
+    matches!(op, Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Rem)
 }
 
 #[cfg(test)]
@@ -146,13 +169,24 @@ mod tests {
 
     use super::*;
 
+    /// A formula of a file that knows some names, which have the numbers of their letters.
+    fn formula(text: &str) -> Option<Formula> {
+        let mut known = Known::default();
+        for name in 'a'..='z' {
+            known.number(&name.to_string().into());
+        }
+        Formula::of(text, &Budgets::default(), &known)
+    }
+
     #[test]
     fn numbers_and_names_are_reckoned_with_and_nothing_else_is() {
-        let words = |text: &str| Some(words(&read(text, &Budgets::default())?)?.join(" "));
+        let names = |text: &str| -> Option<String> {
+            Some(formula(text)?.names().filter_map(|i| ('a'..='z').nth(i as usize)).collect())
+        };
         let yes =
-            [("r", "r"), ("2 * r", "r"), ("-(a + b % 3 m) cm ^ a / c", "a b a c"), ("1.5 km", "")];
-        for (text, names) in yes {
-            assert_eq!(words(text).as_deref(), Some(names), "{text}");
+            [("r", "r"), ("2 * r", "r"), ("-(a + b % 3 m) cm ^ a / c", "abac"), ("1.5 km", "")];
+        for (text, wanted) in yes {
+            assert_eq!(names(text).as_deref(), Some(wanted), "{text}");
         }
         let no = [
             "f(r)",
@@ -171,35 +205,37 @@ mod tests {
             "1..r",
             "r +",
             "r radius 2",
+            "nowhere",
             "",
         ];
         for text in no {
-            assert_eq!(words(text), None, "{text}");
+            assert_eq!(names(text), None, "{text}");
         }
     }
 
     #[test]
     fn numbers_are_what_an_evaluation_makes_of_them() {
-        let word = |word: &str| match word {
-            "r" => Some((0.5, Dimension::LENGTH)),
-            "k" => Some((3.0, Dimension::NONE)),
+        let (none, length) = (Dimension::NONE, Dimension::LENGTH);
+        let name = |i: u32| match ('a'..='z').nth(i as usize) {
+            Some('r') => Some((0.5, length)),
+            Some('k') => Some((3.0, none)),
             _ => None,
         };
-        let of = |text: &str| number(&read(text, &Budgets::default()).unwrap(), &word);
-        let (none, length) = (Dimension::NONE, Dimension::LENGTH);
         for (text, wanted) in [
             ("r", Some((0.5, length))),
             ("-(-r) * 2 - 1 cm", Some((0.99, length))),
             ("7 - 4 - 2", Some((1.0, none))),
             ("2 ^ k ^ 2", Some((512.0, none))),
             ("(k + 1) cm / r", Some((0.08, none))),
+            ("pi * k", Some((3.0 * std::f64::consts::PI, none))),
             ("(r) cm", None),
             ("r + k", None),
             ("r / (k - 3)", None),
             ("k ^ r", None),
             ("k * q", None),
+            ("(r, r)", None),
         ] {
-            assert_eq!(of(text), wanted, "{text}");
+            assert_eq!(formula(text).unwrap().number(&name), wanted, "{text}");
         }
     }
 }

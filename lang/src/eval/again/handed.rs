@@ -126,7 +126,7 @@ impl State {
     ) -> (Handed, Vec<usize>) {
         let handing = &self.handing;
         let numbers = || 0..u32::try_from(handing.n_wanted()).unwrap_or(u32::MAX);
-        let is_name_changed = |(name, _): (u32, u32)| is_changed[name as usize];
+        let is_name_changed = |name: u32| is_changed[name as usize];
         let changed: Vec<bool> =
             numbers().map(|i| handing.formula(i).names().any(is_name_changed)).collect();
         let some = |stmts: &[(usize, &Statement)]| handing.handed(stmts, is_changed, &changed);
@@ -143,7 +143,7 @@ impl State {
         }
         out.wanted = numbers().filter(|i| is_met[*i as usize]).collect();
         for i in &out.wanted {
-            handing.formula(*i).names().for_each(|(name, _)| is_named[name as usize] = true);
+            handing.formula(*i).names().for_each(|name| is_named[name as usize] = true);
         }
         out.names = (0..).zip(is_named).filter_map(|(i, is_named)| is_named.then_some(i)).collect();
         (out, others)
@@ -161,8 +161,8 @@ impl State {
         let reckoned = self.reckoned(handed, env, evaluator);
         let mut values: HashMap<u32, Value> = HashMap::new();
         let mut of_wanted = vec![u32::MAX; self.handing.n_wanted()];
-        let mut fitted = Vec::with_capacity(reckoned.len());
-        for (i, reckoned) in handed.wanted.iter().zip(reckoned) {
+        let mut fitted = Vec::with_capacity(handed.wanted.len());
+        for (i, reckoned) in handed.wanted.iter().zip(reckoned.into_iter().flatten()) {
             if is_over() {
                 return None;
             }
@@ -172,11 +172,14 @@ impl State {
                 continue;
             }
             let (wanted, formula) = (self.handing.wanted(*i), self.handing.formula(*i));
-            let value = values.entry(wanted.formula);
-            let value = value.or_insert_with(|| evaluator.eval(&formula.expr, env)).clone();
+            let value = match values.get(&wanted.formula) {
+                Some(known) => known.clone(),
+                None => evaluator.eval(&formula.expr(&self.settings.budgets)?, env),
+            };
             if evaluator.sink.kept().len() > n_told {
                 return None;
             }
+            values.insert(wanted.formula, value.clone());
             fitted.push(self.fit((wanted, formula), value, (handed, env), evaluator)?);
         }
         Some(Fitted { values: fitted, of_wanted })

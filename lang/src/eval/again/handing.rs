@@ -265,10 +265,10 @@ impl Handing {
     /// Counts the names of a formula among those that are used. Of each of these is known how often it is used
     /// elsewhere; nothing, once it was met more often.
     fn use_names(&self, formula: u32, uses: &[(u32, u32)], left: &mut [Option<u32>]) {
-        for (name, times) in self.formulas[formula as usize].names() {
+        for name in self.formulas[formula as usize].names() {
             let met = uses.iter().zip(left.iter_mut()).find(|((used, _), _)| *used == name);
             if let Some((_, left)) = met {
-                *left = left.and_then(|left| left.checked_sub(times));
+                *left = left.and_then(|left| left.checked_sub(1));
             }
         }
     }

@@ -12,7 +12,6 @@ use super::handing::{Handing, Wanted};
 use super::vector;
 use crate::eval::Evaluator;
 use crate::eval::arithmetic::Measured;
-use crate::eval::builtins;
 use crate::eval::env::Env;
 use crate::eval::note::number_later;
 use crate::eval::value::Value;
@@ -24,30 +23,30 @@ struct Reckoning<'a> {
     registry: &'a Registry,
     /// What bare numbers count, by dimension.
     units: &'a BTreeMap<Dimension, f64>,
-    /// Names of the file, with the numbers that they stand for, if they do.
-    words: HashMap<&'a str, Option<Measured>>,
+    /// The numbers that names stand for.
+    names: HashMap<u32, Measured>,
     /// Whether anybody is shown values.
     is_shown: bool,
 }
 
 impl State {
-    /// For each that is wanted its value, if it is a number that fits. Of the others, nothing is known.
+    /// For each that is wanted its value, if it is a number that fits, in shares. Of the others, nothing is
+    /// known.
     pub(super) fn reckoned(
         &self,
         handed: &Handed,
         env: &Env,
         evaluator: &Evaluator<'_>,
-    ) -> Vec<Option<FittedValue>> {
-        let number = |value: Value| match value {
-            Value::Number(x, measure) => Some((x, measure)),
+    ) -> Vec<Vec<Option<FittedValue>>> {
+        let number = |name: u32| match env.get(self.names.name(name)) {
+            Some(Value::Number(x, measure)) => Some((name, (x, measure))),
             _ => None,
         };
-        let names = handed.names().map(|name| self.names.name(name));
         let reckoning = Reckoning {
             handing: &self.handing,
             registry: evaluator.registry,
             units: &env.file.units,
-            words: names.filter_map(|name| Some((name, number(env.get(name)?)))).collect(),
+            names: handed.names().filter_map(number).collect(),
             is_shown: evaluator.noted.is_some(),
         };
         let is_over = evaluator.sink.over();
@@ -56,7 +55,7 @@ impl State {
             let mut last = None;
             part.iter().map(|i| reckoning.value(*i, &mut last).filter(|_| !is_over())).collect()
         };
-        shares::map(handed.wanted(), length, some).into_iter().flatten().collect()
+        shares::map(handed.wanted(), length, some)
     }
 }
 
@@ -64,14 +63,6 @@ impl State {
 type Last<'a> = Option<(&'a Wanted, &'a Param)>;
 
 impl<'a> Reckoning<'a> {
-    /// The number that a word stands for, if it does.
-    fn word(&self, word: &str) -> Option<Measured> {
-        self.words.get(word).copied().unwrap_or_else(|| match builtins::value(word) {
-            Some(Value::Number(x, measure)) => Some((x, measure)),
-            _ => None,
-        })
-    }
-
     /// The parameter that a value is wanted for. Mostly it is the one of the last.
     fn param(&self, wanted: &'a Wanted, last: &mut Last<'a>) -> Option<&'a Param> {
         let is_last = |(one, _): &(&Wanted, _)| {
@@ -91,7 +82,8 @@ impl<'a> Reckoning<'a> {
         if wanted.is_node {
             return None;
         }
-        let (x, measure) = self.handing.formula(i).number(&|word| self.word(word))?;
+        let (x, measure) =
+            self.handing.formula(i).number(&|name| self.names.get(&name).copied())?;
         let param = self.param(wanted, last)?;
         let units = |dimension: Dimension| self.units.get(&dimension).copied();
         let given = match wanted.n_items {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use luxel_sdk::params::Unit;
 
 use super::source_of;
@@ -15,6 +16,9 @@ use crate::syntax::{Expr, ExprNode, Form, Op, parse_expr};
 
 /// Items of a vector, at most.
 pub(super) const MOST_ITEMS: usize = 3;
+
+/// Numbers that may stand open while one is reckoned; few people nest brackets so deep.
+const OPEN: usize = 16;
 
 /// A name, or numbers that are reckoned with: numbers, names, operators and brackets alone; or a vector of
 /// two or three such.
@@ -91,9 +95,10 @@ impl Formula {
         })
     }
 
-    /// The number that it comes to, with those that names stand for; `None` where it is none, or a mistake.
+    /// The number that it comes to, with those that names stand for; `None` where it is none, a mistake, or
+    /// too many stand open.
     pub(super) fn number(&self, name: &dyn Fn(u32) -> Option<Measured>) -> Option<Measured> {
-        let mut open: Vec<Measured> = vec![];
+        let mut open: ArrayVec<Measured, OPEN> = ArrayVec::new();
         for step in &self.steps {
             let next = match step {
                 Step::Number(number) => *number,
@@ -108,7 +113,7 @@ impl Formula {
                     joined(*op, open.pop()?, right).ok()?
                 }
             };
-            open.push(next);
+            open.try_push(next).ok()?;
         }
         let number = open.pop().filter(|(x, _)| x.is_finite());
         number.filter(|_| open.is_empty() && !self.is_vector())

@@ -17,6 +17,9 @@ use crate::eval::note::number_later;
 use crate::eval::value::Value;
 use crate::shares;
 
+/// Bytes that a formula counts for where threads share them: it takes as long as so much text.
+const SIZE: usize = 1 << 6;
+
 /// From what numbers are reckoned, and what becomes of them.
 struct Reckoning<'a> {
     handing: &'a Handing,
@@ -50,12 +53,11 @@ impl State {
             is_shown: evaluator.noted.is_some(),
         };
         let is_over = evaluator.sink.over();
-        let length = |i: &u32| reckoning.handing.formula(*i).text.len();
         let some = |part: &[u32]| -> Vec<Option<FittedValue>> {
             let mut last = None;
             part.iter().map(|i| reckoning.value(*i, &mut last).filter(|_| !is_over())).collect()
         };
-        shares::map(handed.wanted(), length, some)
+        shares::map(handed.wanted(), |_| SIZE, some)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Mistakes that are told of what was not written to its end: their cause is told already.
 
+use std::collections::BTreeSet;
+
 use luxel_core::diag::{Diagnostic, Span};
 
 /// Takes out what is said of the value of an expression in which something cannot be read, as of a call that
@@ -13,7 +15,16 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>) {
     };
     let mut causes: Vec<Span> = causes.flat_map(places).collect();
     causes.sort_unstable();
+    // Of a word without quotes it is said what it may be, which says more than that it is no name.
+    let words: BTreeSet<Span> = diagnostics
+        .iter()
+        .filter(|found| found.code == "E0416")
+        .filter_map(Diagnostic::span)
+        .collect();
     diagnostics.retain(|found| {
+        if found.code == "E0101" && found.span().is_some_and(|span| words.contains(&span)) {
+            return false;
+        }
         let is_of_value = found.code.starts_with("E02") || found.code.starts_with("E04");
         let span = found.span().filter(|_| is_of_value && found.is_error());
         !span.is_some_and(|span| holds_one(span, &causes))

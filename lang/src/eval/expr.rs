@@ -98,6 +98,9 @@ impl Evaluator<'_> {
         let value = self.eval(&field.value, env);
         self.note(&field.name, &value);
         let span = field.value.span;
+        if let Value::Text(text) = &value {
+            self.quotes.text(text, span, env);
+        }
         FieldValue { name: field.name.clone(), value, span, file: env.file.clone() }
     }
 
@@ -124,7 +127,10 @@ impl Evaluator<'_> {
         }
         let words: Vec<&str> = path.iter().map(|name| &*name.text).collect();
         // A name that is nowhere was told when names were resolved.
-        builtins::value(&words.join(".")).unwrap_or(Value::Poison)
+        builtins::value(&words.join(".")).unwrap_or_else(|| {
+            self.quotes.unknown(first.span);
+            Value::Poison
+        })
     }
 
     fn member(&mut self, of: &Value, name: &Name) -> Value {

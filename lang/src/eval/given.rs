@@ -17,6 +17,7 @@ use crate::syntax::Form;
 impl Evaluator<'_> {
     /// Fits a field to its parameter; `None` after a mistake.
     pub(super) fn conform(&mut self, param: &Param, field: &FieldValue) -> Option<scene::Value> {
+        self.bare_word(param, field);
         let given = self.given(param, field)?;
         let is_heat =
             is_spectrum(param) && matches!(given, Given::Number(_, Dimension::TEMPERATURE));
@@ -25,6 +26,7 @@ impl Evaluator<'_> {
             Ok(value) => Some(value),
             Err(misfit) => {
                 let mut found = self.misfit(&misfit, field.span);
+                found = self.perhaps_name(found, &misfit, field);
                 if is_heat {
                     let body = format!("blackbody({})", self.written(field.span));
                     found = found.help("light of a temperature is that of a black body");

@@ -33,13 +33,19 @@ impl Evaluator<'_> {
                 Diagnostic::error("E0401", category.span, message).meant(category.span, meant);
             let kinds = Kind::ALL.iter().filter(|(kind, _)| {
                 let name = category.text.to_lowercase();
-                self.registry.class(*kind, &name).is_some() && object.kind.is_none()
+                let is_one = object.kind.is_none() || object.label.is_none();
+                self.registry.class(*kind, &name).is_some() && is_one
             });
             let start = Span { end: category.span.start, ..category.span };
             let found = kinds.fold(found, |found, (kind, word)| {
                 let name = category.text.to_lowercase();
                 let param = within.and_then(|class| takers(class, *kind).next());
                 let given = param.map_or(String::new(), |param| format!("{} = ", param.name));
+                // `sphere ball { … }`
+                if let Some(label) = &object.kind {
+                    let all = category.span.to(label.span);
+                    return found.guess(all, format!("{given}{word} {name} \"{}\"", label.text));
+                }
                 if name == *category.text {
                     return found.guess(start, format!("{given}{word} "));
                 }

@@ -27,6 +27,7 @@ mod numbered;
 mod object;
 mod ops;
 mod params;
+mod quotes;
 pub(crate) mod readable;
 mod require;
 mod resolve;
@@ -58,6 +59,7 @@ pub(crate) use self::resolve::resolve;
 use self::builtins::SpectrumFile;
 use self::emit::Labels;
 use self::include::ReadFile;
+use self::quotes::Quotes;
 use self::unseen::Unseen;
 use self::value::{Held, Module, Value};
 use crate::budgets::Budgets;
@@ -142,6 +144,7 @@ struct Evaluator<'a> {
     /// Some statement could not be read: what is missing may stand there.
     damaged: bool,
     unseen: Unseen,
+    quotes: Quotes,
     /// Objects that are right by themselves and stand nowhere: their place or their material is not known.
     orphans: Vec<NodeId>,
     /// Plugins that the scene asks for and that are not there.
@@ -209,6 +212,7 @@ impl<'a> Evaluator<'a> {
             slots: vec![],
             has_asset: false,
             damaged: false,
+            quotes: Quotes::default(),
             unseen: Unseen::default(),
             orphans: vec![],
             n_unmet: 0,

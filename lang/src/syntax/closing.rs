@@ -68,7 +68,9 @@ pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
     let (mended, is_sure) = if faults.iter().all(is_open) {
         (closed_by(piece, [0, base], &braces(piece, 0, limit)?), true)
     } else {
-        let mends = faults.iter().map(|fault| mend(piece, fault)).collect::<Option<Vec<_>>>()?;
+        let mends = faults.iter().map(|fault| mend(piece, fault));
+        let mut mends = mends.collect::<Option<Vec<_>>>()?;
+        mends.sort_by_key(|(at, _)| at.start);
         let are_apart = mends.is_sorted_by(|(one, _), (next, _)| one.end <= next.start);
         (are_apart.then(|| rewritten(piece, base, &mends))?, false)
     };

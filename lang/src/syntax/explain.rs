@@ -10,7 +10,7 @@ use super::foreign::body_of_steps;
 use super::habits::habit;
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
-use super::make::{RESERVED, STATEMENTS};
+use super::make::{OF_A_NUMBER, RESERVED, STATEMENTS};
 use super::number;
 use super::peers::{BEGINS, is_pbrt};
 
@@ -25,8 +25,6 @@ pub(super) struct Explained {
     pub(super) resume: Option<usize>,
 }
 
-/// Functions of one number.
-const OF_A_NUMBER: [&str; 8] = ["abs", "ceil", "cos", "floor", "scale", "sin", "sqrt", "tan"];
 /// What is said of `==` where a value is given.
 pub(crate) const COMPARES: &str = "`==` compares; a value is given with `=`";
 /// What is said of an `else` that nothing stands before.
@@ -283,6 +281,10 @@ impl<'a> Around<'a> {
         let may_call = before.kind == TokenKind::Word && (calls || current.kind != TokenKind::Word);
         let grade = if may_call { Grade::Guess } else { Grade::Sure };
         let message = format!("a comma is missing before `{}`", short(current.text));
+        if before.kind == TokenKind::Word && before.text == current.text {
+            let found = self.error("E0014", current, format!("{message}, or it stands here twice"));
+            return Some(found.guess(gap.to(self.span(current)), ""));
+        }
         Some(self.error("E0014", current, message).mend(gap, ",", grade))
     }
 

@@ -6,6 +6,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 
 use super::closing::indent;
 use super::lex::{TokenKind, tokens};
+use super::make::OF_A_NUMBER;
 use crate::prescan::Fault;
 
 /// Brackets that a message shows.
@@ -27,6 +28,9 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
     };
     match fault {
         Fault::Stray { at } => Some((*at..at + 1, "")),
+        Fault::Mismatch { open, at, left: 0 } if is_call(text, *open..*at) => {
+            Some((*open..open + 1, "("))
+        }
         Fault::Mismatch { open, at, left: 0 } => Some((*at..at + 1, closing(*open))),
         Fault::Mismatch { open, at, left: 1 } => {
             let end = before_field(text, *open..*at).unwrap_or(*at);
@@ -35,6 +39,34 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
         }
         _ => None,
     }
+}
+
+/// Whether what a `[` behind a word begins, and a `)` ends, is given to a function: no index is more than one
+/// number, or a list.
+fn is_call(text: &str, inside: Range<usize>) -> bool {
+    let before = &text[..inside.start];
+    let name = before.trim_end_matches(|c: char| c.is_alphanumeric() || c == '_');
+    let name = &before[name.len()..];
+    if !text[inside.start..].starts_with('[')
+        || !text[inside.end..].starts_with(')')
+        || name.is_empty()
+    {
+        return false;
+    }
+    let mut depth = 0_usize;
+    let mut inner = tokens(text, inside.start + 1..inside.end).peekable();
+    let first = inner.peek().map_or("", |first| first.text);
+    // In brackets of its own, one with a comma is a vector.
+    let most = usize::from(first == "(");
+    let has_more = inner.any(|token| {
+        match token.text {
+            "(" | "[" | "{" => depth += 1,
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth <= most && token.text == ","
+    });
+    has_more || first == "[" || OF_A_NUMBER.contains(&name)
 }
 
 /// Where in brackets a comma stands before the first field that follows something else: it is no argument's name.

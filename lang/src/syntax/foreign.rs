@@ -83,6 +83,10 @@ fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
     if !in_head || name.first_on_line || !type_names::names().any(|known| known == ty.text) {
         return None;
     }
+    // `x: length length`
+    if name.text == ty.text && around.word(around.at + 1) != ":" {
+        return None;
+    }
     // `x: length y: length`
     if around.before(2).is_some_and(|sign| sign.text == ":") {
         let gap = Span::new(around.source, ty.end(), ty.end());

@@ -375,6 +375,15 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
             Some(found.fix(around.span(kind), word))
         }
         (TokenKind::Word, TokenKind::Word) => {
+            // `shape sphere sphere { … }` and `shape shape sphere { … }`
+            for (one, again) in [(&around.tokens[start], kind), (kind, label)] {
+                if one.text == again.text {
+                    let found =
+                        told(around.span(again), format!("`{}` is written twice", one.text));
+                    let gap = Span::new(around.source, one.end(), again.end());
+                    return Some(found.fix(gap, ""));
+                }
+            }
             let both = around.span(kind).to(around.span(label));
             let found = told(both, "an object has one kind, and its label is a text");
             let (kind, label) = (kind.text, label.text);

@@ -16,6 +16,10 @@ pub(crate) const RESERVED: [&str; 19] = [
 /// Those that begin a statement.
 pub(super) const STATEMENTS: &[&str] = RESERVED.split_at(13).0;
 
+/// Functions of one number.
+pub(super) const OF_A_NUMBER: [&str; 8] =
+    ["abs", "ceil", "cos", "floor", "scale", "sin", "sqrt", "tan"];
+
 /// A doc comment, its slashes included.
 pub(super) fn doc(text: &str, span: Span) -> Doc {
     let text = text.trim_start_matches('/').trim_end();

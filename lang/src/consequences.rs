@@ -9,26 +9,31 @@ use luxel_core::diag::{Diagnostic, Span};
 pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>) {
     let is_cause = |found: &&Diagnostic| found.is_error() && found.code.starts_with("E00");
     let causes = diagnostics.iter().filter(is_cause);
-    let places = |found: &Diagnostic| {
+    let of = |found: &Diagnostic| {
         let mended = found.fixes.iter().map(|fix| fix.span);
         found.span().into_iter().chain(mended).collect::<Vec<Span>>()
     };
-    let mut causes: Vec<Span> = causes.flat_map(places).collect();
+    let mut causes: Vec<Span> = causes.flat_map(of).collect();
     causes.sort_unstable();
-    // Of a word without quotes it is said what it may be, which says more than that it is no name.
-    let words: BTreeSet<Span> = diagnostics
-        .iter()
-        .filter(|found| found.code == "E0416")
-        .filter_map(Diagnostic::span)
-        .collect();
+    // Of a word without quotes it is said what it may be, which says more than that it is no name; and of a
+    // brace that it is one too many, which says more than that it is not expected.
+    let (words, braces) = (places(diagnostics, "E0416"), places(diagnostics, "E0008"));
     diagnostics.retain(|found| {
-        if found.code == "E0101" && found.span().is_some_and(|span| words.contains(&span)) {
+        let has_cause =
+            |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
+        if found.code == "E0101" && has_cause(&words) || found.code == "E0023" && has_cause(&braces)
+        {
             return false;
         }
         let is_of_value = found.code.starts_with("E02") || found.code.starts_with("E04");
         let span = found.span().filter(|_| is_of_value && found.is_error());
         !span.is_some_and(|span| holds_one(span, &causes))
     });
+}
+
+/// Where something is told with a code.
+fn places(diagnostics: &[Diagnostic], code: &str) -> BTreeSet<Span> {
+    diagnostics.iter().filter(|found| found.code == code).filter_map(Diagnostic::span).collect()
 }
 
 /// Whether one of some places, which are in order, lies in a larger one.

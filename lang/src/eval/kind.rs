@@ -24,35 +24,7 @@ impl Evaluator<'_> {
     ) -> Result<Head, Option<Head>> {
         let category = &object.category;
         let Some(kind) = Kind::of_word(&category.text) else {
-            let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
-            let meant = near(&category.text, words().chain(["units"]));
-            let is_other = meant.is_some_and(|meant| !is_slip(meant.name));
-            self.unseen.thing |= !is_other;
-            let message = format!("there is no kind of object `{}`", category.text);
-            let found =
-                Diagnostic::error("E0401", category.span, message).meant(category.span, meant);
-            let kinds = Kind::ALL.iter().filter(|(kind, _)| {
-                let name = category.text.to_lowercase();
-                let is_one = object.kind.is_none() || object.label.is_none();
-                self.registry.class(*kind, &name).is_some() && is_one
-            });
-            let start = Span { end: category.span.start, ..category.span };
-            let found = kinds.fold(found, |found, (kind, word)| {
-                let name = category.text.to_lowercase();
-                let param = within.and_then(|class| takers(class, *kind).next());
-                let given = param.map_or(String::new(), |param| format!("{} = ", param.name));
-                // `sphere ball { … }`
-                if let Some(label) = &object.kind {
-                    let all = category.span.to(label.span);
-                    return found.guess(all, format!("{given}{word} {name} \"{}\"", label.text));
-                }
-                if name == *category.text {
-                    return found.guess(start, format!("{given}{word} "));
-                }
-                found.guess(category.span, format!("{given}{word} {name}"))
-            });
-            let known: Vec<_> = words().collect();
-            self.tell(found.help(format!("known are {}", known.join(", "))));
+            self.no_category(object, within);
             return Err(None);
         };
         let names = || self.registry.of_kind(kind).map(|e| e.class.name).collect::<Vec<_>>();
@@ -86,6 +58,39 @@ impl Evaluator<'_> {
         let sure = near.filter(|near| near.grade == Grade::Sure);
         let named = |near: Near<'_>| Name { text: near.name.into(), ..head.class.clone() };
         Err(sure.map(|near| Head { class: named(near), ..head.clone() }))
+    }
+
+    /// Tells of a word that is no kind of object, and what may be meant by it.
+    fn no_category(&mut self, object: &Object, within: Option<&Class>) {
+        let category = &object.category;
+        let words = || Kind::ALL.iter().map(|(_, word)| *word).chain(["group"]);
+        let meant = near(&category.text, words().chain(["units"]));
+        let is_other = meant.is_some_and(|meant| !is_slip(meant.name));
+        self.unseen.thing |= !is_other;
+        let message = format!("there is no kind of object `{}`", category.text);
+        let found = Diagnostic::error("E0401", category.span, message).meant(category.span, meant);
+        let kinds = Kind::ALL.iter().filter(|(kind, _)| {
+            let name = category.text.to_lowercase();
+            let is_one = object.kind.is_none() || object.label.is_none();
+            self.registry.class(*kind, &name).is_some() && is_one
+        });
+        let start = Span { end: category.span.start, ..category.span };
+        let found = kinds.fold(found, |found, (kind, word)| {
+            let name = category.text.to_lowercase();
+            let param = within.and_then(|class| takers(class, *kind).next());
+            let given = param.map_or(String::new(), |param| format!("{} = ", param.name));
+            // `sphere ball { … }`
+            if let Some(label) = &object.kind {
+                let all = category.span.to(label.span);
+                return found.guess(all, format!("{given}{word} {name} \"{}\"", label.text));
+            }
+            if name == *category.text {
+                return found.guess(start, format!("{given}{word} "));
+            }
+            found.guess(category.span, format!("{given}{word} {name}"))
+        });
+        let known: Vec<_> = words().collect();
+        self.tell(found.help(format!("known are {}", known.join(", "))));
     }
 
     /// Tells of a class that nobody has, and which libraries that are not loaded may have it; gives the one

@@ -10,7 +10,7 @@ use pest::iterators::Pair;
 use super::Rule;
 use super::edits::Edits;
 use super::gaps::Gaps;
-use super::make::{self, RESERVED};
+use super::make::{self, BEFORE_NAMES, RESERVED};
 use super::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
     Quoted, Stmt, StmtNode,
@@ -102,6 +102,14 @@ impl Builder<'_> {
     /// A name that is being defined.
     pub(super) fn definition(&mut self, pair: &Pair<'_, Rule>) -> Name {
         let name = self.name(pair);
+        let (text, span) = (pair.get_input(), pair.as_span());
+        let is_given = || text[span.end()..].trim_start().starts_with('=');
+        // In `let let = 3` the second is the name.
+        let follows = |word: &&str| text[..span.start()].trim_end().ends_with(word);
+        if BEFORE_NAMES.contains(&&*name.text) && is_given() && !BEFORE_NAMES.iter().any(follows) {
+            self.sink.push(make::nameless(&name.text, name.span));
+            return name;
+        }
         self.is_free(&name);
         name
     }

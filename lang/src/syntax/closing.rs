@@ -65,14 +65,15 @@ pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing>
 pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
     let faults = scan(piece, 0..piece.len(), 0, limit).faults;
     let is_open = |fault: &Fault| matches!(fault, Fault::Unclosed { .. });
-    let (mended, is_sure) = if faults.iter().all(is_open) {
-        (closed_by(piece, [0, base], &braces(piece, 0, limit)?), true)
-    } else {
-        let mends = faults.iter().map(|fault| mend(piece, fault));
-        let mut mends = mends.collect::<Option<Vec<_>>>()?;
+    let mends = faults.iter().map(|fault| mend(piece, fault)).collect::<Option<Vec<_>>>();
+    let (mended, is_sure) = if let Some(mut mends) = mends.filter(|some| !some.is_empty()) {
         mends.sort_by_key(|(at, _)| at.start);
         let are_apart = mends.is_sorted_by(|(one, _), (next, _)| one.end <= next.start);
         (are_apart.then(|| rewritten(piece, base, &mends))?, false)
+    } else if faults.iter().all(is_open) {
+        (closed_by(piece, [0, base], &braces(piece, 0, limit)?), true)
+    } else {
+        return None;
     };
     // Where a bracket closes nothing, that which opens may be what is missing.
     (is_one(&mended.text, limit) && (is_sure || fault(&mended.text).is_none())).then_some(mended)

@@ -28,6 +28,7 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
     };
     match fault {
         Fault::Stray { at } => Some((*at..at + 1, "")),
+        Fault::Unclosed { open } => doubled(text, *open).map(|again| (again..again + 1, "")),
         Fault::Mismatch { open, at, left: 0 } if is_call(text, *open..*at) => {
             Some((*open..open + 1, "("))
         }
@@ -39,6 +40,15 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
         }
         _ => None,
     }
+}
+
+/// The second of two braces of which one never closes: nothing that may stand in braces begins with one.
+fn doubled(text: &str, open: usize) -> Option<usize> {
+    let blanks = |text: &str| text.len() - text.trim_start_matches([' ', '\t']).len();
+    let rest = text[open..].strip_prefix('{')?;
+    let next = open + 1 + blanks(rest);
+    let before = text[..open].trim_end_matches([' ', '\t']);
+    if text[next..].starts_with('{') { Some(next) } else { before.ends_with('{').then_some(open) }
 }
 
 /// Whether what a `[` behind a word begins, and a `)` ends, is given to a function: no index is more than one
@@ -88,6 +98,31 @@ fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
     })
 }
 
+/// What is told of a bracket that never closes.
+fn unclosed(text: &str, source: SourceId, open: usize, closes: &[(usize, usize)]) -> Diagnostic {
+    let span = |range: Range<usize>| Span::new(source, range.start, range.end);
+    if let Some(again) = doubled(text, open) {
+        let place = span(again..again + 1);
+        return Diagnostic::error("E0008", place, "`{` is written twice").guess(place, "");
+    }
+    let bracket = &text[open..=open];
+    let message = format!("this `{bracket}` is never closed");
+    let found = Diagnostic::error("E0008", span(open..open + 1), message);
+    let Some(at) = closes.iter().find_map(|(one, at)| (*one == open).then_some(*at)) else {
+        return found;
+    };
+    let found = found.label(span(at..at), "it most likely closes before this");
+    if bracket != "{" {
+        return found;
+    }
+    let all = || closes.iter().filter(|(_, other)| *other == at).map(|(one, _)| *one);
+    let others = all().filter(|one| *one != open);
+    let found = others.fold(found, |found, one| found.label(span(one..one + 1), "nor is this"));
+    let end = if text[..at].ends_with('\n') { "" } else { "\n" };
+    let braces = all().map(|one| format!("{}}}\n", indent_of(text, one)));
+    found.guess(span(at..at), format!("{end}{}", braces.collect::<String>()))
+}
+
 /// What is told of a bracket, text or comment that does not close; `limit` is how deep brackets may
 /// nest, and blocks that never close most likely do before the bytes of `closes`.
 pub(super) fn told(
@@ -105,24 +140,7 @@ pub(super) fn told(
             Diagnostic::error("E0011", span(*at..at + 1), message)
                 .help("give an inner part a name with `let`")
         }
-        Fault::Unclosed { open } => {
-            let message = format!("this `{}` is never closed", byte(*open));
-            let found = Diagnostic::error("E0008", span(*open..open + 1), message);
-            let Some(at) = closes.iter().find_map(|(one, at)| (one == open).then_some(*at)) else {
-                return found;
-            };
-            let found = found.label(span(at..at), "it most likely closes before this");
-            if byte(*open) != '{' {
-                return found;
-            }
-            let all = || closes.iter().filter(|(_, other)| *other == at).map(|(one, _)| *one);
-            let others = all().filter(|one| one != open);
-            let found =
-                others.fold(found, |found, one| found.label(span(one..one + 1), "nor is this"));
-            let end = if text[..at].ends_with('\n') { "" } else { "\n" };
-            let braces = all().map(|one| format!("{}}}\n", indent_of(text, one)));
-            found.guess(span(at..at), format!("{end}{}", braces.collect::<String>()))
-        }
+        Fault::Unclosed { open } => unclosed(text, source, *open, closes),
         Fault::Mismatch { open, at, .. } => {
             let message = format!("`{}` is closed by `{}`", byte(*open), byte(*at));
             let found = Diagnostic::error("E0009", span(*at..at + 1), message)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luxel_core::diag::Span;
+use luxel_core::diag::{Diagnostic, Span};
 use luxel_sdk::params::Unit;
 
 use super::tree::{Doc, Expr, ExprNode, Form, ListTy, Name, Ty};
@@ -16,9 +16,17 @@ pub(crate) const RESERVED: [&str; 19] = [
 /// Those that begin a statement.
 pub(super) const STATEMENTS: &[&str] = RESERVED.split_at(13).0;
 
+/// Words that a name follows.
+pub(super) const BEFORE_NAMES: [&str; 2] = ["let", "param"];
+
 /// Functions of one number.
 pub(super) const OF_A_NUMBER: [&str; 8] =
     ["abs", "ceil", "cos", "floor", "scale", "sin", "sqrt", "tan"];
+
+/// What is said where none follows one.
+pub(super) fn nameless(word: &str, at: Span) -> Diagnostic {
+    Diagnostic::error("E0019", at, format!("a name is missing after `{word}`"))
+}
 
 /// A doc comment, its slashes included.
 pub(super) fn doc(text: &str, span: Span) -> Doc {

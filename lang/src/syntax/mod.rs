@@ -9,6 +9,7 @@ pub(crate) mod check;
 mod closing;
 mod cut;
 mod defined;
+mod digits;
 mod direct;
 mod edits;
 mod explain;

@@ -16,13 +16,20 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>) {
     let mut causes: Vec<Span> = causes.flat_map(of).collect();
     causes.sort_unstable();
     // Of a word without quotes it is said what it may be, which says more than that it is no name; and of a
-    // brace that it is one too many, which says more than that it is not expected.
+    // brace that it is one too many, which says more than that it is not expected. A name that is defined
+    // later is no word.
     let (words, braces) = (places(diagnostics, "E0416"), places(diagnostics, "E0008"));
+    let early = places(diagnostics, "E0102");
     diagnostics.retain(|found| {
         let has_cause =
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
-        if found.code == "E0101" && has_cause(&words) || found.code == "E0023" && has_cause(&braces)
-        {
+        let says_less = match found.code {
+            "E0101" => has_cause(&words),
+            "E0023" => has_cause(&braces),
+            "E0416" => has_cause(&early),
+            _ => false,
+        };
+        if says_less {
             return false;
         }
         let is_of_value = found.code.starts_with("E02") || found.code.starts_with("E04");

@@ -16,7 +16,7 @@ use luxel_sdk::sampling::Rng;
 use edited::{CAMERA, Edited, OTHER, is_good, text_of};
 
 /// Statements that depend on others, emit, share, declare, read other files, or are wrong.
-const LINES: [&str; 71] = [
+const LINES: [&str; 74] = [
     "let r = 5 cm",
     "let r = 25 cm",
     "let grey = material diffuse { reflectance = 0.5 }",
@@ -88,6 +88,9 @@ const LINES: [&str; 71] = [
     "let near = 3",
     "let near = 4 mm",
     "let near = 0",
+    "let shiny = material conductor { eta = metal(\"Au\"), distribution = ggx }",
+    "let shiny = material conductor { eta = metal(\"Au\"), distribution = word }",
+    "let word = \"beckmann\"",
 ];
 
 /// Half-written things, and what ends statements.

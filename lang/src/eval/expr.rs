@@ -98,9 +98,6 @@ impl Evaluator<'_> {
         let value = self.eval(&field.value, env);
         self.note(&field.name, &value);
         let span = field.value.span;
-        if let Value::Text(text) = &value {
-            self.quotes.text(text, span, env);
-        }
         FieldValue { name: field.name.clone(), value, span, file: env.file.clone() }
     }
 
@@ -128,7 +125,7 @@ impl Evaluator<'_> {
         let words: Vec<&str> = path.iter().map(|name| &*name.text).collect();
         // A name that is nowhere was told when names were resolved.
         builtins::value(&words.join(".")).unwrap_or_else(|| {
-            self.quotes.unknown(first.span);
+            self.unknown.insert(first.span);
             Value::Poison
         })
     }

@@ -11,6 +11,7 @@ use luxel_sdk::params::{Dimension, Param, Type};
 use super::Evaluator;
 use super::env::File;
 use super::ops::with_zeros;
+use super::quotes::perhaps_name;
 use super::value::{FieldValue, Value, What};
 use crate::syntax::Form;
 
@@ -26,7 +27,7 @@ impl Evaluator<'_> {
             Ok(value) => Some(value),
             Err(misfit) => {
                 let mut found = self.misfit(&misfit, field.span);
-                found = self.perhaps_name(found, &misfit, field);
+                found = perhaps_name(found, param, field);
                 if is_heat {
                     let body = format!("blackbody({})", self.written(field.span));
                     found = found.help("light of a temperature is that of a black body");

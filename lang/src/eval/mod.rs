@@ -41,7 +41,7 @@ pub(crate) mod types;
 mod value;
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -59,7 +59,6 @@ pub(crate) use self::resolve::resolve;
 use self::builtins::SpectrumFile;
 use self::emit::Labels;
 use self::include::ReadFile;
-use self::quotes::Quotes;
 use self::unseen::Unseen;
 use self::value::{Held, Module, Value};
 use crate::budgets::Budgets;
@@ -144,7 +143,8 @@ struct Evaluator<'a> {
     /// Some statement could not be read: what is missing may stand there.
     damaged: bool,
     unseen: Unseen,
-    quotes: Quotes,
+    /// Names that stand for nothing, of which that is told.
+    unknown: BTreeSet<Span>,
     /// Objects that are right by themselves and stand nowhere: their place or their material is not known.
     orphans: Vec<NodeId>,
     /// Plugins that the scene asks for and that are not there.
@@ -212,7 +212,7 @@ impl<'a> Evaluator<'a> {
             slots: vec![],
             has_asset: false,
             damaged: false,
-            quotes: Quotes::default(),
+            unknown: BTreeSet::new(),
             unseen: Unseen::default(),
             orphans: vec![],
             n_unmet: 0,

@@ -124,11 +124,11 @@ pub(crate) struct HandedOn(Vec<(Place, Shown)>);
 #[derive(Clone, Debug)]
 pub(crate) enum Shown {
     Text(Arc<str>),
-    Later(Arc<Unsaid>),
+    Later(Unsaid),
 }
 
 /// Numbers of a dimension, in SI units.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Unsaid {
     pub(crate) numbers: ArrayVec<f64, 4>,
     pub(crate) measure: Dimension,
@@ -146,7 +146,13 @@ impl HandedOn {
     }
 
     /// With newer ones.
-    fn with(&self, newer: Vec<(Place, Shown)>) -> Self {
+    fn with(&self, mut newer: Vec<(Place, Shown)>) -> Self {
+        newer.sort_by_key(|(place, _)| *place);
+        // Where the same is handed on again, nothing older is left.
+        let is_of = |((one, _), (other, _)): (&(Place, Shown), &(Place, Shown))| one == other;
+        if self.0.len() == newer.len() && self.0.iter().zip(&newer).all(is_of) {
+            return Self(newer);
+        }
         let mut all: Vec<_> = self.0.iter().cloned().chain(newer).collect();
         // Finds that there are two runs, and keeps the newer of two behind the older.
         all.sort_by_key(|(place, _)| *place);

@@ -124,7 +124,7 @@ impl Evaluator<'_> {
 /// How a number is shown, in SI units, once it is looked at.
 pub(super) fn number_later(x: f64, measure: Dimension) -> Shown {
     let say = |numbers: &[f64], measure| as_shown(&Value::Number(numbers[0], measure));
-    Shown::Later(Arc::new(Unsaid { numbers: ArrayVec::from_iter([x]), measure, say }))
+    Shown::Later(Unsaid { numbers: ArrayVec::from_iter([x]), measure, say })
 }
 
 /// Of an object or a function, the text says more.

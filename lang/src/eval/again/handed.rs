@@ -3,7 +3,6 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::Arc;
 
 use luxel_core::diag::{SourceId, Span};
 use luxel_core::registry::Registry;
@@ -299,7 +298,6 @@ impl Fitted {
             *numbers.get_mut(usize::from(place.item?))? = x;
             measured = Some(measure);
         }
-        let vector = Unsaid { numbers, measure: measured?, say: shown_vector };
-        Some(Shown::Later(Arc::new(vector)))
+        Some(Shown::Later(Unsaid { numbers, measure: measured?, say: shown_vector }))
     }
 }

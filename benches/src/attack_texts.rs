@@ -116,9 +116,13 @@ fn copied() -> Vec<Attack> {
 }
 
 /// What is spent in reading one text: each text is made when it is its turn, as it is large.
-const READ: [fn() -> Attack; 19] = [
+const READ: [fn() -> Attack; 23] = [
     || attack("open braces", "{".repeat(MUCH)),
     || attack("closing braces", "}".repeat(MUCH)),
+    || attack("lines of braces", "{\n".repeat(MUCH / 2)),
+    || attack("lines in braces", " {\n".repeat(255) + &"    x\n".repeat(MUCH / 6 - 255)),
+    || attack("calls in a brace", format!("group {{{}", "()".repeat(MUCH / 2 - 8))),
+    || attack("braces behind braces", "{ \n }".repeat(MUCH / 5 - 20) + &"{".repeat(100)),
     || attack("wrong brackets", "[)".repeat(MUCH / 2)),
     || attack("open comment", format!("/*{}", "x ".repeat(MUCH / 2))),
     || attack("open text", format!("let a = \"{}", "x".repeat(MUCH))),

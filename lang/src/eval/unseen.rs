@@ -4,6 +4,7 @@
 //! other mistakes only where none of them can have hidden one.
 
 use std::collections::HashSet;
+use std::ops::RangeInclusive;
 
 use luxel_core::diag::near;
 use memchr::memmem;
@@ -12,6 +13,9 @@ use super::Evaluator;
 
 /// Words that something stands by that may be the camera of the scene, or bring it.
 const WORDS: [&str; 2] = ["camera", "asset"];
+
+/// Bytes of a word that may be a misspelt one of these.
+const SLIPS: RangeInclusive<usize> = 3..=20;
 
 /// Begins of the codes of mistakes that say that nothing stands there yet, that it is written in another
 /// language or version, or that a budget is spent before the end.
@@ -45,7 +49,8 @@ impl Evaluator<'_> {
         }
         let mut seen = HashSet::new();
         let is_other = |c: char| !c.is_alphanumeric() && c != '_';
-        let mut words = self.sources.texts().flat_map(|text| text.split(is_other));
+        let words = self.sources.texts().flat_map(|text| text.split(is_other));
+        let mut words = words.filter(|word| SLIPS.contains(&word.len()));
         self.sink.tells("E00") && words.any(|word| seen.insert(word) && is_slip(word))
     }
 }

@@ -8,6 +8,9 @@ use super::lex::{TokenKind, tokens};
 use super::recover::fault;
 use crate::prescan::{Fault, is_one, scan, scan_until};
 
+/// Bytes of a statement that are looked at for where its braces most likely close.
+const MOST: usize = 1 << 24;
+
 /// How a statement most likely ends in which braces never close.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Closing {
@@ -80,15 +83,20 @@ pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
 }
 
 /// Which braces close before which byte; `None` if none does so, a block is open at the end whose lines do not
-/// tell, or so many brackets are open.
+/// tell, so many brackets are open, or it is as long as that.
 fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>> {
     let line = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
-    let mut indent = indent(&text[line(start)..]);
+    let mut current = line(start);
+    let mut indent = indent(&text[current..]);
     let (mut open, mut braces): (Vec<Open<'_>>, _) = (vec![], vec![]);
     for token in tokens(text, start..text.len()) {
+        if token.start - start > MOST {
+            return None;
+        }
         let is = |marks: &str| token.kind == TokenKind::Mark && marks.contains(token.text);
         let begun = Some(token).filter(|token| token.first_on_line).map(|it| line(it.start));
         let blank = |begun: &usize| text[*begun..token.start].trim().is_empty();
+        current = begun.unwrap_or(current);
         if let Some(begun) = begun.filter(blank) {
             indent = token.start - begun;
             let is_field = is_field(&text[token.start..]);
@@ -122,8 +130,7 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
             let opens = |open: &Open<'_>| {
                 matches!((open.bracket, token.text), ("(", ")") | ("[", "]") | ("{", "}"))
             };
-            let begun = line(token.start);
-            let stands = |open: &[Open<'_>]| open.last().is_some_and(|last| last.at >= begun);
+            let stands = |open: &[Open<'_>]| open.last().is_some_and(|last| last.at >= current);
             let end = open.iter().rposition(opens);
             let end = end.unwrap_or_else(|| open.len() - usize::from(stands(&open)));
             open.truncate(end);

@@ -21,6 +21,9 @@ pub(crate) fn resume_limit(bytes: usize) -> usize {
     (RESUMED_BYTES / bytes.max(1)).clamp(RESUMED, MOST_RESUMED)
 }
 
+/// Bytes behind the last bracket that never closes in which its end is looked for, where nothing else tells.
+const LOOKED_AT: usize = 1 << 22;
+
 /// The bytes of one statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
@@ -174,23 +177,67 @@ fn ending(text: &str, from: usize, starts: &[usize], unclosed: &[usize], limit: 
     if let Some(found) = first.and_then(|open| closing(text, begins(open), limit)) {
         return found;
     }
-    let likely = unclosed.iter().find_map(|open| Some((*open, likely_end(text, *open)?)));
+    let likely = likely_end(text, unclosed);
     Closing { braces: likely.into_iter().collect(), end: likely.map(|(_, end)| end) }
 }
 
-/// Where a block that never closes may end, where nothing else tells: before the first line that is
-/// indented no more than the line of its brace.
-fn likely_end(text: &str, open: usize) -> Option<usize> {
-    let line_start = text[..open].rfind('\n').map_or(0, |at| at + 1);
-    let limit = indent(&text[line_start..open]);
-    let mut at = open + text[open..].find('\n')? + 1;
+/// A block that never closes, how far the line of its brace is indented, and where it may end.
+struct Block {
+    open: usize,
+    indent: usize,
+    end: Option<usize>,
+}
+
+/// The first of blocks that never close that may end, where nothing else tells, and where: before the first
+/// line that is indented no more than the line of its brace.
+fn likely_end(text: &str, unclosed: &[usize]) -> Option<(usize, usize)> {
+    let mut blocks = blocks(text, unclosed);
+    let (first, last) = (blocks.first()?.open, blocks.last()?.open);
+    let mut at = first + text[first..].find('\n')? + 1;
+    let (mut n_passed, mut most) = (0, None);
     for line in text[at..].split_inclusive('\n') {
-        let first = line.trim_start().chars().next();
-        let begins = first.is_some_and(|c| c.is_ascii_alphabetic() || matches!(c, '@' | '/'));
-        if begins && indent(line) <= limit && !is_field(line.trim_start()) {
-            return Some(at);
+        if at > last + LOOKED_AT || blocks[0].end.is_some() {
+            break;
+        }
+        let passed = blocks[n_passed..].iter().take_while(|block| block.open < at).count();
+        n_passed += passed;
+        if passed > 0 {
+            most = deepest(&blocks[..n_passed]);
+        }
+        let indent = indent(line);
+        if most.is_some_and(|most| indent <= most) && begins_statement(line) {
+            let ends = |block: &&mut Block| block.end.is_none() && indent <= block.indent;
+            blocks[..n_passed].iter_mut().filter(ends).for_each(|block| block.end = Some(at));
+            most = deepest(&blocks[..n_passed]);
         }
         at += line.len();
     }
-    None
+    blocks.iter().find_map(|block| Some((block.open, block.end?)))
+}
+
+/// Blocks by their braces, in order.
+fn blocks(text: &str, unclosed: &[usize]) -> Vec<Block> {
+    let mut opens = unclosed.to_vec();
+    opens.sort_unstable();
+    let (mut looked_at, mut line) = (0, 0);
+    let block = |open: usize| {
+        line = text[looked_at..open].rfind('\n').map_or(line, |at| looked_at + at + 1);
+        looked_at = open;
+        Block { open, indent: indent(&text[line..open]), end: None }
+    };
+    opens.into_iter().map(block).collect()
+}
+
+/// How far the one is indented that is so furthest, of those that have no end yet.
+fn deepest(blocks: &[Block]) -> Option<usize> {
+    let left = blocks.iter().filter(|block| block.end.is_none());
+    left.map(|block| block.indent).max()
+}
+
+/// Whether a line begins what may be a statement of a file.
+fn begins_statement(line: &str) -> bool {
+    let line = line.trim_start();
+    let first = line.chars().next();
+    let begins = first.is_some_and(|c| c.is_ascii_alphabetic() || matches!(c, '@' | '/'));
+    begins && !is_field(line)
 }

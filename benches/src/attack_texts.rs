@@ -116,7 +116,7 @@ fn copied() -> Vec<Attack> {
 }
 
 /// What is spent in reading one text: each text is made when it is its turn, as it is large.
-const READ: [fn() -> Attack; 23] = [
+const READ: [fn() -> Attack; 25] = [
     || attack("open braces", "{".repeat(MUCH)),
     || attack("closing braces", "}".repeat(MUCH)),
     || attack("lines of braces", "{\n".repeat(MUCH / 2)),
@@ -124,6 +124,8 @@ const READ: [fn() -> Attack; 23] = [
     || attack("calls in a brace", format!("group {{{}", "()".repeat(MUCH / 2 - 8))),
     || attack("braces behind braces", "{ \n }".repeat(MUCH / 5 - 20) + &"{".repeat(100)),
     || attack("wrong brackets", "[)".repeat(MUCH / 2)),
+    || attack("short statements", "a\n".repeat(MUCH / 2)),
+    || attack("short definitions", "let = 3\n".repeat(MUCH / 8)),
     || attack("open comment", format!("/*{}", "x ".repeat(MUCH / 2))),
     || attack("open text", format!("let a = \"{}", "x".repeat(MUCH))),
     || attack("open texts", "let a = \"\n".repeat(5_000_000)),

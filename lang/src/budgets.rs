@@ -30,6 +30,8 @@ pub struct Budgets {
     pub string: usize,
     /// Names that one block defines.
     pub names: usize,
+    /// Statements of one file, those in blocks left out.
+    pub statements: usize,
     /// Words, marks, texts and lines of doc comments of one statement, numbers left out.
     pub pieces: usize,
     /// Bytes that large lists, comprehensions and records hold, all that were made counted, and the objects
@@ -56,6 +58,7 @@ impl Default for Budgets {
             instances: MOST_INSTANCES as u64,
             string: 1 << 20,
             names: 500_000,
+            statements: 2_000_000,
             pieces: 300_000,
             value_bytes: 96 << 20,
             nesting: 640,
@@ -74,7 +77,7 @@ enum Place<'a> {
 
 impl Budgets {
     /// Their names, by which each may be changed.
-    pub const NAMES: [&'static str; 16] = [
+    pub const NAMES: [&'static str; 17] = [
         "nodes",
         "instances",
         "steps",
@@ -82,6 +85,7 @@ impl Budgets {
         "list",
         "names",
         "string",
+        "statements",
         "pieces",
         "file_bytes",
         "total_bytes",
@@ -136,6 +140,7 @@ impl Budgets {
             "instances" => Place::Steps(&mut self.instances),
             "string" => Place::Bytes(&mut self.string),
             "names" => Place::Bytes(&mut self.names),
+            "statements" => Place::Bytes(&mut self.statements),
             "pieces" => Place::Bytes(&mut self.pieces),
             "value_bytes" => Place::Bytes(&mut self.value_bytes),
             "nesting" => Place::Stack(&mut self.nesting),

@@ -1,4 +1,4 @@
-//! Mistakes that are told of what was not written to its end: their cause is told already.
+//! Mistakes of which the cause is told already, or of which another says more.
 
 use std::collections::BTreeSet;
 

@@ -97,6 +97,7 @@ pub const CATALOGUE: &[(&str, &str)] = &[
     ("E0509", "a string or word that is too long"),
     ("E0510", "a statement that is too long"),
     ("E0511", "a block that defines too many names"),
+    ("E0512", "a file of too many statements"),
     ("E0601", "an assertion that does not hold"),
     ("E0602", "an expectation that cannot be understood"),
     ("E0603", "an expectation of pixels outside the picture"),

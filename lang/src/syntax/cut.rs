@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::Diagnostic;
+use luxel_core::diag::{Diagnostic, SourceId, Span};
 
 use super::closing::{Closing, closing, indent, is_field};
 use super::strays::{Mend, Slip, join, looked_at_again};
@@ -79,12 +79,22 @@ pub(super) struct Regions<'a> {
     left: usize,
     /// Bytes that may still be looked at for braces that close nothing.
     again: usize,
+    /// How many statements may still begin, and where one did beyond that.
+    statements: usize,
+    beyond: Option<usize>,
 }
 
 impl<'a> Regions<'a> {
     pub(super) fn new(text: &'a str, from: usize, budgets: &Budgets) -> Self {
-        let (limit, again) = (budgets.brackets, looked_at_again(text));
-        Self { text, limit, next: Some(from), left: resume_limit(text.len()), again }
+        Self {
+            text,
+            limit: budgets.brackets,
+            next: Some(from),
+            left: resume_limit(text.len()),
+            again: looked_at_again(text),
+            statements: budgets.statements,
+            beyond: None,
+        }
     }
 
     /// The next, which ends at the first start that `is_known`, and where it begins.
@@ -99,11 +109,30 @@ impl<'a> Regions<'a> {
         Some((from, found))
     }
 
-    /// The same up to where it is over, with statements joined that one mistake parts.
+    /// The same up to where it is over, or as many statements as may be have begun, with statements joined
+    /// that one mistake parts.
     pub(super) fn joined(&mut self, is_over: &dyn Fn() -> bool) -> Option<(usize, Region)> {
-        let (from, mut found) = self.cut(&mut |_| is_over())?;
+        let (mut left, mut beyond) = (self.statements, None);
+        let (from, mut found) = self.cut(&mut |at| {
+            beyond = Some(at).filter(|_| left == 0);
+            left = left.saturating_sub(1);
+            beyond.is_some() || is_over()
+        })?;
+        (self.statements, self.beyond) = (left, beyond);
+        self.next = self.next.filter(|_| beyond.is_none());
         join(self.text, &mut found, self.limit, &mut self.again);
         Some((from, found))
+    }
+}
+
+impl Regions<'_> {
+    /// What is told of a statement beyond as many as may be.
+    pub(super) fn too_many(&self, source: SourceId, budgets: &Budgets) -> Option<Diagnostic> {
+        let at = self.beyond?;
+        let message = format!("more than {} statements in a file", budgets.statements);
+        let found = Diagnostic::error("E0512", Span::new(source, at, at + 1), message);
+        let found = found.help("a loop places many things; data belongs into a file or `#[ … ]`");
+        Some(found.help(budgets.allows("statements")))
     }
 }
 

@@ -267,6 +267,9 @@ impl Reader<'_> {
                 }
             }
         }
+        if let Some(found) = regions.too_many(self.source, self.budgets) {
+            self.sink.push(found);
+        }
     }
 
     /// Reads the statements of some pieces on several threads; whether more are wanted.

@@ -20,6 +20,7 @@ pub(crate) const SMALL: Budgets = Budgets {
     nodes: 10,
     instances: 100,
     string: 64,
+    statements: 12,
     pieces: 64,
     names: 8,
     value_bytes: 4000,

@@ -120,6 +120,9 @@ impl State {
             return None;
         }
         let Recut { gone, pieces } = recut((text, self.from), &edit, &self.stmts, &budgets)?;
+        if self.stmts.len() - gone.len() + pieces.len() > budgets.statements {
+            return None;
+        }
         let (mut fresh, mut trees, mut said) = (vec![], vec![], vec![]);
         for (k, range) in pieces.into_iter().enumerate() {
             let id = u32::try_from(self.n_ids + k).ok()?;

@@ -116,7 +116,7 @@ fn copied() -> Vec<Attack> {
 }
 
 /// What is spent in reading one text: each text is made when it is its turn, as it is large.
-const READ: [fn() -> Attack; 25] = [
+const READ: [fn() -> Attack; 26] = [
     || attack("open braces", "{".repeat(MUCH)),
     || attack("closing braces", "}".repeat(MUCH)),
     || attack("lines of braces", "{\n".repeat(MUCH / 2)),
@@ -124,6 +124,10 @@ const READ: [fn() -> Attack; 25] = [
     || attack("calls in a brace", format!("group {{{}", "()".repeat(MUCH / 2 - 8))),
     || attack("braces behind braces", "{ \n }".repeat(MUCH / 5 - 20) + &"{".repeat(100)),
     || attack("wrong brackets", "[)".repeat(MUCH / 2)),
+    || {
+        let (opens, closes) = ("a[".repeat(120), ")".repeat(120));
+        attack("brackets in brackets", format!("let a = {opens}{}{closes}", "x ".repeat(MUCH / 16)))
+    },
     || attack("short statements", "a\n".repeat(MUCH / 2)),
     || attack("short definitions", "let = 3\n".repeat(MUCH / 8)),
     || attack("open comment", format!("/*{}", "x ".repeat(MUCH / 2))),

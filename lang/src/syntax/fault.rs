@@ -12,6 +12,9 @@ use crate::prescan::Fault;
 /// Brackets that a message shows.
 const SHOWN: usize = 8;
 
+/// Bytes in brackets that are looked at for what they were to be: of many that nest, each is.
+const LOOKED_AT: usize = 1 << 14;
+
 /// The blanks with which the line of a byte begins.
 fn indent_of(text: &str, at: usize) -> &str {
     let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
@@ -57,10 +60,8 @@ fn is_call(text: &str, inside: Range<usize>) -> bool {
     let before = &text[..inside.start];
     let name = before.trim_end_matches(|c: char| c.is_alphanumeric() || c == '_');
     let name = &before[name.len()..];
-    if !text[inside.start..].starts_with('[')
-        || !text[inside.end..].starts_with(')')
-        || name.is_empty()
-    {
+    let is_mixed = text[inside.start..].starts_with('[') && text[inside.end..].starts_with(')');
+    if !is_mixed || name.is_empty() || inside.len() > LOOKED_AT {
         return false;
     }
     let mut depth = 0_usize;
@@ -81,6 +82,9 @@ fn is_call(text: &str, inside: Range<usize>) -> bool {
 
 /// Where in brackets a comma stands before the first field that follows something else: it is no argument's name.
 fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
+    if inside.len() > LOOKED_AT {
+        return None;
+    }
     let inner: Vec<_> = tokens(text, inside).collect();
     let is_named = |i: usize| {
         let of = inner.get(i..i + 2);

@@ -45,7 +45,7 @@ pub(crate) struct LoadArgs {
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct BudgetArgs {
     /// Let a scene cost more or less than usual, as in `nodes=3e6,steps=1e9`: `nodes`, `instances`, `steps`,
-    /// `value_bytes`, `list`, `names`, `string`, `pieces`, `file_bytes`, `total_bytes`, `includes`,
+    /// `value_bytes`, `list`, `names`, `string`, `statements`, `pieces`, `file_bytes`, `total_bytes`, `includes`,
     /// `include_depth`, `diagnostics`, `brackets`, `operators`, `nesting`
     #[arg(long = "budget", value_name = "NAME=N,…", value_delimiter = ',', value_parser = budget)]
     amounts: Vec<(String, f64)>,

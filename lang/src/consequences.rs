@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use luxel_core::diag::{Diagnostic, Span};
 
 /// Takes out what is said of the value of an expression in which something cannot be read, as of a call that
-/// lacks what stands behind a missing bracket.
+/// lacks what stands behind a missing bracket, and of two mistakes of one place the one that says less.
 pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>) {
     let is_cause = |found: &&Diagnostic| found.is_error() && found.code.starts_with("E00");
     let causes = diagnostics.iter().filter(is_cause);

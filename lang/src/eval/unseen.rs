@@ -14,8 +14,9 @@ use super::Evaluator;
 /// Words that something stands by that may be the camera of the scene, or bring it.
 const WORDS: [&str; 2] = ["camera", "asset"];
 
-/// Bytes of a word that may be a misspelt one of these.
-const SLIPS: RangeInclusive<usize> = 3..=20;
+/// Bytes of a word that may be a misspelt one of these: it has 4 to 9 letters, as a third of those of the
+/// longer one may differ (`near`), and 3 that differ may have 4 bytes each.
+const SLIPS: RangeInclusive<usize> = 4..=18;
 
 /// Begins of the codes of mistakes that say that nothing stands there yet, that it is written in another
 /// language or version, or that a budget is spent before the end.

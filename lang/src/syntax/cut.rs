@@ -123,9 +123,7 @@ impl<'a> Regions<'a> {
         join(self.text, &mut found, self.limit, &mut self.again);
         Some((from, found))
     }
-}
 
-impl Regions<'_> {
     /// What is told of a statement beyond as many as may be.
     pub(super) fn too_many(&self, source: SourceId, budgets: &Budgets) -> Option<Diagnostic> {
         let at = self.beyond?;

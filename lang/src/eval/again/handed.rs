@@ -12,13 +12,13 @@ use super::formula::Formula;
 use super::handing::{Handing, Place, Wanted, is_simple};
 use super::made::Cost;
 use super::values::KeptValues;
-use super::{State, Statement, source_of, vector};
+use super::{State, Statement, source_of};
 use crate::eval::Evaluator;
 use crate::eval::env::Env;
 use crate::eval::note::shown_vector;
 use crate::eval::value::{FieldValue, ObjectValue, Value};
 use crate::shares;
-use crate::syntax::{Form, Name};
+use crate::syntax::Name;
 use crate::values::{Shown, Unsaid};
 
 /// What hands on changed values.
@@ -199,39 +199,23 @@ impl State {
         };
         let fits = match &value {
             Value::Object(object) => wanted.is_node && !is_deep(object),
-            Value::Number(..) => !wanted.is_node && !formula.is_vector(),
-            Value::Numbers(_) | Value::Items(_) => {
-                let is_whole = wanted.n_items == 0 && !wanted.is_node;
-                is_whole && (formula.is_vector() || formula.is_name())
-            }
-            _ => wanted.n_items == 0 && !wanted.is_node && formula.is_name(),
+            _ if wanted.is_node => false,
+            Value::Number(..) => !formula.is_vector(),
+            Value::Numbers(_) | Value::Items(_) => formula.is_vector() || formula.is_name(),
+            _ => formula.is_name(),
         };
+        // A number of a vector that fits has been reckoned.
+        let fits = fits && wanted.n_items == 0;
         let class = evaluator.registry.class(wanted.kind, &wanted.class).filter(|_| fits)?;
         let param = Registry::params(class).find(|param| param.name == wanted.param)?;
         let shown = evaluator.shown_later(&value);
-        // One number of a vector fits where a vector of it does.
-        let (value, measure) = match value {
-            Value::Number(x, measure) if wanted.n_items > 0 => {
-                if vector::dimension(param) != Some(measure) {
-                    return None;
-                }
-                let all = vec![x; usize::from(wanted.n_items)];
-                (Value::numbers(all, measure, Form::Tuple), Some(measure))
-            }
-            value => (value, None),
-        };
         // Nothing can be told of it: it would be told of every place.
         let span = Span::new(source_of(u32::MAX), 0, 0);
         let name = Name { text: param.name.into(), span };
         let field = FieldValue { name, value, span, file: env.file.clone() };
         let spent = |of: &Evaluator<'_>| (of.sink.kept().len(), of.held.get());
         let (before, first) = (spent(evaluator), evaluator.steps);
-        let value = match (evaluator.conform(param, &field)?, measure) {
-            (scene::Value::Vector(numbers), Some(measure)) => {
-                scene::Value::Number(*numbers.first()?, measure)
-            }
-            (value, _) => value,
-        };
+        let value = evaluator.conform(param, &field)?;
         let steps = evaluator.steps - first;
         let is_fit = before == spent(evaluator) && is_simple(&value, &evaluator.scene.nodes);
         is_fit.then_some(FittedValue { value, shown, steps })

@@ -132,7 +132,7 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
         let budgets = Budgets {
             nodes: if seed % 3 == 0 { 1_000_000 } else { 49 },
             names: if seed % 2 == 0 { 500_000 } else { 11 },
-            statements: if seed % 4 == 3 { 38 } else { 2_000_000 },
+            statements: if seed % 4 == 3 { 32 } else { 2_000_000 },
             ..Budgets::default()
         };
         let noting = seed % 5 != 1;

@@ -174,6 +174,8 @@ impl Evaluator<'_> {
     fn known_record(&mut self) -> Option<KnownRecord> {
         let mut record = self.record.take().filter(|record| {
             let is_whole = record.cuts.len() == record.stmts.len() && !record.stmts.is_empty();
+            // What a file says beyond its last statement is not known.
+            let is_whole = is_whole && !self.sink.tells("E0512");
             is_whole && !self.stopped && (self.sink.errors() > 0 || !self.damaged)
         })?;
         let ranges: Vec<_> = record.stmts.iter().map(|stmt| stmt.range.clone()).collect();

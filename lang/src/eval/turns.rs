@@ -106,10 +106,11 @@ impl Evaluator<'_> {
         } else if self.spent.is_none() {
             names.tell(text, &mut told);
         }
-        self.end_record(n_written, told.kept().len());
+        let n_read = told.kept().len();
         self.stopped |= told.is_full();
         told.absorb(std::mem::replace(&mut self.sink, Sink::new(0)));
         self.sink = told;
+        self.end_record(n_written, n_read);
     }
 }
 
@@ -231,7 +232,7 @@ mod tests {
     use crate::{Budgets, Loaded, Settings, eval};
 
     /// Lines that depend on others, in all ways.
-    const LINES: [&str; 20] = [
+    const LINES: [&str; 21] = [
         "let a = 1",
         "let b = a + c",
         "let c = (a, b, a)",
@@ -250,6 +251,7 @@ mod tests {
         "@off let b = nope",
         "radius = = 1",
         "c = b",
+        "se}t a.material = c",
         "let d = [for i in 0..p => i / 0]",
         "}",
     ];

@@ -78,6 +78,18 @@ pub(crate) fn run() -> Result<(), String> {
         case("objects, a length in a vector of each", &apart, length),
         case("objects, a length that each reckons with", &reckoned, length),
         case("objects, a mistake", &objects, (number.0, "ball 50001\" { center = (1.2 s")),
+        case("objects, an open bracket", &objects, (number.0, "ball 50001\" { center = ((1.2")),
+        case(
+            "objects, an open bracket at the end",
+            &objects,
+            (one_more.0, "let z = (1 m\nshape sphere \"ball 50001"),
+        ),
+        case("objects, an open block", &objects, (number.0, "ball 50001\" { { center = (1.2")),
+        case(
+            "objects, a text that does not end",
+            &objects,
+            (number.0, "ball 50001 { center = (1.2"),
+        ),
         Case { mistakes: 1, ..case("objects, a number, where a mistake stands", &wrong, number) },
         case("objects, a number beside a `set` and a warning", &told, number),
         case("objects, what is `set`", &told, ("radius = 30 cm", "radius = 20 cm")),

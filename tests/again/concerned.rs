@@ -53,6 +53,43 @@ fn beside_mistakes_that_stood_there_before_an_edit_concerns_its_statement() {
 }
 
 #[test]
+fn beside_what_does_not_close_yet_an_edit_concerns_its_statement() {
+    let mut now = with_disks(&["let r = 5 cm", CAMERA]);
+    let good = now[20].clone();
+    let mut edited = Edited::new(Settings { noting: true, ..Settings::default() });
+    let mut n = |lines: &[String]| edited.counted(lines);
+    assert_eq!(n(&now).1, 0);
+    let half = [
+        "let z = (1 m",
+        "let z = [r,",
+        "shape disk {",
+        "shape disk { radius = (r }",
+        "shape disk { radius = r, {",
+        "shape sphere \"one { radius = r }",
+        "let z = \"\\q\"",
+    ];
+    for line in half {
+        line.clone_into(&mut now[20]);
+        let (n_evaluated, n_told) = n(&now);
+        assert!((1..4).contains(&n_evaluated) && n_told > 0, "{line} {n_evaluated} {n_told}");
+        now[20].clone_from(&good);
+        assert_eq!(n(&now).1, 0);
+    }
+    // A file that was so from the beginning is gone on from too; what closes nothing may belong to another one.
+    let cases = [(half[3], true), (half[6], true), (half[0], true), ("}", false)];
+    for (i, (line, is_known)) in cases.into_iter().enumerate() {
+        let mut edited = Edited::new(Settings { noting: true, ..Settings::default() });
+        line.clone_into(&mut now[20]);
+        assert!(edited.counted(&now).1 > 0, "{line}");
+        now[40] = format!("shape disk {{ radius = {} m }}", 3 + i);
+        let n_evaluated = edited.counted(&now).0;
+        assert_eq!((1..6).contains(&n_evaluated), is_known, "{line} {n_evaluated}");
+        now[20].clone_from(&good);
+        assert_eq!(edited.counted(&now).1, 0, "{line}");
+    }
+}
+
+#[test]
 fn of_vectors_that_each_shape_has_for_itself_the_numbers_are_handed_on() {
     let ball = |i: usize| {
         let center = match i % 5 {

@@ -94,8 +94,24 @@ const LINES: [&str; 74] = [
 ];
 
 /// Half-written things, and what ends statements.
-const PARTS: [&str; 12] =
-    ["7", " ", "\n", "{", "}", "r", "//", "\"", "= ", "let ", "place ball\n", "1 m"];
+const PARTS: [&str; 16] = [
+    "7",
+    " ",
+    "\n",
+    "{",
+    "}",
+    "r",
+    "//",
+    "\"",
+    "= ",
+    "let ",
+    "place ball\n",
+    "1 m",
+    "(",
+    "[",
+    ", (2",
+    "\"\\q",
+];
 
 /// A number below `n`.
 fn pick(rng: &mut Rng, n: usize) -> usize {
@@ -171,6 +187,9 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
                 lines.clone_from(&last);
             }
             edit(&mut lines, &mut rng);
+            if seed == 0 {
+                eprintln!("{seed} {step}");
+            }
             if pick(&mut rng, 12) == 0 {
                 edited.other = OTHER.replace("2 m", &format!("{step} m"));
             }

@@ -168,6 +168,7 @@ pub(super) fn region(
     let together = closes.chunk_by(|(_, one), (_, other)| one == other);
     let opens = together.map(|braces| braces[0].0).chain(alone);
     faults.extend(opens.clone().map(|open| Fault::Unclosed { open }));
+    faults.sort_by_key(Fault::at);
     // One that is closed further down may be taken for the one that is not.
     let unclosed = unclosed.into_iter().chain(opens).min();
     let (slips, met) = (vec![], found.met);

@@ -2,9 +2,12 @@
 
 use std::ops::Range;
 
+use luxel_core::diag::Diagnostic;
+
 use super::Statement;
+use super::warn::are_within;
 use crate::budgets::Budgets;
-use crate::syntax::cut;
+use crate::syntax::{Cut, cut};
 
 /// Bytes that are compared at once.
 const BLOCK: usize = 4096;
@@ -54,17 +57,19 @@ fn same<'a>(
 }
 
 /// Statements that were cut anew.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) struct Recut {
     /// Which of the old ones are gone.
     pub(super) gone: Range<usize>,
-    /// The bytes of those that stand in their place.
-    pub(super) pieces: Vec<Range<usize>>,
+    /// Those that stand in their place.
+    pub(super) pieces: Vec<Cut>,
+    /// What does not close in them, by places in the file.
+    pub(super) faults: Vec<Diagnostic>,
 }
 
 /// Cuts anew what an edit may have changed of a text whose statements begin after byte `from`: from two
 /// statements before it up to the first line after it on which one begins where one began. `None` if
-/// something does not close, or stands where no statement can.
+/// something closes nothing, or stands where no statement can, or the rest of the file is another one.
 pub(super) fn recut(
     (text, from): (&str, usize),
     edit: &Edit,
@@ -81,30 +86,31 @@ pub(super) fn recut(
             && stmts[after..].binary_search_by_key(&at, |s| edit.shifted(s.range.start)).is_ok()
     };
     let found = cut(text, start, budgets, &mut is_known);
-    if !found.faults.is_empty() || found.pieces.iter().any(|piece| piece.faulty) {
+    if !found.faults.is_empty() && (found.met.is_none() || !are_within(&found.faults)) {
         return None;
     }
     let mut last = found.met.map_or(stmts.len(), |at| {
         after + stmts[after..].partition_point(|stmt| edit.shifted(stmt.range.start) < at)
     });
-    let mut pieces: Vec<_> = found.pieces.into_iter().map(|piece| piece.range).collect();
-    let is_before = |piece: &Range<usize>, stmt: &Statement| {
-        *piece == stmt.range && piece.end <= edit.old.start
+    let mut pieces = found.pieces;
+    let is_before = |piece: &Cut, stmt: &Statement| {
+        piece.range == stmt.range && piece.range.end <= edit.old.start && !piece.faulty
     };
     let n_before = stmts[first..last].iter().zip(&pieces);
     let n_before = n_before.take_while(|(stmt, piece)| is_before(piece, stmt)).count();
     pieces.drain(..n_before);
     first += n_before;
-    let is_after = |piece: &Range<usize>, stmt: &Statement| {
+    let is_after = |Cut { range, faulty, .. }: &Cut, stmt: &Statement| {
         stmt.range.start >= edit.old.end
-            && piece.start == edit.shifted(stmt.range.start)
-            && piece.end == edit.shifted(stmt.range.end)
+            && !faulty
+            && range.start == edit.shifted(stmt.range.start)
+            && range.end == edit.shifted(stmt.range.end)
     };
     while last > first && pieces.last().is_some_and(|piece| is_after(piece, &stmts[last - 1])) {
         pieces.pop();
         last -= 1;
     }
-    Some(Recut { gone: first..last, pieces })
+    Some(Recut { gone: first..last, pieces, faults: found.faults })
 }
 
 #[cfg(test)]

@@ -38,6 +38,8 @@ pub(super) struct Rare {
 /// Told of a statement, whose places lie in it and count from its first byte.
 #[derive(Debug, Default)]
 pub(super) struct Told {
+    /// Of what does not close in it.
+    pub(super) faults: Vec<Diagnostic>,
     /// Of how it is written.
     pub(super) read: Vec<Diagnostic>,
     /// Of what it came to.

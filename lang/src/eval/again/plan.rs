@@ -10,13 +10,15 @@ use luxel_sdk::params::leave;
 use super::edit::{Edit, Recut, recut};
 use super::handed::Handed;
 use super::sets::Sets;
+use super::warn::{are_within, fault_of, faults};
 use super::{State, Statement, source_of};
+use crate::budgets::Budgets;
 use crate::eval::builtins;
 use crate::eval::mention::mention_stmts;
 use crate::eval::names::Facts;
 use crate::eval::numbered::{Firsts, Tables};
 use crate::eval::turns::declares;
-use crate::syntax::{Stmt, read_head, read_piece};
+use crate::syntax::{Cut, Stmt, read_head, read_piece};
 
 /// Of how many statements one at most is evaluated again: of more, all are as soon.
 const SHARE: usize = 4;
@@ -73,6 +75,15 @@ pub(super) struct Task {
     pub(super) is_new: bool,
 }
 
+/// Statements that were read.
+#[derive(Default)]
+struct Fresh {
+    stmts: Vec<Statement>,
+    trees: Vec<Option<Stmt>>,
+    /// What is said of how each is written.
+    said: Vec<Vec<Diagnostic>>,
+}
+
 /// The statements after an edit.
 pub(super) struct After<'s> {
     stmts: &'s [Statement],
@@ -119,25 +130,16 @@ impl State {
         if from != Some(self.from) || !told.is_empty() || edit.old.start <= self.from {
             return None;
         }
-        let Recut { gone, pieces } = recut((text, self.from), &edit, &self.stmts, &budgets)?;
+        let Recut { gone, pieces, faults: unclosed } =
+            recut((text, self.from), &edit, &self.stmts, &budgets)?;
         if self.stmts.len() - gone.len() + pieces.len() > budgets.statements {
             return None;
         }
-        let (mut fresh, mut trees, mut said) = (vec![], vec![], vec![]);
-        for (k, range) in pieces.into_iter().enumerate() {
-            let id = u32::try_from(self.n_ids + k).ok()?;
-            let part = &text[range.clone()];
-            let (stmt, found) = read(part, id, &budgets)?;
-            // What cannot be read may have been meant to be about the whole file.
-            if !found.is_empty() && declares(part) {
-                return None;
-            }
-            said.push(found);
-            let facts = Facts::of(part, std::slice::from_ref(&stmt));
-            fresh.push(Statement::new(id, range, &stmt, &facts, &mut self.names));
-            trees.push(Some(stmt));
-        }
+        let Fresh { stmts: fresh, trees, said } = self.fresh(text, pieces, &unclosed)?;
         let after = After::of(self, &gone, &fresh);
+        if (self.is_wrong || !unclosed.is_empty()) && !are_within(faults(after.iter())) {
+            return None;
+        }
         let n_names = |stmts: &[Statement]| -> usize {
             stmts.iter().map(|stmt| stmt.names.defines().len()).sum()
         };
@@ -172,6 +174,33 @@ impl State {
             sets,
             handed,
         })
+    }
+
+    /// Reads statements that were cut anew, some of which do not close.
+    fn fresh(&mut self, text: &str, pieces: Vec<Cut>, unclosed: &[Diagnostic]) -> Option<Fresh> {
+        let mut out = Fresh::default();
+        for (k, Cut { range, faulty, .. }) in pieces.into_iter().enumerate() {
+            let id = u32::try_from(self.n_ids + k).ok()?;
+            let part = &text[range.clone()];
+            let (stmt, found) = read(part, faulty, id, &self.settings.budgets)?;
+            // What cannot be read may have been meant to be about the whole file.
+            if (faulty || !found.is_empty()) && declares(part) {
+                return None;
+            }
+            let facts = Facts::of(part, std::slice::from_ref(&stmt));
+            let mut next = Statement::new(id, range.clone(), &stmt, &facts, &mut self.names);
+            if faulty {
+                let is_own = |fault: &&Diagnostic| {
+                    fault.span().is_some_and(|span| range.contains(&span.range().start))
+                };
+                let own = unclosed.iter().filter(is_own).map(|fault| fault_of(fault, id, &range));
+                next.made.told_mut().faults = own.collect::<Option<_>>()?;
+            }
+            out.stmts.push(next);
+            out.trees.push(Some(stmt));
+            out.said.push(found);
+        }
+        Some(out)
     }
 
     /// Whether statements have the same to do with names as those that they stand for.
@@ -265,7 +294,7 @@ impl State {
             let tree = i.checked_sub(after.gone.start).and_then(|k| trees.get_mut(k)?.take());
             let stmt = match tree {
                 Some(stmt) => stmt,
-                None => read(&text[range], statement.id, &self.settings.budgets)?.0,
+                None => statement.read(&text[range], &self.settings.budgets)?.0,
             };
             let uses = statement.names.uses().filter_map(|(name, _)| firsts.definer_of(name));
             let mut definers: Vec<usize> = uses.collect();
@@ -287,12 +316,16 @@ impl State {
     }
 }
 
-/// The one statement of a piece, and what is told of it.
-pub(super) fn read(
-    text: &str,
-    id: u32,
-    budgets: &crate::Budgets,
-) -> Option<(Stmt, Vec<Diagnostic>)> {
-    let (mut stmts, told) = read_piece(text, false, source_of(id), budgets);
+impl Statement {
+    /// The same once more, from its text.
+    pub(super) fn read(&self, text: &str, budgets: &Budgets) -> Option<(Stmt, Vec<Diagnostic>)> {
+        let is_faulty = self.made.rare.as_ref().is_some_and(|rare| !rare.told.faults.is_empty());
+        read(text, is_faulty, self.id, budgets)
+    }
+}
+
+/// The one statement of a piece, in which something does not close if it is `faulty`, and what is told of it.
+fn read(text: &str, faulty: bool, id: u32, budgets: &Budgets) -> Option<(Stmt, Vec<Diagnostic>)> {
+    let (mut stmts, told) = read_piece(text, faulty, source_of(id), budgets);
     stmts.pop().filter(|_| stmts.is_empty()).map(|stmt| (stmt, told))
 }

@@ -29,7 +29,7 @@ use crate::{Loaded, Settings};
 pub(in crate::eval) struct Record {
     /// Where statements may begin.
     from: usize,
-    cuts: Vec<Cut>,
+    pub(super) cuts: Vec<Cut>,
     pub(super) names: Known,
     pub(super) stmts: Vec<Statement>,
     /// What was spent before the first of them and after the last.

@@ -8,8 +8,9 @@ use luxel_sdk::kind::Kind;
 
 use super::edit::Edit;
 use super::made::Told;
-use super::plan::{After, Plan, Task, read};
+use super::plan::{After, Plan, Task};
 use super::values::KeptValues;
+use super::warn::faults;
 use super::{State, in_file, source_of};
 use crate::eval::Evaluator;
 use crate::eval::names::{Around, Facts, Odd, tell_odd};
@@ -42,7 +43,7 @@ impl State {
             {
                 return None;
             }
-            let (stmt, _) = read(&text[range.clone()], statement.id, budgets)?;
+            let (stmt, _) = statement.read(&text[range.clone()], budgets)?;
             let stmts = std::slice::from_ref(&stmt);
             let facts = Facts::of(&text[range.clone()], stmts);
             let mut found = sink.rest();
@@ -72,6 +73,9 @@ impl State {
             return None;
         }
         let mut sink = Sink::new(self.settings.budgets.diagnostics);
+        for found in faults(after.iter()) {
+            sink.push(found.clone());
+        }
         let now = read.into_iter().zip(gone.start..).map(|(told, i)| (i, told)).collect();
         merge(&after, now, |told| &told.read, &mut sink);
         for found in names {
@@ -157,7 +161,7 @@ impl Among<'_> {
     fn span(&self, i: usize, names: fn(&Facts) -> &[Name], text: &str) -> Option<(usize, Span)> {
         let (statement, range) = self.after.get(i, self.edit);
         let part = &self.text[range];
-        let (stmt, _) = read(part, statement.id, self.budgets)?;
+        let (stmt, _) = statement.read(part, self.budgets)?;
         let facts = Facts::of(part, std::slice::from_ref(&stmt));
         names(&facts).iter().find(|name| *name.text == *text).map(|name| (i, name.span))
     }

@@ -2,17 +2,26 @@
 
 use std::collections::BTreeSet;
 
-use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::diag::{Diagnostic, Sources, Span};
+use luxel_sdk::kind::Kind;
+
+use crate::syntax::BEFORE_NAMES;
+
+/// Bytes before a place that are looked at: of a line before a bracket that closes nothing, and of a call.
+const LOOKED_AT: usize = 1 << 10;
 
 /// Takes out what is said of the value of an expression in which something cannot be read, as of a call that
-/// lacks what stands behind a missing bracket, and of two mistakes of one place the one that says less.
-pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>) {
+/// lacks what stands behind a missing bracket; of names that nothing stands for, where a definition lacks its
+/// own; and of two mistakes of one place the one that says less.
+pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let is_cause = |found: &&Diagnostic| found.is_error() && found.code.starts_with("E00");
     let causes = diagnostics.iter().filter(is_cause);
     let of = |found: &Diagnostic| {
         let mended = found.fixes.iter().map(|fix| fix.span);
         found.span().into_iter().chain(mended).collect::<Vec<Span>>()
     };
+    let doubts: Vec<Span> = causes.clone().filter_map(|found| in_doubt(found, sources)).collect();
+    let is_nameless = causes.clone().any(|found| lacks_name(found, sources));
     let mut causes: Vec<Span> = causes.flat_map(of).collect();
     causes.sort_unstable();
     // Of a word without quotes it is said what it may be, which says more than that it is no name; and of a
@@ -20,22 +29,92 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>) {
     // later is no word.
     let (words, braces) = (places(diagnostics, "E0416"), places(diagnostics, "E0008"));
     let early = places(diagnostics, "E0102");
+    let (unknown, parted) = (places(diagnostics, "E0101"), places(diagnostics, "E0014"));
     diagnostics.retain(|found| {
         let has_cause =
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
         let says_less = match found.code {
-            "E0101" => has_cause(&words),
+            "E0101" => has_cause(&words) || is_nameless && says_no_more(found),
             "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
+            // What may stand there twice, or lack a comma.
+            "E0402" => found.fixes.is_empty() && stands_behind(found, &parted, sources),
+            "E0026" | "E0401" => follows_category(found, &unknown, sources),
             _ => false,
         };
         if says_less {
             return false;
         }
         let is_of_value = found.code.starts_with("E02") || found.code.starts_with("E04");
-        let span = found.span().filter(|_| is_of_value && found.is_error());
-        !span.is_some_and(|span| holds_one(span, &causes))
+        let span = found.span().filter(|_| found.is_error());
+        let is_doubtful = is_of_value || matches!(found.code, "E0113" | "E0114");
+        let is_in_doubt = |span: Span| {
+            let holds = |doubt: &&Span| {
+                doubt.source == span.source && doubt.start <= span.start && span.end <= doubt.end
+            };
+            is_doubtful && doubts.iter().any(|doubt| holds(&doubt))
+        };
+        !span.is_some_and(|span| is_of_value && holds_one(span, &causes) || is_in_doubt(span))
     });
+}
+
+/// Where it is not known which values stand in which brackets: between one and another that closes it, and on
+/// the line before one that closes nothing.
+fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
+    let at = found.span()?;
+    match found.code {
+        "E0009" => found.labels.get(1).map(|open| open.span.to(at)),
+        "E0010" => {
+            let before = sources.text(at.source).as_bytes().get(..at.range().start)?;
+            let first = before.len().saturating_sub(LOOKED_AT);
+            let line = memchr::memrchr(b'\n', &before[first..]).map_or(first, |end| first + end);
+            let line = Span::new(at.source, line, at.range().start);
+            Some(line.to(at))
+        }
+        _ => None,
+    }
+}
+
+/// Whether a definition lacks its name: what it was to be may be any that nothing stands for.
+fn lacks_name(found: &Diagnostic, sources: &Sources) -> bool {
+    let word = found.span().and_then(|at| sources.text(at.source).get(at.range()));
+    found.code == "E0019" && word.is_some_and(|word| BEFORE_NAMES.contains(&word))
+}
+
+/// Whether something is said of an object that stands behind one of some words, `shape shape sphere { }`: it is
+/// not what is wrong.
+fn follows_category(found: &Diagnostic, words: &BTreeSet<Span>, sources: &Sources) -> bool {
+    let Some(at) = found.span() else { return false };
+    let text = sources.text(at.source);
+    let word = words.range(..at).next_back().filter(|word| word.source == at.source);
+    word.is_some_and(|word| {
+        let between = text.get(word.range().end..at.range().start);
+        let is_category = text.get(word.range()).is_some_and(|word| Kind::of_word(word).is_some());
+        is_category && between.is_some_and(|between| between.trim_matches([' ', '\t']).is_empty())
+    })
+}
+
+/// Whether a value stands behind one of some places, in the same brackets.
+fn stands_behind(found: &Diagnostic, places: &BTreeSet<Span>, sources: &Sources) -> bool {
+    let Some(at) = found.span() else { return false };
+    let place = places.range(..=at).next_back().filter(|place| place.source == at.source);
+    let between = place.and_then(|place| {
+        let text = sources.text(at.source).get(place.start as usize..at.range().start)?;
+        Some(text).filter(|text| text.len() <= LOOKED_AT)
+    });
+    between.is_some_and(|between| {
+        let mut depth = 0_i32;
+        let is_inside = between.bytes().all(|byte| {
+            depth += i32::from(b"([{".contains(&byte)) - i32::from(b")]}".contains(&byte));
+            depth >= 0
+        });
+        is_inside && depth == 0
+    })
+}
+
+/// Whether of a name that nothing stands for nothing else is known.
+fn says_no_more(found: &Diagnostic) -> bool {
+    found.fixes.is_empty() && found.labels.len() == 1
 }
 
 /// Where something is told with a code.
@@ -76,6 +155,21 @@ mod tests {
     }
 
     #[test]
+    fn a_call_is_not_said_to_have_too_many_arguments_for_one_without_its_comma() {
+        let codes = |call: &str| {
+            let text = format!("scene 1\nfn half(x: float) = x / 2\nlet c = {call}\n");
+            let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+            let path = Path::new("a.scene");
+            let told = load(path, &files, &Registry::new(), &Settings::default()).diagnostics;
+            told.iter().map(|found| found.code).collect::<Vec<_>>()
+        };
+        assert_eq!(codes("rgb.srgb(0.1 0.2, 0.3, 0.4)"), ["E0014", "E0409"]);
+        assert_eq!(codes("half(1 2)"), ["E0014", "E0409"]);
+        assert_eq!(codes("half([1 2], 3)"), ["E0014", "E0402", "E0409"]);
+        assert_eq!(codes("half(1, 2)"), ["E0402", "E0409"]);
+    }
+
+    #[test]
     fn values_around_what_cannot_be_read_are_not_judged() {
         let error = |code, file, start, end| {
             Diagnostic::error(code, Span::new(SourceId(file), start, end), "")
@@ -83,7 +177,7 @@ mod tests {
         let cause = || error("E0009", 0, 20, 21).guess(Span::new(SourceId(0), 19, 19), ")");
         let kept = |found: Diagnostic| {
             let mut all = vec![found, cause()];
-            sift(&mut all);
+            sift(&mut all, &Sources::default());
             all.len() == 2
         };
         assert!(!kept(error("E0403", 0, 10, 19)) && !kept(error("E0214", 0, 19, 30)));

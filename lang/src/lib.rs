@@ -154,7 +154,7 @@ pub fn load(path: &Path, files: &dyn Files, registry: &Registry, settings: &Sett
 
 /// Without what follows from other mistakes.
 fn sifted(mut loaded: Loaded) -> Loaded {
-    consequences::sift(&mut loaded.diagnostics);
+    consequences::sift(&mut loaded.diagnostics, &loaded.sources);
     loaded
 }
 

@@ -9,6 +9,8 @@ use std::ops::Range;
 
 use memchr::memchr;
 
+pub(crate) use brackets::opens_object;
+
 /// What is wrong with the brackets, strings or comments of a text; offsets are bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
@@ -289,7 +291,11 @@ impl Scanner<'_> {
                 self.word(start);
                 (self.operand, self.in_for) = (false, false);
             }
-            _ => (self.operand, self.newline) = (false, false),
+            _ => {
+                // `{ = 1 m }`: a value without a name, whose unit begins no statement.
+                self.first &= byte != b'=' || self.open.len() != self.depth;
+                (self.operand, self.newline) = (false, false);
+            }
         }
     }
 
@@ -323,7 +329,7 @@ impl Scanner<'_> {
             begins = self.first || (self.operand && self.newline);
             if begins {
                 let start = self.doc.unwrap_or(start);
-                if (self.is_known)(start) {
+                if !self.is_in_doubt(start) && (self.is_known)(start) {
                     self.out.met = Some(start);
                 } else {
                     self.out.starts.push(start);

@@ -81,7 +81,7 @@ impl Evaluator<'_> {
             let known = Registry::params(class).map(|param| param.name);
             // What begins with no parameter may be any, and so may what goes on in other lines.
             let name = near(word.unwrap_or(""), known).map(|near| near.name);
-            meant.push(name.filter(|_| !text.trim().contains('\n')));
+            meant.push(name.filter(|_| !text.trim().contains('\n') && !has_nameless(text)));
         }
         self.complete(class, head, &body.fields, &meant);
     }
@@ -434,4 +434,11 @@ pub(super) fn merged(old: &[FieldValue], new: Vec<FieldValue>) -> Vec<FieldValue
     let mut out: Vec<FieldValue> = kept.cloned().collect();
     out.extend(new);
     out
+}
+/// Whether a value stands in a text that no name stands before.
+fn has_nameless(text: &str) -> bool {
+    text.match_indices('=').any(|(at, _)| {
+        let before = text[..at].trim_end_matches([' ', '\t']);
+        before.is_empty() || before.ends_with([',', ';', '{', '\n'])
+    })
 }

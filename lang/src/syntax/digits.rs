@@ -17,11 +17,29 @@ impl Around<'_> {
             .into_iter()
             .flatten()
             .find(|t| t.kind == TokenKind::Number && number::parse(t.text.as_bytes()).is_none())?;
+        if let Some(found) = self.parted(bad) {
+            return Some(found);
+        }
         let found = self.error("E0016", bad, format!("`{}` is not a number", bad.text));
         Some(match bad.text.strip_suffix('.') {
             Some(whole) => found.fix(self.span(bad), whole),
             None => found.help("a number is written as 12, 0.5, .5, 1_000 or 2.5e-3"),
         })
+    }
+
+    /// `0. 75` and `0. .75`
+    fn parted(&self, bad: &Token<'_>) -> Option<Diagnostic> {
+        let at = self.tokens.iter().position(|token| token.start == bad.start)?;
+        let next = self.tokens.get(at + 1).filter(|next| next.kind == TokenKind::Number)?;
+        let whole = bad.text.strip_suffix('.')?;
+        let part = next.text.strip_prefix('.').unwrap_or(next.text);
+        let is_part = part.bytes().all(|byte| byte.is_ascii_digit());
+        if next.first_on_line || !is_part || number::parse(whole.as_bytes()).is_none() {
+            return None;
+        }
+        let both = self.span(bad).to(self.span(next));
+        let found = Diagnostic::error("E0016", both, "there is no blank in a number");
+        Some(found.guess(both, format!("{whole}.{part}")))
     }
 
     /// `0xff`, `0b101`, `0o17`

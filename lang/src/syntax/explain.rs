@@ -76,6 +76,7 @@ impl<'a> Around<'a> {
             .or_else(|| head::head(self))
             .or_else(|| self.statement_head())
             .or_else(|| self.reserved())
+            .or_else(|| self.nameless_field())
             .or_else(|| self.equals())
             .or_else(|| self.missing_operand())
             .or_else(|| self.unit_behind_call())
@@ -107,7 +108,11 @@ impl<'a> Around<'a> {
             let found = self.error("E0023", current, "a block stands between `{` and `}`");
             return Some(found.help("what is to be done stands in it, not behind `:`"));
         }
-        if current.text == ":" && BEFORE_NAMES.contains(&before.text) {
+        let is_nameless = match before.text {
+            "fn" => current.text == "(",
+            _ => current.text == ":",
+        };
+        if is_nameless && BEFORE_NAMES.contains(&before.text) {
             return Some(nameless(before.text, self.span(before)));
         }
         if current.text == ":" && before.kind == TokenKind::Word {
@@ -154,6 +159,15 @@ impl<'a> Around<'a> {
         }
         let message = format!("`{}` is a word of the language, not a value", current.text);
         Some(self.error("E0019", current, message))
+    }
+
+    /// `{ = 1 m }`
+    fn nameless_field(&self) -> Option<Diagnostic> {
+        let (equals, before) = (self.current()?, self.before(1)?);
+        let begins = equals.first_on_line || matches!(before.text, "{" | "," | ";");
+        let is_it = equals.text == "=" && begins && self.inner() == Place::Fields;
+        let message = "the name of a parameter is missing before `=`";
+        is_it.then(|| self.error("E0023", equals, message))
     }
 
     /// `= =` and `==` where a value is given.
@@ -245,7 +259,12 @@ impl<'a> Around<'a> {
         let may_call = before.kind == TokenKind::Word && (calls || current.kind != TokenKind::Word);
         let grade = if may_call { Grade::Guess } else { Grade::Sure };
         let message = format!("a comma is missing before `{}`", short(current.text));
-        if before.kind == TokenKind::Word && before.text == current.text {
+        // `f(0.5 0.5)`
+        let is_call = self.open.last().is_some_and(|open| {
+            self.word(*open) == "(" && open.checked_sub(1).is_some_and(|i| self.is_word(i))
+        });
+        let may_be_twice = before.kind == TokenKind::Word || is_call;
+        if may_be_twice && before.text == current.text {
             let found = self.error("E0014", current, format!("{message}, or it stands here twice"));
             return Some(found.guess(gap.to(self.span(current)), ""));
         }

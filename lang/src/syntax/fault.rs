@@ -7,7 +7,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 use super::closing::indent;
 use super::lex::{TokenKind, tokens};
 use super::make::OF_A_NUMBER;
-use crate::prescan::Fault;
+use crate::prescan::{Fault, opens_object};
 
 /// Brackets that a message shows.
 const SHOWN: usize = 8;
@@ -35,6 +35,12 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
         Fault::Mismatch { open, at, left: 0 } if is_call(text, *open..*at) => {
             Some((*open..open + 1, "("))
         }
+        Fault::Mismatch { open, at, left: 0 }
+            if text[*at..].starts_with('}') && opens_object(text.as_bytes(), *open) =>
+        {
+            Some((*open..open + 1, "{"))
+        }
+        Fault::Mismatch { open, at, left: 0 } if is_closed_later(text, *at, closing(*open)) => None,
         Fault::Mismatch { open, at, left: 0 } => Some((*at..at + 1, closing(*open))),
         Fault::Mismatch { open, at, left: 1 } => {
             let end = before_field(text, *open..*at).unwrap_or(*at);
@@ -52,6 +58,22 @@ fn doubled(text: &str, open: usize) -> Option<usize> {
     let next = open + 1 + blanks(rest);
     let before = text[..open].trim_end_matches([' ', '\t']);
     if text[next..].starts_with('{') { Some(next) } else { before.ends_with('{').then_some(open) }
+}
+
+/// Whether what was closed at a byte by another bracket is closed further on in its line too.
+fn is_closed_later(text: &str, at: usize, bracket: &str) -> bool {
+    let rest = &text[at + 1..];
+    let mut depth = 0_usize;
+    for byte in rest.bytes().take(LOOKED_AT) {
+        match byte {
+            b'\n' => return false,
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' if depth == 0 => return bracket.as_bytes() == [byte],
+            b')' | b']' | b'}' => depth -= 1,
+            _ => {}
+        }
+    }
+    false
 }
 
 /// Whether what a `[` behind a word begins, and a `)` ends, is given to a function: no index is more than one

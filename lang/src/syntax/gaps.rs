@@ -44,8 +44,13 @@ impl Gaps {
                 return None;
             }
             let gap = &mut bytes[range.start - stmt.start..range.end - stmt.start];
+            // What follows on its line is another one.
+            let ends = gap.len() > FILLING.len() && !gap.contains(&b'\n');
             gap.iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
             gap[..FILLING.len()].copy_from_slice(FILLING.as_bytes());
+            if ends {
+                gap[FILLING.len()] = b',';
+            }
         }
         String::from_utf8(bytes).ok().filter(|_| !self.gaps.is_empty())
     }

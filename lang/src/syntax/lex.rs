@@ -74,14 +74,15 @@ fn next<'a>(text: &'a str, at: &mut usize) -> Option<Token<'a>> {
     loop {
         let rest = &text[*at..];
         let c = rest.chars().next()?;
-        let is_doc = rest.starts_with("///") && !rest.starts_with("////");
+        let begins = |mark: &str| c == '/' && rest.starts_with(mark);
+        let is_doc = begins("///") && !begins("////");
         // What else is blank to the eye is none to the grammar.
         if matches!(c, ' ' | '\t' | '\r' | '\n' | '\u{FEFF}') {
             first_on_line |= c == '\n';
             *at += c.len_utf8();
-        } else if rest.starts_with("//") && !is_doc {
+        } else if begins("//") && !is_doc {
             *at += rest.find('\n').unwrap_or(rest.len());
-        } else if rest.starts_with("/*") {
+        } else if begins("/*") {
             let end = block_comment(rest.as_bytes()).unwrap_or(rest.len());
             first_on_line |= rest[..end].contains('\n');
             *at += end;
@@ -112,7 +113,9 @@ fn token(rest: &str, c: char, is_doc: bool) -> (TokenKind, usize) {
         '"' => (TokenKind::Text, string(rest)),
         _ => {
             let known = ["..=", "..", "||", "&&", "==", "!=", "<=", ">=", "=>"];
-            let mark = known.iter().find(|mark| rest.starts_with(**mark));
+            let may_be_long = matches!(c, '.' | '|' | '&' | '=' | '!' | '<' | '>');
+            let mut marks = known.iter().filter(|_| may_be_long);
+            let mark = marks.find(|mark| rest.starts_with(**mark));
             (TokenKind::Mark, mark.map_or(c.len_utf8(), |mark| mark.len()))
         }
     }

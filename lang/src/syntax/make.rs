@@ -17,7 +17,7 @@ pub(crate) const RESERVED: [&str; 19] = [
 pub(super) const STATEMENTS: &[&str] = RESERVED.split_at(13).0;
 
 /// Words that a name follows.
-pub(super) const BEFORE_NAMES: [&str; 2] = ["let", "param"];
+pub(crate) const BEFORE_NAMES: [&str; 3] = ["let", "param", "fn"];
 
 /// Functions of one number.
 pub(super) const OF_A_NUMBER: [&str; 8] =

@@ -176,7 +176,7 @@ impl Reader<'_> {
             if wrong.take().is_some() {
                 let next = scan.starts.partition_point(|start| *start <= here);
                 let end = scan.starts.get(next).copied().unwrap_or(close).min(close);
-                let start = next.checked_sub(1).map_or(chunk.start, |i| scan.starts[i]);
+                let start = next.checked_sub(1).map_or(open + 1, |i| scan.starts[i]);
                 self.wrong.push(start..end);
             }
             let inner: Vec<usize> =

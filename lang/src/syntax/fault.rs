@@ -15,6 +15,9 @@ const SHOWN: usize = 8;
 /// Bytes in brackets that are looked at for what they were to be: of many that nest, each is.
 const LOOKED_AT: usize = 1 << 14;
 
+/// Bytes of a line behind a bracket that are looked at for another that closes the same.
+const REST: usize = 256;
+
 /// The blanks with which the line of a byte begins.
 fn indent_of(text: &str, at: usize) -> &str {
     let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
@@ -64,7 +67,7 @@ fn doubled(text: &str, open: usize) -> Option<usize> {
 fn is_closed_later(text: &str, at: usize, bracket: &str) -> bool {
     let rest = &text[at + 1..];
     let mut depth = 0_usize;
-    for byte in rest.bytes().take(LOOKED_AT) {
+    for byte in rest.bytes().take(REST) {
         match byte {
             b'\n' => return false,
             b'(' | b'[' | b'{' => depth += 1,

@@ -166,7 +166,7 @@ impl<'a> Around<'a> {
         let (equals, before) = (self.current()?, self.before(1)?);
         let begins = equals.first_on_line || matches!(before.text, "{" | "," | ";");
         let is_it = equals.text == "=" && begins && self.inner() == Place::Fields;
-        let message = "the name of a parameter is missing before `=`";
+        let message = "a name is missing before `=`";
         is_it.then(|| self.error("E0023", equals, message))
     }
 

@@ -48,13 +48,13 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         let is_of_value = found.code.starts_with("E02") || found.code.starts_with("E04");
         let span = found.span().filter(|_| found.is_error());
         let is_doubtful = is_of_value || matches!(found.code, "E0113" | "E0114");
-        let is_in_doubt = |span: Span| {
-            let holds = |doubt: &&Span| {
-                doubt.source == span.source && doubt.start <= span.start && span.end <= doubt.end
-            };
-            is_doubtful && doubts.iter().any(|doubt| holds(&doubt))
+        let lies_in = |span: Span, doubt: &Span| {
+            doubt.source == span.source && doubt.start <= span.start && span.end <= doubt.end
         };
-        !span.is_some_and(|span| is_of_value && holds_one(span, &causes) || is_in_doubt(span))
+        !span.is_some_and(|span| {
+            is_of_value && holds_one(span, &causes)
+                || is_doubtful && doubts.iter().any(|doubt| lies_in(span, doubt))
+        })
     });
 }
 
@@ -68,8 +68,7 @@ fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
             let before = sources.text(at.source).as_bytes().get(..at.range().start)?;
             let first = before.len().saturating_sub(LOOKED_AT);
             let line = memchr::memrchr(b'\n', &before[first..]).map_or(first, |end| first + end);
-            let line = Span::new(at.source, line, at.range().start);
-            Some(line.to(at))
+            Some(Span::new(at.source, line, at.range().end))
         }
         _ => None,
     }
@@ -94,9 +93,14 @@ fn follows_category(found: &Diagnostic, words: &BTreeSet<Span>, sources: &Source
     })
 }
 
-/// Whether a value stands behind one of some places, in the same brackets.
+/// Whether a value without a name stands behind one of some places, in the same brackets.
 fn stands_behind(found: &Diagnostic, places: &BTreeSet<Span>, sources: &Sources) -> bool {
     let Some(at) = found.span() else { return false };
+    let rest = sources.text(at.source).as_bytes().get(at.range().end..).unwrap_or_default();
+    let next = rest.iter().take(LOOKED_AT).find(|byte| !byte.is_ascii_whitespace());
+    if next == Some(&b'=') {
+        return false;
+    }
     let place = places.range(..=at).next_back().filter(|place| place.source == at.source);
     let between = place.and_then(|place| {
         let text = sources.text(at.source).get(place.start as usize..at.range().start)?;
@@ -141,28 +145,24 @@ mod tests {
     use super::*;
     use crate::{Settings, load};
 
+    /// The codes of what is told of these lines.
+    fn codes(lines: &str) -> Vec<&'static str> {
+        let text = format!("scene 1\n{lines}\n");
+        let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+        let path = Path::new("a.scene");
+        let told = load(path, &files, &Registry::new(), &Settings::default()).diagnostics;
+        told.iter().map(|found| found.code).collect()
+    }
+
     #[test]
     fn a_call_is_not_said_to_lack_what_stands_behind_a_missing_bracket() {
-        let codes = |call: &str| {
-            let text = format!("scene 1\nlet c = {{ a = rgb.srgb(0.8, 0.7{call} }}\n");
-            let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-            let path = Path::new("a.scene");
-            let told = load(path, &files, &Registry::new(), &Settings::default()).diagnostics;
-            told.iter().map(|found| found.code).collect::<Vec<_>>()
-        };
-        assert_eq!(codes(")"), ["E0403", "E0409"]);
-        assert_eq!(codes(""), ["E0009", "E0409"]);
+        assert_eq!(codes("let c = { a = rgb.srgb(0.8, 0.7) }"), ["E0403", "E0409"]);
+        assert_eq!(codes("let c = { a = rgb.srgb(0.8, 0.7 }"), ["E0009", "E0409"]);
     }
 
     #[test]
     fn a_call_is_not_said_to_have_too_many_arguments_for_one_without_its_comma() {
-        let codes = |call: &str| {
-            let text = format!("scene 1\nfn half(x: float) = x / 2\nlet c = {call}\n");
-            let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-            let path = Path::new("a.scene");
-            let told = load(path, &files, &Registry::new(), &Settings::default()).diagnostics;
-            told.iter().map(|found| found.code).collect::<Vec<_>>()
-        };
+        let codes = |call: &str| codes(&format!("fn half(x: float) = x / 2\nlet c = {call}"));
         assert_eq!(codes("rgb.srgb(0.1 0.2, 0.3, 0.4)"), ["E0014", "E0409"]);
         assert_eq!(codes("half(1 2)"), ["E0014", "E0409"]);
         assert_eq!(codes("half([1 2], 3)"), ["E0014", "E0402", "E0409"]);

@@ -29,6 +29,8 @@ struct Open<'a> {
     /// Whether lines tell where it ends, once its first content has been met: that stands on its own line or is
     /// indented further.
     tells_end: Option<bool>,
+    /// Whether it begins what is chosen by an `if`.
+    is_choice: bool,
 }
 
 impl Open<'_> {
@@ -53,7 +55,7 @@ impl Open<'_> {
 /// How the statement that begins at `start` most likely closes; `None` if its lines do not tell.
 ///
 /// A block whose lines are indented ends before the first line that is indented no more than that of its
-/// brace, or with the text.
+/// brace, or with the text; one that an `if` begins, before its `else`.
 pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing> {
     let braces = braces(text, start, limit)?;
     let closed = closed_by(&text[start..], [start, start], &braces);
@@ -89,6 +91,7 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
     let mut current = line(start);
     let mut indent = indent(&text[current..]);
     let (mut open, mut braces): (Vec<Open<'_>>, _) = (vec![], vec![]);
+    let (mut is_choice, mut ends_block) = (false, false);
     for token in tokens(text, start..text.len()) {
         if token.start - start > MOST {
             return None;
@@ -120,11 +123,23 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
             // What stands on the line of its brace.
             open.tells_end.get_or_insert(true);
         }
+        if token.text == "else" && !ends_block {
+            braces.extend(open.pop_if(|last| last.is_choice).map(|block| (block.at, token.start)));
+        }
+        ends_block = is("}");
+        is_choice |= token.text == "if";
         if is("([{") {
             if open.len() >= limit {
                 return None;
             }
-            open.push(Open { at: token.start, bracket: token.text, indent, tells_end: None });
+            let is_choice = std::mem::take(&mut is_choice);
+            open.push(Open {
+                at: token.start,
+                bracket: token.text,
+                indent,
+                tells_end: None,
+                is_choice,
+            });
         } else if is(")]}") {
             // One of another kind leaves those inside it open, or stands for one that opened on its line.
             let opens = |open: &Open<'_>| {

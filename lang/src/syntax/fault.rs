@@ -147,6 +147,9 @@ fn unclosed(text: &str, source: SourceId, open: usize, closes: &[(usize, usize)]
     let all = || closes.iter().filter(|(_, other)| *other == at).map(|(one, _)| *one);
     let others = all().filter(|one| *one != open);
     let found = others.fold(found, |found, one| found.label(span(one..one + 1), "nor is this"));
+    if text[at..].starts_with("else") {
+        return found.guess(span(at..at), "} ");
+    }
     let end = if text[..at].ends_with('\n') { "" } else { "\n" };
     let braces = all().map(|one| format!("{}}}\n", indent_of(text, one)));
     found.guess(span(at..at), format!("{end}{}", braces.collect::<String>()))

@@ -24,7 +24,9 @@ pub(super) fn read(
             continue;
         }
         let cells: Vec<&str> = cells(line).take(1024).collect();
-        let is_header = points.is_empty() && header.is_none() && cells[0].parse::<f64>().is_err();
+        // A quote alone.
+        let Some(first) = cells.first() else { continue };
+        let is_header = points.is_empty() && header.is_none() && first.parse::<f64>().is_err();
         if is_header {
             header = Some(cells);
             continue;
@@ -69,6 +71,7 @@ mod tests {
     fn columns_by_blank_comma_and_name() {
         let two = vec![(400.0, 0.1), (700.0, 0.5)];
         assert_eq!(read(b"# x\n400 0.1\n700\t.5\n", None, 9), Ok(two.clone()));
+        assert_eq!(read(b"\"\n400 0.1\n\"\"\n700 .5", None, 9), Ok(two.clone()));
         assert_eq!(read(b"nm,a,b\n400,9,0.1\n700,9,.5", Some("b"), 9), Ok(two));
     }
 

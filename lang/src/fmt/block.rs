@@ -31,7 +31,8 @@ impl Layout<'_> {
         let pad: usize = (entry.from..entry.core.min(entry.from + 16))
             .map(|at| usize::from(self.pieces[at].pad))
             .sum();
-        let comma = usize::from(self.keeps_comma(entry.core));
+        // A comment alone ends no statement.
+        let comma = usize::from(entry.core > entry.from && self.keeps_comma(entry.core));
         if self.fits_here(entry.from, entry.core, pad + comma) {
             self.flat(entry.from, entry.core, indent);
         } else {

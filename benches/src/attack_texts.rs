@@ -27,6 +27,8 @@ fn lines(n: usize, line: impl Fn(usize) -> String) -> String {
 
 /// What is spent in evaluation.
 fn evaluated() -> Vec<Attack> {
+    let deep =
+        |of: fn(usize) -> String| lines(200_000, |i| format!("let a{} = {}\n", i + 1, of(i)));
     let doubled = lines(60, |i| format!("let x{} = [x{i}, x{i}]\n", i + 1));
     vec![
         attack("nested loops", "for i in 0..1000000 { for j in 0..1000000 { let x = i * j } }"),
@@ -54,6 +56,11 @@ fn evaluated() -> Vec<Attack> {
                 i => format!("fn f{i}(x: int) = [f{0}(x), f{0}(x)]\n", i - 1),
             }) + "let a = f59(1)",
         ),
+        attack(
+            "records in records",
+            "let a0 = {}\n".to_owned() + &deep(|i| format!("{{ a = a{i} }}")),
+        ),
+        attack("lists in lists", "let a0 = [true]\n".to_owned() + &deep(|i| format!("[a{i}]"))),
         attack("nodes", "for i in 0..2000000 { shape sphere { radius = 1 m } }"),
         attack(
             "sets",
@@ -116,7 +123,7 @@ fn copied() -> Vec<Attack> {
 }
 
 /// What is spent in reading one text: each text is made when it is its turn, as it is large.
-const READ: [fn() -> Attack; 26] = [
+const READ: [fn() -> Attack; 27] = [
     || attack("open braces", "{".repeat(MUCH)),
     || attack("closing braces", "}".repeat(MUCH)),
     || attack("lines of braces", "{\n".repeat(MUCH / 2)),
@@ -139,6 +146,7 @@ const READ: [fn() -> Attack; 26] = [
     || attack("long texts", format!("let a = \"{}\"\n", "x".repeat(1 << 20)).repeat(58)),
     || attack("long path", format!("let a = b{}", ".a".repeat(MUCH / 2))),
     || attack("long name", format!("let a = {}", "b".repeat(MUCH))),
+    || attack("long number", format!("let a = {}", "9".repeat(MUCH))),
     || attack("long list", format!("let a = [{}]", "x, ".repeat(MUCH / 3))),
     || attack("operators", format!("let a = 1{}", " + 1".repeat(MUCH / 4))),
     || attack("else if", format!("if true {{ }} {}", "else if true { } ".repeat(3_000_000))),

@@ -34,6 +34,14 @@ fn what_is_meant_to_hurt_is_refused_within_256_mib_and_its_time() {
 }
 
 #[test]
+fn ten_megabytes_of_remarks_are_laid_out_in_their_time() {
+    let text = "scene 1\n".to_owned() + &"// a\n".repeat(2_000_000);
+    let folder = Folder::new("remarks").with("a.scene", &text);
+    let done = folder.luxel_under(&format!("ulimit -t {SECONDS}"), &["fmt", "--check", "a.scene"]);
+    assert_eq!(done.code, 0, "{done:?}");
+}
+
+#[test]
 fn time_beyond_the_limit_is_not_given() {
     let loops = "scene 1\nfor i in 0..1000000000 { let a = i }";
     let folder = Folder::new("time").with("a.scene", loops);

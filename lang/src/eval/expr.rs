@@ -9,7 +9,7 @@ use super::Evaluator;
 use super::arithmetic::measured;
 use super::builtins;
 use super::env::Env;
-use super::value::{FieldValue, Items, Range, Value};
+use super::value::{FieldValue, Mixed, Range, Value};
 use crate::syntax::{Comp, Expr, ExprNode, Field, Form, Name};
 
 impl Evaluator<'_> {
@@ -46,7 +46,10 @@ impl Evaluator<'_> {
                 let data: Vec<f64> = data.iter().map(|x| x * unit.scale).collect();
                 Value::numbers(data, unit.dimension, *form)
             }
-            ExprNode::Items { items, unit, form } => self.items(items, unit.as_deref(), *form, env),
+            ExprNode::Items { items, unit, form } => {
+                let made = self.items(items, unit.as_deref(), *form, env);
+                self.shallow(made, expr.span)
+            }
             ExprNode::Paren { inner, unit } => {
                 let value = self.eval(inner, env);
                 self.with_unit(value, unit.as_deref(), inner.span)
@@ -64,7 +67,7 @@ impl Evaluator<'_> {
             }
             ExprNode::Record(fields) => {
                 let fields = self.fields(fields, env);
-                Value::Record(Rc::new(fields))
+                self.shallow(Value::record(fields), expr.span)
             }
             ExprNode::Comp(comp) => self.comp(comp, expr.span, env),
             ExprNode::If { arms, otherwise } => {
@@ -137,9 +140,14 @@ impl Evaluator<'_> {
                 module.names.get(&name.text).cloned(),
                 module.names.keys().map(|name| &**name).collect(),
             ),
-            Value::Record(fields) => (
-                fields.iter().rev().find(|f| f.name.text == name.text).map(|f| f.value.clone()),
-                fields.iter().map(|f| &*f.name.text).collect(),
+            Value::Record(record) => (
+                record
+                    .fields
+                    .iter()
+                    .rev()
+                    .find(|f| f.name.text == name.text)
+                    .map(|f| f.value.clone()),
+                record.fields.iter().map(|f| &*f.name.text).collect(),
             ),
             Value::Object(object) => (
                 object.fields.iter().find(|f| f.name.text == name.text).map(|f| f.value.clone()),
@@ -297,7 +305,7 @@ impl Evaluator<'_> {
             return Value::Poison;
         }
         let made = out.len() * size_of::<Value>();
-        let list = Value::list(out, Form::List);
+        let list = self.shallow(Value::list(out, Form::List), span);
         if let Value::Numbers(packed) = &list {
             let spared = made.saturating_sub(packed.data.len() * size_of::<f64>());
             self.held.set(self.held.get().saturating_sub(spared));
@@ -321,8 +329,17 @@ impl Evaluator<'_> {
             Value::Items(items) => Some(Elements::Items(items)),
             Value::Range(range) if range.dimension.is_none() => {
                 if range.start.fract().abs() > 0.0 || range.end.fract().abs() > 0.0 {
-                    let message = "a loop runs over whole numbers";
-                    self.poison("E0208", span, message);
+                    let found = Diagnostic::error("E0208", span, "a loop runs over whole numbers");
+                    // `1...3` is read as `1.. .3`.
+                    let dots = self.written(span).find("...");
+                    self.tell(dots.into_iter().fold(found, |found, at| {
+                        let dots = Span::new(
+                            span.source,
+                            span.range().start + at,
+                            span.range().start + at + 3,
+                        );
+                        found.help("a range with its end is written `1..=3`").guess(dots, "..=")
+                    }));
                     return None;
                 }
                 let count = range.end - range.start + if range.inclusive { 1.0 } else { 0.0 };
@@ -345,7 +362,7 @@ pub(super) const LARGE: usize = 64;
 /// What a loop runs over.
 pub(super) enum Elements {
     Numbers(Rc<super::value::Numbers>),
-    Items(Rc<Items>),
+    Items(Rc<Mixed>),
     /// First and count.
     Range(f64, f64),
 }

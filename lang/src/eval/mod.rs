@@ -321,6 +321,17 @@ impl<'a> Evaluator<'a> {
         false
     }
 
+    /// A value, unless others stand in it too deep, which is told.
+    fn shallow(&mut self, value: Value, span: Span) -> Value {
+        if value.depth() <= self.budgets.nesting {
+            return value;
+        }
+        let message =
+            format!("values stand in one another more than {} deep", self.budgets.nesting);
+        self.over_budget("E0507", span, message, "nesting");
+        Value::Poison
+    }
+
     fn leave(&mut self) {
         self.depth -= 1;
     }

@@ -133,7 +133,7 @@ impl Evaluator<'_> {
     pub(super) fn amend(&mut self, value: Value, fields: Vec<FieldValue>, span: Span) -> Value {
         let (old, is_kept) = match &value {
             Value::Object(object) => (object.fields.len(), 0),
-            Value::Record(fields) => (fields.len(), 1),
+            Value::Record(record) => (record.fields.len(), 1),
             _ => (0, 0),
         };
         let all = old + fields.len();
@@ -159,7 +159,7 @@ impl Evaluator<'_> {
                 let made = ObjectValue { what, fields, pose, head, depth, instances, held };
                 Value::Object(Rc::new(made))
             }
-            Value::Record(old) => Value::Record(Rc::new(merged(&old, fields))),
+            Value::Record(old) => self.shallow(Value::record(merged(&old.fields, fields)), span),
             Value::Poison => Value::Poison,
             other => {
                 let message =
@@ -282,7 +282,7 @@ impl Evaluator<'_> {
             return vec![];
         };
         let mut out = vec![];
-        for entry in record.iter() {
+        for entry in &record.fields {
             match self.node_of(entry, Kind::Material) {
                 Some(id) => out.push((entry.name.text.clone(), id)),
                 None => *is_placed = false,
@@ -435,6 +435,7 @@ pub(super) fn merged(old: &[FieldValue], new: Vec<FieldValue>) -> Vec<FieldValue
     out.extend(new);
     out
 }
+
 /// Whether a value stands in a text that no name stands before.
 fn has_nameless(text: &str) -> bool {
     text.match_indices('=').any(|(at, _)| {

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use luxel_sdk::params::{Dimension, UNITS, Unit};
 
-use super::value::{Range, Value};
+use super::value::{FieldValue, Range, Value};
 use crate::syntax::Form;
 
 /// Elements that are shown, at most.
@@ -19,6 +19,11 @@ const UNSAID: [&str; 6] = ["um", "inch", "ft", "EV", "rad", "rad/s"];
 
 /// A value as a person would write it, lists by their first elements.
 pub(super) fn readable(value: &Value) -> String {
+    shown(value, &mut (SHOWN * SHOWN))
+}
+
+/// The same, of a value in which others stand that are shown as long as there is room for some.
+fn shown(value: &Value, room: &mut usize) -> String {
     match value {
         Value::Number(x, dimension) => in_units(&[*x], *dimension, &|numbers| number(numbers[0])),
         Value::Numbers(n) => {
@@ -29,15 +34,15 @@ pub(super) fn readable(value: &Value) -> String {
             })
         }
         Value::Items(items) => {
-            let first = items.items.iter().take(SHOWN).map(readable).collect();
+            let first = fitting(&items.items, room).iter().map(|item| shown(item, room)).collect();
             listed(first, items.items.len(), items.form)
         }
-        Value::Record(fields) => {
-            let one = |field: &super::value::FieldValue| {
-                format!("{} = {}", field.name.text, readable(&field.value))
-            };
-            let mut parts: Vec<String> = fields.iter().take(SHOWN).map(one).collect();
-            if fields.len() > SHOWN {
+        Value::Record(record) => {
+            let first = fitting(&record.fields, room);
+            let one =
+                |field: &FieldValue| format!("{} = {}", field.name.text, shown(&field.value, room));
+            let mut parts: Vec<String> = first.iter().map(one).collect();
+            if record.fields.len() > first.len() {
                 parts.push("…".to_owned());
             }
             format!("{{ {} }}", parts.join(", "))
@@ -45,6 +50,13 @@ pub(super) fn readable(value: &Value) -> String {
         Value::Range(range) => of_range(range),
         other => other.show(),
     }
+}
+
+/// The first of some values, as many as there is room for.
+fn fitting<'a, T>(values: &'a [T], room: &mut usize) -> &'a [T] {
+    let n = values.len().min(SHOWN).min(*room);
+    *room -= n;
+    &values[..n]
 }
 
 /// Seven digits, which is what a 32-bit number tells apart, without zeros at the end.
@@ -177,5 +189,9 @@ mod tests {
         assert_eq!(readable(&Value::Range(range)), "0..=9");
         let mixed = vec![Value::plain(1.0), Value::Text("a".into())];
         assert_eq!(readable(&Value::list(mixed, Form::Tuple)), "(1, \"a\")");
+        let twice = |inner: Value| Value::list(vec![inner.clone(), inner], Form::List);
+        let nested = (0..40).fold(Value::Bool(true), |inner, _| twice(inner));
+        let shown = readable(&nested);
+        assert!(shown.starts_with("[[[[[[[[[… 2 in all], [… 2 in all]]"), "{shown}");
     }
 }

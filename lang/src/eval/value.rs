@@ -26,8 +26,8 @@ pub(crate) enum Value {
     /// A vector or list of numbers of one dimension.
     Numbers(Rc<Numbers>),
     /// Any other vector or list.
-    Items(Rc<Items>),
-    Record(Rc<Vec<FieldValue>>),
+    Items(Rc<Mixed>),
+    Record(Rc<Record>),
     Range(Range),
     Color(Color, Dimension),
     Transform(Rc<Pose>),
@@ -48,9 +48,19 @@ pub(crate) struct Numbers {
 
 /// Values of any kind.
 #[derive(Clone, Debug)]
-pub(crate) struct Items {
+pub(crate) struct Mixed {
     pub(crate) items: Vec<Value>,
     pub(crate) form: Form,
+    /// How deep others stand in it.
+    depth: usize,
+}
+
+/// Values with names.
+#[derive(Clone, Debug)]
+pub(crate) struct Record {
+    pub(crate) fields: Vec<FieldValue>,
+    /// How deep others stand in it.
+    depth: usize,
 }
 
 /// `start..end` or `start..=end`, in SI units.
@@ -169,6 +179,9 @@ pub(crate) struct Function {
     pub(crate) env: Env,
 }
 
+/// Characters of a text that are shown, at most.
+const LONGEST: usize = 100;
+
 impl Value {
     /// A plain number.
     pub(crate) fn plain(x: f64) -> Self {
@@ -179,7 +192,7 @@ impl Value {
     pub(crate) fn list(items: Vec<Self>, form: Form) -> Self {
         let dimension = match items.first() {
             Some(Self::Number(_, dimension)) => *dimension,
-            _ => return Self::Items(Rc::new(Items { items, form })),
+            _ => return Self::mixed(items, form),
         };
         let packed: Option<Vec<f64>> = items
             .iter()
@@ -190,7 +203,27 @@ impl Value {
             .collect();
         match packed {
             Some(data) => Self::numbers(data, dimension, form),
-            None => Self::Items(Rc::new(Items { items, form })),
+            None => Self::mixed(items, form),
+        }
+    }
+
+    fn mixed(items: Vec<Self>, form: Form) -> Self {
+        let depth = 1 + items.iter().map(Self::depth).max().unwrap_or_default();
+        Self::Items(Rc::new(Mixed { items, form, depth }))
+    }
+
+    /// Values with names.
+    pub(crate) fn record(fields: Vec<FieldValue>) -> Self {
+        let depth = 1 + fields.iter().map(|field| field.value.depth()).max().unwrap_or_default();
+        Self::Record(Rc::new(Record { fields, depth }))
+    }
+
+    /// How deep lists and records stand in it.
+    pub(crate) fn depth(&self) -> usize {
+        match self {
+            Self::Items(items) => items.depth,
+            Self::Record(record) => record.depth,
+            _ => 0,
         }
     }
 
@@ -204,7 +237,7 @@ impl Value {
         let inside = match self {
             Self::Numbers(n) => 64 + n.data.len() * size_of::<f64>(),
             Self::Items(i) => 64 + i.items.len() * size_of::<Self>(),
-            Self::Record(fields) => 64 + fields.len() * size_of::<FieldValue>(),
+            Self::Record(record) => 64 + record.fields.len() * size_of::<FieldValue>(),
             Self::Transform(_) | Self::Look(_) => 256,
             _ => 0,
         };
@@ -244,7 +277,10 @@ impl Value {
     pub(crate) fn show(&self) -> String {
         match self {
             Self::Number(x, dimension) => show_number(*x, *dimension),
-            Self::Text(text) => format!("{text:?}"),
+            Self::Text(text) => match text.char_indices().nth(LONGEST) {
+                Some((end, _)) => format!("{:?}…", &text[..end]),
+                None => format!("{text:?}"),
+            },
             Self::Numbers(n) if n.data.len() <= 4 => {
                 let parts: Vec<String> = n.data.iter().map(ToString::to_string).collect();
                 let unit = unit_text(n.dimension);

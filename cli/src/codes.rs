@@ -13,10 +13,14 @@ use crate::exit::{Exit, Failure};
 /// A code that no message has.
 pub(crate) fn asked(given: &Path) -> Result<Option<Page>, Failure> {
     let word = given.to_str().unwrap_or_default().to_uppercase();
-    let digits = word.strip_prefix('E').unwrap_or_default();
-    if digits.len() != 4 || !digits.bytes().all(|byte| byte.is_ascii_digit()) || given.exists() {
+    let digits = word.strip_prefix('E').unwrap_or(&word);
+    if !(3..=4).contains(&digits.len())
+        || !digits.bytes().all(|byte| byte.is_ascii_digit())
+        || given.exists()
+    {
         return Ok(None);
     }
+    let word = format!("E{digits:0>4}");
     let unknown = || Failure::new(Exit::Input, format!("no message has the code {word}"));
     page(&word).map(Some).ok_or_else(unknown)
 }
@@ -55,6 +59,9 @@ mod tests {
     fn codes_are_told_from_files_and_unknown_ones_are_refused() {
         let found = |word: &str| asked(Path::new(word)).map_err(|failure| failure.message);
         assert_eq!(found("e0402").unwrap().map(|page| page.title), Some("an unknown parameter"));
+        for word in ["E402", "402", "0402"] {
+            assert_eq!(found(word).unwrap().map(|page| page.code), Some("E0402"), "{word}");
+        }
         assert_eq!(found("E9999"), Err("no message has the code E9999".to_owned()));
         for file in ["a.scene", "E0402.scene", "E04", "fog", "E040é"] {
             assert_eq!(found(file), Ok(None), "{file}");

@@ -287,6 +287,7 @@ fn number(
             let message = format!("`{}` wants a whole number, not {}", param.name, number_words(x));
             return Err(Misfit::new("E0208", message));
         }
+        in_range(param, x, "")?;
         if !(0.0..=f64::from(u32::MAX)).contains(&x) {
             let found = number_words(x);
             let message = format!("`{}` is {found}; it must be from 0 to {}", param.name, u32::MAX);

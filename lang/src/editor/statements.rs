@@ -13,7 +13,7 @@ use super::schema::Given;
 use super::symbols::{Role, Sort};
 use crate::eval::types;
 use crate::manual::{self, Function};
-use crate::syntax::StmtNode;
+use crate::syntax::{OF_A_TEXT, StmtNode};
 
 /// Words that begin statements, with what is written after them and what they mean.
 const WORDS: [(&str, &str, &str); 13] = [
@@ -150,7 +150,7 @@ pub(super) fn functions(of: impl Fn(&str) -> bool) -> Vec<Item> {
         if function.arguments.is_empty() {
             return item.detail("a constant");
         }
-        let texts = ["metal", "glass", "illuminant", "spectrum.file"].contains(&name);
+        let texts = OF_A_TEXT.contains(&name) || name == "spectrum.file";
         let insert = if texts { format!("{name}(\"$0\")") } else { format!("{name}($0)") };
         item.detail(function.usage).insert(insert)
     };

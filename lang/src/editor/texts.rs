@@ -7,6 +7,7 @@ use luxel_sdk::params::{Param, Type};
 use super::context::{Context, Head};
 use super::named::Around;
 use super::schema::{self, Given};
+use crate::syntax::OF_A_TEXT;
 
 /// What the string at a place stands for.
 pub(super) enum Said {
@@ -24,9 +25,6 @@ pub(super) enum Said {
     Other,
 }
 
-/// The functions that take names of catalogues.
-const CATALOGUES: [&str; 3] = ["metal", "glass", "illuminant"];
-
 /// What the string at a place stands for.
 pub(super) fn said(around: Around<'_>, here: &Context<'_>) -> Said {
     let last = here.text_back(1);
@@ -34,7 +32,7 @@ pub(super) fn said(around: Around<'_>, here: &Context<'_>) -> Said {
         if callee == "spectrum.file" && matches!(here.text_back(2), "file" | "path") {
             return Said::File(SPECTRA.to_vec());
         }
-        let name = CATALOGUES.into_iter().find(|name| name == callee);
+        let name = OF_A_TEXT.into_iter().find(|name| name == callee);
         return name.map_or(Said::Other, Said::Named);
     }
     match last {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, SourceId, Span, near};
+use luxel_core::diag::{Diagnostic, Near, SourceId, Span, near};
 use luxel_core::files::FileError;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Unit};
@@ -114,6 +114,7 @@ impl Evaluator<'_> {
             StmtNode::Units(fields) => Some(fields),
             _ => None,
         });
+        let mut said = BTreeMap::new();
         for field in fields.flatten() {
             let Some(wanted) = super::types::dimension(&field.name.text).filter(|d| !d.is_none())
             else {
@@ -133,6 +134,11 @@ impl Evaluator<'_> {
             };
             match unit {
                 Some(unit) if unit.dimension == wanted => {
+                    if let Some(first) = said.insert(wanted, field.name.span) {
+                        let message = format!("the unit of `{}` is given twice", field.name.text);
+                        let found = Diagnostic::error("E0404", field.name.span, message);
+                        self.tell(found.label(first, "first given here"));
+                    }
                     out.insert(wanted, unit.scale);
                 }
                 Some(unit) => {
@@ -142,7 +148,12 @@ impl Evaluator<'_> {
                     out.extend([one(wanted)]);
                 }
                 None => {
-                    self.poison("E0204", field.value.span, "a unit's name is wanted, as `mm`");
+                    let span = field.value.span;
+                    let message = format!("a unit's name is wanted, for {}", wanted.name());
+                    let found = Diagnostic::error("E0204", span, message);
+                    let near = syntax::suggest_unit(self.written(span));
+                    let near = near.map(|(name, grade)| Near { name, grade });
+                    self.tell(found.meant(span, near));
                     out.extend([one(wanted)]);
                 }
             }

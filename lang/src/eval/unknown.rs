@@ -8,14 +8,11 @@ use luxel_sdk::params::Unit;
 
 use super::builtins;
 use super::resolve::{Resolver, Scope};
-use crate::syntax::{Expr, ExprNode, Name, Op, path_around};
+use crate::syntax::{Expr, ExprNode, Name, OF_A_TEXT, Op, path_around};
 
 /// Known names among which near ones are looked for: more than `near` looks at, names that are known
 /// twice counted.
 const LOOKED_AT: usize = 30_000;
-
-/// Functions that take the name of something measured, as a text.
-const NAMED: [&str; 3] = ["metal", "glass", "illuminant"];
 
 /// What other languages call a vector.
 const VECTORS: [&str; 11] = [
@@ -51,7 +48,7 @@ impl Resolver<'_> {
             }
             _ => is_name(value),
         };
-        if !NAMED.contains(&function) || !is_text || self.free.is_some() {
+        if !OF_A_TEXT.contains(&function) || !is_text || self.free.is_some() {
             return false;
         }
         let message = format!("there is no `{text}`");
@@ -91,11 +88,8 @@ impl Resolver<'_> {
                 ),
             );
         }
-        if let Some((all, mended)) = self.unit_without_powers(name.span) {
-            let message =
-                format!("there is no unit `{}`", self.text.get(all.range()).unwrap_or(""));
-            let found = Diagnostic::error("E0204", all, message);
-            return found.help("powers are written with `^`").fix(all, mended);
+        if let Some(found) = self.power(name.span) {
+            return found;
         }
         if let Some(path) = path_around(self.text, name.span.range().start) {
             let (text, source) = (&self.text[path.clone()], name.span.source);
@@ -108,12 +102,14 @@ impl Resolver<'_> {
             .any(|known| known.split_once('.').is_some_and(|(space, _)| space == &*name.text));
         let (shown, place) = if dotted { (joined, span) } else { (&*name.text, name.span) };
         let mut found = Diagnostic::error("E0101", place, format!("there is no `{shown}`"));
-        let meant = self.meant(shown).filter(|meant| meant.name != shown);
+        let meant = self.meant(shown, place).filter(|meant| meant.name != shown);
         let member = meant.is_none().then(|| member_of_function(name, joined, span)).flatten();
         if let Some(found) = member {
             return found;
         }
-        if Unit::named(shown).is_some() {
+        if let Some(number) = self.stop(place) {
+            found = found.help("an f-number is written without `f/`").guess(number, "");
+        } else if Unit::named(shown).is_some() {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
         } else if Kind::of_word(shown).is_some() {
             found = found.help(format!("an object is written `{shown} NAME {{ … }}`"));
@@ -139,8 +135,21 @@ impl Resolver<'_> {
         found
     }
 
+    /// A name in what was to be a unit with a power.
+    fn power(&self, name: Span) -> Option<Diagnostic> {
+        let found = |all: Span| {
+            let text = self.text.get(all.range()).unwrap_or_default();
+            Diagnostic::error("E0204", all, format!("there is no unit `{text}`"))
+        };
+        if let Some((all, mended)) = self.unit_without_powers(name) {
+            return Some(found(all).help("powers are written with `^`").fix(all, mended));
+        }
+        let (all, mended) = self.per_unit(name)?;
+        Some(found(all).help("one over a unit is written with a power").guess(all, mended))
+    }
+
     /// The name that an unknown one most likely stands for.
-    fn meant(&self, shown: &str) -> Option<Near<'_>> {
+    fn meant(&self, shown: &str, place: Span) -> Option<Near<'_>> {
         let theirs = FUNCTIONS.iter().find(|(theirs, _)| *theirs == shown);
         if let Some((_, name)) = theirs {
             return Some(Near { name, grade: Grade::Guess });
@@ -148,7 +157,11 @@ impl Resolver<'_> {
         if ABSENT.contains(&shown) {
             return None;
         }
-        let mut known: Vec<&str> = builtins::names().chain(["true", "false"]).collect();
+        // What a function is called by names no value.
+        let rest = self.text.get(place.range().end..).unwrap_or_default();
+        let is_called = rest.trim_start_matches([' ', '\t']).starts_with('(');
+        let builtins = || builtins::names().filter(|name| is_called || builtins::is_value(name));
+        let mut known: Vec<&str> = builtins().chain(["true", "false"]).collect();
         known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
         known.extend(self.before.into_iter().flat_map(|before| before()));
         // Which are looked at must not depend on the order in which a table holds them.
@@ -166,6 +179,35 @@ impl Resolver<'_> {
         let alike = || known.iter().copied().find(|known| known.eq_ignore_ascii_case(shown));
         let near = ending.or_else(|| near(shown, known.iter().copied()));
         near.or_else(|| alike().map(|name| Near { name, grade: Grade::Guess }))
+    }
+
+    /// `0.2/m` and `0.2 /m^2`: the unit that divides a number, and how it is written.
+    fn per_unit(&self, name: Span) -> Option<(Span, String)> {
+        let (before, rest) = self.text.split_at_checked(name.range().start)?;
+        let unit = rest.get(..name.range().len()).filter(|word| Unit::named(word).is_some())?;
+        let number = before.trim_end_matches(' ').strip_suffix('/')?.trim_end_matches(' ');
+        let power = rest[unit.len()..]
+            .strip_prefix('^')
+            .map_or("", |rest| &rest[..rest.bytes().take_while(u8::is_ascii_digit).count()]);
+        let behind = unit.len() + if power.is_empty() { 0 } else { 1 + power.len() };
+        let is_whole = !rest[behind..].starts_with(['^', '/', '.', '(', '[']);
+        let sign = number.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+        let is_number = sign.len() < number.len();
+        if !is_whole || !is_number || !sign.trim_end().ends_with(['=', '(', '[', ',']) {
+            return None;
+        }
+        let all = Span::new(name.source, number.len(), name.range().start + behind);
+        let power = if power.is_empty() { "1" } else { power };
+        Some((all, format!(" {unit}^-{power}")))
+    }
+
+    /// What is too much of `f/2.8`.
+    fn stop(&self, name: Span) -> Option<Span> {
+        let rest = self.text.get(name.range().start..)?;
+        let number = rest.strip_prefix("f/")?.trim_start_matches(' ');
+        let gap = rest.len() - number.len();
+        let is_number = number.starts_with(|c: char| c.is_ascii_digit());
+        is_number.then(|| Span::new(name.source, name.range().start, name.range().start + gap))
     }
 
     /// The unit behind a number of which a name is a part, and how it is written: `W/m2/sr`.
@@ -200,7 +242,7 @@ fn member_of_function(name: &Name, joined: &str, span: Span) -> Option<Diagnosti
         return Some(found.meant(span, Some(Near { name: member, grade: Grade::Guess })));
     }
     let found = found.help(format!("`{}` is a function", name.text));
-    let is_named = NAMED.contains(&&*name.text);
+    let is_named = OF_A_TEXT.contains(&&*name.text);
     Some(if is_named { found.guess(span, format!("{}(\"{member}\")", name.text)) } else { found })
 }
 

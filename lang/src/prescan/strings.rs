@@ -41,7 +41,10 @@ impl Scanner<'_> {
             Some(b'u') if rest.get(1) == Some(&b'{') => {
                 let digits = rest[2..].iter().take_while(|b| b.is_ascii_hexdigit()).count();
                 let closed = rest.get(2 + digits) == Some(&b'}');
-                ((1..=6).contains(&digits) && closed).then_some(digits + 3)
+                let code = str::from_utf8(&rest[2..2 + digits.min(6)]).ok();
+                let code = code.and_then(|code| u32::from_str_radix(code, 16).ok());
+                let is_known = digits <= 6 && code.and_then(char::from_u32).is_some();
+                (is_known && closed).then_some(digits + 3)
             }
             _ => None,
         };

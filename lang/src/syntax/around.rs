@@ -95,6 +95,11 @@ impl<'a> Around<'a> {
             || self.tokens.get(i).is_some_and(|t| t.first_on_line)
     }
 
+    /// Whether token `i` is the first of its argument.
+    pub(super) fn begins_argument(&self, i: usize) -> bool {
+        i > 0 && matches!(self.word(i - 1), "(" | ",")
+    }
+
     /// What the place of the mistake is in.
     pub(super) fn inner(&self) -> Place {
         self.open.last().map_or(self.place, |open| self.within(*open))

@@ -102,20 +102,8 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
         current = begun.unwrap_or(current);
         if let Some(begun) = begun.filter(blank) {
             indent = token.start - begun;
-            let is_field = is_field(&text[token.start..]);
-            let mut n_open = open.len();
-            while let Some(last) = open.last_mut() {
-                let ends = match token.text {
-                    ")" | "]" => false,
-                    "}" => last.is_right_of(indent),
-                    // Fields stand in no file.
-                    _ if is_field && n_open == 1 => last.goes_on(),
-                    _ => last.ends_before(indent),
-                };
-                let Some(block) = open.pop_if(|_| ends) else { break };
-                braces.push((block.at, begun));
-                n_open -= 1;
-            }
+            let ended = ended(&mut open, indent, &text[token.start..], token.text);
+            braces.extend(ended.into_iter().map(|at| (at, begun)));
             if open.is_empty() && !braces.is_empty() {
                 return Some(braces);
             }
@@ -141,14 +129,7 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
                 is_choice,
             });
         } else if is(")]}") {
-            // One of another kind leaves those inside it open, or stands for one that opened on its line.
-            let opens = |open: &Open<'_>| {
-                matches!((open.bracket, token.text), ("(", ")") | ("[", "]") | ("{", "}"))
-            };
-            let stands = |open: &[Open<'_>]| open.last().is_some_and(|last| last.at >= current);
-            let end = open.iter().rposition(opens);
-            let end = end.unwrap_or_else(|| open.len() - usize::from(stands(&open)));
-            open.truncate(end);
+            close(&mut open, token.text, current);
         }
     }
     for block in open.iter().rev() {
@@ -158,6 +139,36 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
         braces.push((block.at, text.len()));
     }
     (!braces.is_empty()).then_some(braces)
+}
+
+/// The blocks that end before a line that is indented so far, by where they open: they are open no more.
+fn ended(open: &mut Vec<Open<'_>>, indent: usize, line: &str, first: &str) -> Vec<usize> {
+    let is_field = is_field(line);
+    let (mut n_open, mut ended) = (open.len(), vec![]);
+    while let Some(last) = open.last_mut() {
+        let ends = match first {
+            ")" | "]" => false,
+            "}" => last.is_right_of(indent),
+            // Fields stand in no file.
+            _ if is_field && n_open == 1 => last.goes_on(),
+            _ => last.ends_before(indent),
+        };
+        let Some(block) = open.pop_if(|_| ends) else { break };
+        ended.push(block.at);
+        n_open -= 1;
+    }
+    ended
+}
+
+/// Closes what a bracket on the line from byte `line` on closes. One of another kind leaves those inside it open,
+/// or stands for one that opened on its line.
+fn close(open: &mut Vec<Open<'_>>, bracket: &str, line: usize) {
+    let opens =
+        |open: &Open<'_>| matches!((open.bracket, bracket), ("(", ")") | ("[", "]") | ("{", "}"));
+    let stands = |open: &[Open<'_>]| open.last().is_some_and(|last| last.at >= line);
+    let end = open.iter().rposition(opens);
+    let end = end.unwrap_or_else(|| open.len() - usize::from(stands(open)));
+    open.truncate(end);
 }
 
 /// Whether a value is given to a name there, which no statement of a file does.

@@ -36,6 +36,12 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     if first.text == "import" {
         return imported(&words).map(|(text, token)| name(text, token, token)).collect();
     }
+    // `for i, ball in balls` without its block.
+    if first.text == "for" {
+        let both = [word(1), word(3).filter(|_| mark(2) == ",")];
+        let both = both.into_iter().flatten().filter(|name| !RESERVED.contains(&name.text));
+        return both.map(|token| name(token.text, token, token)).collect();
+    }
     // `x := 3`, `letx: float = 3`
     if gives(1) && mark(1) != "(" {
         return glued(first.text).map(|text| name(text, first, first)).collect();
@@ -49,6 +55,14 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     let is_other = STATEMENTS.contains(&first.text) || is_category(first.text);
     let may_begin = nearest(first.text, DEFINING).is_some() || !is_other;
     let Some(second) = word(1).filter(|_| begins || may_begin) else { return Box::default() };
+    // `let höhe = 3`
+    let rest = &text[second.start..];
+    let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
+    let length = rest.find(|c| !is_of_name(c)).unwrap_or(rest.len());
+    if length > second.text.len() {
+        let span = Span::new(source, second.start, second.start + length);
+        return Box::new([Name { text: rest[..length].into(), span }]);
+    }
     match word(2) {
         // `let x int = 3`, `let go ld = 3`
         Some(third) if begins || gives(3) => {

@@ -10,8 +10,9 @@ use super::foreign::body_of_steps;
 use super::habits::habit;
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
-use super::make::{BEFORE_NAMES, OF_A_NUMBER, RESERVED, STATEMENTS, nameless};
+use super::make::{BEFORE_NAMES, OF_A_NUMBER, OF_A_TEXT, RESERVED, STATEMENTS, nameless};
 use super::peers::{BEGINS, is_pbrt};
+use super::unfinished::unfinished;
 
 /// A mistake with what is needed to go on after it.
 pub(super) struct Explained {
@@ -59,7 +60,8 @@ pub(super) fn explain(
         .filter(|_| !has_steps)
         .filter(|i| around.tokens[**i].text == "{")
         .map(|i| (around.tokens[*i].start, around.within(*i)));
-    let swallowed = around.swallowed().and_then(|back| around.before(back));
+    let swallowed = around.swallowed().map(|back| around.at - back);
+    let swallowed = swallowed.or_else(|| around.swallowed_by_head()).map(|i| &around.tokens[i]);
     let resume = swallowed.or_else(|| around.next_keyword());
     Explained {
         diagnostic,
@@ -72,6 +74,7 @@ pub(super) fn explain(
 impl<'a> Around<'a> {
     fn diagnose(&self) -> Diagnostic {
         self.number()
+            .or_else(|| unfinished(self))
             .or_else(|| habit(self))
             .or_else(|| head::head(self))
             .or_else(|| self.statement_head())
@@ -184,15 +187,6 @@ impl<'a> Around<'a> {
         Some(self.error("E0013", doubled, COMPARES.to_owned()).fix(self.span(doubled), "="))
     }
 
-    /// A word that begins a line after an operator, near the place where reading stopped: how many
-    /// tokens back.
-    fn swallowed(&self) -> Option<usize> {
-        (0..=3).find(|back| {
-            let word = self.before(*back).filter(|t| t.first_on_line && t.kind == TokenKind::Word);
-            word.is_some() && self.before(back + 1).is_some_and(Token::is_operator)
-        })
-    }
-
     /// The next word of the language that begins a line outside brackets, or of an object that no `=`
     /// stands before.
     fn next_keyword(&self) -> Option<&Token<'a>> {
@@ -226,15 +220,17 @@ impl<'a> Around<'a> {
         Some(self.error("E0015", operator, message))
     }
 
-    /// `[scale 2, move (1, 0, 0) m]`
+    /// `[scale 2, move (1, 0, 0) m]` and `metal "Au"`
     fn missing_brackets(&self) -> Option<Diagnostic> {
         let (current, callee) = (self.current()?, self.before(1)?);
-        let is_callee = OF_A_NUMBER.contains(&callee.text);
+        let is_text = current.kind == TokenKind::Text;
+        let of_this = if is_text { &OF_A_TEXT[..] } else { &OF_A_NUMBER };
+        let is_callee = of_this.contains(&callee.text);
         let before = self.before(2)?;
         let opens = before.is_operator() || matches!(before.text, "[" | "," | "(");
         let next = self.tokens.get(self.at + 1);
-        let is_word = current.kind == TokenKind::Word
-            && next.is_none_or(|next| matches!(next.text, ")" | "]" | ","));
+        let is_word = matches!(current.kind, TokenKind::Word | TokenKind::Text)
+            && next.is_none_or(|t| t.first_on_line || matches!(t.text, ")" | "]" | "}" | ","));
         let is_value = is_word || current.kind == TokenKind::Number;
         if !is_callee || !opens || !is_value || current.first_on_line {
             return None;
@@ -254,10 +250,16 @@ impl<'a> Around<'a> {
             return None;
         }
         let gap = Span::new(self.source, before.end(), before.end());
+        let is_value = before.kind == TokenKind::Number || matches!(before.text, ")" | "]");
+        if is_value && current.first_on_line && Unit::named(current.text).is_some() {
+            let found = self.error("E0023", current, "a unit stands on the line of its number");
+            return Some(found.guess(gap.to(self.span(current)), format!(" {}", current.text)));
+        }
         // `scale 2` may be a call, and `x cos(a)` a product.
         let calls = self.word(self.at + 1) == "(";
         let may_call = before.kind == TokenKind::Word && (calls || current.kind != TokenKind::Word);
-        let grade = if may_call { Grade::Guess } else { Grade::Sure };
+        let touches = before.end() == current.start;
+        let grade = if may_call || touches { Grade::Guess } else { Grade::Sure };
         let message = format!("a comma is missing before `{}`", short(current.text));
         // `f(0.5 0.5)`
         let is_call = self.open.last().is_some_and(|open| {
@@ -268,7 +270,10 @@ impl<'a> Around<'a> {
             let found = self.error("E0014", current, format!("{message}, or it stands here twice"));
             return Some(found.guess(gap.to(self.span(current)), ""));
         }
-        Some(self.error("E0014", current, message).mend(gap, ",", grade))
+        // `b c: int`: a type may be missing too.
+        let is_typed = before.kind == TokenKind::Word && self.word(self.at + 1) == ":";
+        let found = self.error("E0014", current, message);
+        Some(if is_typed { found } else { found.mend(gap, ",", grade) })
     }
 
     /// `max(1, 2) m`

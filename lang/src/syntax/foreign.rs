@@ -75,12 +75,23 @@ fn steps(around: &Around<'_>) -> Option<Diagnostic> {
     )
 }
 
-/// `fn f(int x) = x`
+/// What is said of a type that stands behind a name.
+pub(super) const TYPES: &str = "a type stands behind `:`";
+
+/// `fn f(int x) = x` and `fn f(x int) = x`
 fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
     let (name, ty) = (around.current()?, around.before(1)?);
     let first = around.tokens.iter().find(|t| t.kind != TokenKind::Doc)?;
     let in_head = first.text == "fn" && around.open.len() == 1 && name.kind == TokenKind::Word;
-    if !in_head || name.first_on_line || !type_names::names().any(|known| known == ty.text) {
+    let is_type = |token: &Token<'_>| type_names::names().any(|known| known == token.text);
+    if !in_head || name.first_on_line || !is_type(ty) && !is_type(name) {
+        return None;
+    }
+    if !is_type(ty) && around.begins_argument(around.at - 1) {
+        let gap = Span::new(around.source, ty.end(), name.start);
+        return Some(told(around.span(name), TYPES).fix(gap, ": "));
+    }
+    if !is_type(ty) {
         return None;
     }
     // `x: length length`
@@ -214,6 +225,15 @@ fn bare_vector(around: &Around<'_>) -> Option<Diagnostic> {
         return None;
     }
     let texts: Vec<&str> = numbers.iter().map(|t| t.text).collect();
+    let last = first + numbers.len() - 1;
+    // `0.2 1/m`
+    let unit = around.tokens.get(last + 2).filter(|unit| Unit::named(unit.text).is_some());
+    if let ([_, "1"], "/", Some(unit)) = (&texts[..], around.word(last + 1), unit) {
+        let all = around.span(numbers[1]).to(around.span(unit));
+        let found = told(all, "one over a unit is written with a power");
+        let is_whole = !matches!(around.word(last + 3), "^" | "/");
+        return Some(if is_whole { found.guess(all, format!("{}^-1", unit.text)) } else { found });
+    }
     Some(a_vector(around, numbers[0].start..numbers[numbers.len() - 1].end(), &texts))
 }
 

@@ -4,10 +4,10 @@ use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, is_category, told};
 use super::defined::stem;
-use super::foreign::foreign;
+use super::foreign::{TYPES, foreign};
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
-use super::paths::unquoted;
+use super::paths::{imported_from, unquoted};
 use super::signs::sign;
 use super::statement::statement;
 use super::type_names;
@@ -21,6 +21,7 @@ const ONE_WORD: &str = "a name is one word";
 /// Why the place cannot be read, if it looks like another language's way.
 pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
     sign(around)
+        .or_else(|| imported_from(around))
         .or_else(|| unquoted(around))
         .or_else(|| hash(around))
         .or_else(|| foreign(around))
@@ -320,7 +321,7 @@ fn definition(around: &Around<'_>) -> Option<Diagnostic> {
                 return Some(around.error("E0012", second, message).fix(gap, " = "));
             }
             if type_names::names().any(|known| known == second.text) {
-                let found = told(around.span(second), "a type stands behind `:`");
+                let found = told(around.span(second), TYPES);
                 return Some(found.fix(gap, ": "));
             }
             Some(told(around.span(last).to(around.span(second)), ONE_WORD).guess(gap, "_"))
@@ -357,7 +358,7 @@ fn import(around: &Around<'_>, path: &Token<'_>) -> Option<Diagnostic> {
     Some(found.guess(end, format!(" as {name}")))
 }
 
-/// `shape "sphere" "ball" { … }` and `material paint diffuse { … }`
+/// `shape "sphere" "ball" { … }`, `shape "ball" sphere { … }` and `material paint diffuse { … }`
 fn object(around: &Around<'_>) -> Option<Diagnostic> {
     let first = around.at.saturating_sub(3);
     let start =
@@ -389,6 +390,11 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
             let (kind, label) = (kind.text, label.text);
             let help = format!("or `{label} \"{kind}\"`, if `{label}` is the kind");
             Some(found.help(help).guess(both, format!("{kind} \"{label}\"")))
+        }
+        (TokenKind::Text, TokenKind::Word) => {
+            let both = around.span(kind).to(around.span(label));
+            let found = told(around.span(kind), "the label of an object stands behind its kind");
+            Some(found.fix(both, format!("{} {}", label.text, kind.text)))
         }
         _ => None,
     }

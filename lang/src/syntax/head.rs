@@ -36,8 +36,20 @@ fn block(around: &Around<'_>) -> Option<Diagnostic> {
     if !whole || !named || last.text == "in" || goes_on || is_open {
         return None;
     }
+    if let Some(found) = to(around, start) {
+        return Some(found);
+    }
     let message = format!("the `{{` of this `{}` is missing", head[0].text);
     Some(around.error("E0023", last, message).help("a block stands between `{` and `}`"))
+}
+
+/// `for i in 0 to 3`
+fn to(around: &Around<'_>, start: usize) -> Option<Diagnostic> {
+    let at = (start..=around.at).find(|i| around.word(*i) == "to")?;
+    let [first, word, last] = around.tokens.get(at.checked_sub(1)?..at + 2)? else { return None };
+    let gap = Span::new(around.source, first.end(), last.start);
+    let found = around.error("E0023", word, "a range is written `0..3`: from 0 up to, but not, 3");
+    (!word.first_on_line).then(|| found.guess(gap, ".."))
 }
 
 /// `use plugn "a"` and `use "a"`

@@ -23,6 +23,9 @@ pub(crate) const BEFORE_NAMES: [&str; 3] = ["let", "param", "fn"];
 pub(super) const OF_A_NUMBER: [&str; 8] =
     ["abs", "ceil", "cos", "floor", "scale", "sin", "sqrt", "tan"];
 
+/// Functions that take the name of something measured, as a text.
+pub(crate) const OF_A_TEXT: [&str; 3] = ["metal", "glass", "illuminant"];
+
 /// What is said where none follows one.
 pub(super) fn nameless(word: &str, at: Span) -> Diagnostic {
     Diagnostic::error("E0019", at, format!("a name is missing after `{word}`"))

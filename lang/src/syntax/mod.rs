@@ -35,6 +35,7 @@ mod statement;
 mod tests;
 mod tree;
 pub(crate) mod type_names;
+mod unfinished;
 mod strays;
 mod unit;
 mod walk;
@@ -45,7 +46,7 @@ pub(crate) use cut::{Cut, Cuts, resume_limit};
 pub(crate) use defined::{says_units, stray};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
-pub(crate) use make::{BEFORE_NAMES, RESERVED};
+pub(crate) use make::{BEFORE_NAMES, OF_A_TEXT, RESERVED};
 pub(crate) use number::parse as parse_number;
 pub(crate) use parse::{
     Tree, Turns, cut, cut_whole, joined_at, parse, parse_by_pest, parse_expr, parse_in_turns,
@@ -58,6 +59,7 @@ pub(crate) use tree::{
     Object, Op, ParamDef, Stmt, StmtNode, Ty, children,
 };
 
+pub(crate) use unit::suggest_unit;
 pub(crate) use walk::{each_expr, each_object};
 
 pub(crate) use grammar::{Rule, SceneParser};

@@ -5,6 +5,8 @@ use std::ops::Range;
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, told};
+use super::defined::stem;
+use super::lex::{Token, TokenKind};
 
 /// How files end that scenes name.
 const ENDINGS: [&str; 16] = [
@@ -32,7 +34,33 @@ pub(super) fn unquoted(around: &Around<'_>) -> Option<Diagnostic> {
     let path = near.find_map(|token| path_around(around.text, token.start))?;
     let text = format!("\"{}\"", &around.text[path.clone()]);
     let span = Span::new(around.source, path.start, path.end);
-    Some(told(span, "the path of a file stands in quotes").fix(span, text))
+    let found = told(span, "the path of a file stands in quotes");
+    let begins = around.tokens.iter().position(|token| token.start == path.start);
+    // By itself it may be anything.
+    Some(if begins.is_some_and(|i| around.begins(i)) { found } else { found.fix(span, text) })
+}
+
+/// `from "tools.scene" import ball` and `import ball from "tools.scene"`
+pub(super) fn imported_from(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(2);
+    let start = (first..=around.at).find(|i| around.begins(*i))?;
+    let path = match (around.word(start), around.word(start + 2)) {
+        ("from", "import") => start + 1,
+        ("import", "from") => start + 3,
+        _ => return None,
+    };
+    let on_line = |token: &&Token<'_>| !token.first_on_line;
+    let path = around.tokens.get(path).filter(|path| path.kind == TokenKind::Text)?;
+    let rest = around.tokens[start + 1..].iter().take_while(on_line);
+    let (names, last) = (rest.clone().filter(|token| token.kind == TokenKind::Word), rest.last()?);
+    let module = stem(path.text).unwrap_or("lib");
+    let all = around.span(&around.tokens[start]).to(around.span(last));
+    let found = told(all, "a file is imported as a whole, under a name");
+    let found = match names.filter(|word| !matches!(word.text, "from" | "import")).last() {
+        Some(name) => found.help(format!("what it defines is then `{module}.{}`", name.text)),
+        None => found,
+    };
+    Some(found.guess(all, format!("import {} as {module}", path.text)))
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use super::peers::is_pbrt;
 /// Why the place cannot be read, if such a statement stands there.
 pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
     placed_call(around)
+        .or_else(|| header_again(around))
         .or_else(|| lone_name(around))
         .or_else(|| assertion(around))
         .or_else(|| stepped(around))
@@ -55,6 +56,18 @@ fn placed_call(around: &Around<'_>) -> Option<Diagnostic> {
     }
     let both = Span::new(around.source, word.start, name.start);
     Some(found.help("what a function makes stands where it is called").guess(both, ""))
+}
+
+/// `scene 1` once more.
+fn header_again(around: &Around<'_>) -> Option<Diagnostic> {
+    let (version, word) = (around.current()?, around.before(1)?);
+    let is_it = word.text == "scene" && version.kind == TokenKind::Number;
+    if !is_it || version.first_on_line || !around.begins(around.at - 1) || !around.open.is_empty() {
+        return None;
+    }
+    let both = around.span(word).to(around.span(version));
+    let message = "a file says once, and first, which version of the language it is in";
+    Some(told(both, message).guess(both, ""))
 }
 
 /// `ball`, and nothing beside it.

@@ -30,6 +30,16 @@ impl Builder<'_> {
         Some((Span::new(unit.source, range.start - digits, range.end), size))
     }
 
+    /// `0x10` with its place, if a unit of that kind stands behind a zero.
+    fn hexadecimal(&self, pair: &Pair<'_, Rule>) -> Option<(Span, String)> {
+        let (unit, digits) = (self.span(pair), pair.as_str().strip_prefix(['x', 'X'])?);
+        let before = pair.get_input()[..pair.as_span().start()].strip_suffix('0')?;
+        let number = u64::from_str_radix(digits, 16).ok()?;
+        let is_zero = !before.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+        let range = unit.range();
+        is_zero.then(|| (Span::new(unit.source, range.start - 1, range.end), number.to_string()))
+    }
+
     /// The unit that a token names; `None` if it is none, which is told.
     pub(super) fn unit(&mut self, pair: &Pair<'_, Rule>) -> Option<Arc<Unit>> {
         let text = pair.as_str();
@@ -69,6 +79,11 @@ impl Builder<'_> {
             return None;
         }
         let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
+        if let Some((all, number)) = self.hexadecimal(pair) {
+            let found = Diagnostic::error("E0016", all, "numbers are written in decimal");
+            self.sink.push(found.guess(all, number));
+            return None;
+        }
         if let Some((all, size)) = self.size(pair) {
             self.sink.push(diagnostic.help("a size is a vector").guess(all, size));
             return None;
@@ -113,7 +128,7 @@ fn blank_before(pair: &Pair<'_, Rule>) -> Range<usize> {
 }
 
 /// The unit that a misspelt one stands for: full names are sure, slips of the pen are guessed.
-fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
+pub(crate) fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
     const FULL: [(&str, &str); 21] = [
         ("meter", "m"),
         ("metre", "m"),

@@ -16,11 +16,12 @@ use crate::registry::registry;
 
 /// Every case: its name and its text.
 fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
-    const CASES: [&str; 8] = [
+    const CASES: [&str; 9] = [
         include_str!("../cases/catalogue.txt"),
         include_str!("../cases/syntax.txt"),
         include_str!("../cases/names.txt"),
         include_str!("../cases/habits.txt"),
+        include_str!("../cases/unfinished.txt"),
         include_str!("../cases/units.txt"),
         include_str!("../cases/schema.txt"),
         include_str!("../cases/plugins.txt"),

@@ -147,6 +147,11 @@ pub(crate) fn takes(function: &str, name: &str) -> bool {
     find(function).is_some_and(|builtin| builtin.arguments().any(|arg| arg == name))
 }
 
+/// Whether a name that every scene has is a value by itself, not a function.
+pub(crate) fn is_value(name: &str) -> bool {
+    table::CONSTANTS.iter().any(|constant| constant.name == name)
+}
+
 /// Every name that every scene has.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     all().map(|builtin| builtin.name).chain(table::CONSTANTS.iter().map(|constant| constant.name))
@@ -216,7 +221,12 @@ impl Evaluator<'_> {
             return Value::Poison;
         }
         let n_mistakes = self.mistakes();
+        let n_unnamed = given.iter().filter(|given| given.name.is_none()).count();
         let args = self.arrange(builtin, given, span);
+        // Of too many it is not known which was meant to be what.
+        if n_unnamed > builtin.args.len() {
+            return Value::Poison;
+        }
         let is_poison =
             |arg: &Option<Argument>| arg.as_ref().is_some_and(|arg| arg.value.is_poison());
         let is_missing =
@@ -266,6 +276,7 @@ impl Evaluator<'_> {
             match place {
                 None => is_whole = false,
                 Some(place) if out[place].is_some() => {
+                    is_whole = false;
                     let name = builtin.args[place].trim_end_matches('?');
                     self.poison("E0404", given.span, format!("`{name}` is given twice"));
                 }

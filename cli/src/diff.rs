@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use luxel_core::diag::{Diagnostic, Span};
-use luxel_core::scene::{Change, Difference, How, Scene, diff_in};
+use luxel_core::registry::Registry;
+use luxel_core::scene::{Change, Difference, How, Node, Scene, diff_in};
 use serde_json::{Value, json};
 
 use crate::args::{LoadArgs, PluginArgs};
@@ -14,8 +15,8 @@ use crate::report::{self, Form, Stream};
 
 /// Tell which objects and parameters differ between two scenes
 ///
-/// What two scenes come to is compared, not how they are written: names, order, comments and units do
-/// not count, nor does what is in meshes and textures in files of their own: of these the paths are
+/// What two scenes come to is compared, not how they are written: names, order, comments, units and
+/// defaults that are written out do not count, nor does what is in meshes and textures in files of their own: of these the paths are
 /// compared, from the scene's folder on. Objects are taken for the same by what they are, then by label,
 /// then by class. What is told is what `luxel watch` tells of a save.
 #[derive(clap::Args, Debug)]
@@ -46,7 +47,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let (a, b) = (read(&args.a, args, &plugins)?, read(&args.b, args, &plugins)?);
     let (Some((a, first)), Some((b, second))) = (a, b) else { return Ok(Exit::Input) };
     let folders = [&args.a, &args.b].map(|file| file.parent().unwrap_or(Path::new("")));
-    let (found, texts) = (diff_in([&first, &second], folders), [a, b]);
+    let known = |node: &Node, name: &str| {
+        let class = plugins.registry.class(node.kind, &node.class)?;
+        Registry::params(class).find(|param| param.name == name)
+    };
+    let (found, texts) = (diff_in([&first, &second], folders, &known), [a, b]);
     if args.json {
         let differences: Vec<_> = found.iter().map(|it| told(it, &texts)).collect();
         let all = json!({ "same": found.is_empty(), "differences": differences });

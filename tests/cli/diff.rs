@@ -6,7 +6,7 @@ use super::program::{Folder, SCENE};
 const REWRITTEN: &str = r"//! A ball.
 scene 1
 let grey = material diffuse { reflectance = 0.25 * 2 }
-shape sphere { radius = 100 cm, material = grey }
+shape sphere { radius = 100 cm, center = (0, 0, 0) m, priority = 0, material = grey }
 light constant { scale = 1 }
 film rgb { resolution = (32, 32) }
 sampler sobol { samples = 4 }

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
 use std::path::Path;
 
+use luxel_sdk::params::{Param, Preset};
+
 use super::hash::{Hash, group_hashes, hash_item};
 use super::print::in_line;
 use super::{Group, Node, NodeId, Placed, Scene, Target, Value};
@@ -106,16 +108,25 @@ impl fmt::Display for Difference {
 /// Everything in which the second scene differs from the first. What is the same in another order or
 /// under another name is the same; what is shared is told once, and what is written once for many is too.
 pub fn diff(first: &Scene, second: &Scene) -> Vec<Difference> {
-    diff_in([first, second], [Path::new(""); 2])
+    diff_in([first, second], [Path::new(""); 2], &|_, _| None)
 }
 
+/// What is known of a parameter of an object, by its name.
+pub type Known<'a> = dyn Fn(&Node, &str) -> Option<&'a Param> + 'a;
+
 /// The same of scenes that lie in these folders: a file in one has the same name as one in the other if
-/// it has that from there on.
-pub fn diff_in(scenes: [&Scene; 2], folders: [&Path; 2]) -> Vec<Difference> {
+/// it has that from there on. A parameter that is given its default is the same as one that is not given,
+/// if it is known.
+pub fn diff_in<'a>(
+    scenes: [&'a Scene; 2],
+    folders: [&'a Path; 2],
+    known: &'a Known<'a>,
+) -> Vec<Difference> {
     let [first, second] = scenes;
     let mut differ = Differ {
         scenes,
         folders,
+        known,
         groups: [group_hashes(first), group_hashes(second)],
         met: BTreeSet::new(),
         found: vec![],
@@ -148,6 +159,7 @@ fn together(found: Vec<Difference>) -> Vec<Difference> {
 struct Differ<'a> {
     scenes: [&'a Scene; 2],
     folders: [&'a Path; 2],
+    known: &'a Known<'a>,
     groups: [Vec<Hash>; 2],
     /// Pairs that have been compared.
     met: BTreeSet<(Target, Target)>,
@@ -271,6 +283,7 @@ impl Differ<'_> {
                 }
                 (Some(Value::Path(a)), Some(Value::Path(b))) if self.is_same_file(a, b) => {}
                 (a, b) if a == b => {}
+                (Some(value), None) | (None, Some(value)) if self.is_default(x, name, value) => {}
                 _ => changed.push(change()),
             }
         }
@@ -286,6 +299,10 @@ impl Differ<'_> {
         if !changed.is_empty() {
             self.changed([x, y], changed);
         }
+    }
+
+    fn is_default(&self, node: &Node, name: &str, value: &Value) -> bool {
+        (self.known)(node, name).is_some_and(|param| is_default(param, value))
     }
 
     fn is_same_file(&self, a: &Path, b: &Path) -> bool {
@@ -337,6 +354,19 @@ impl Differ<'_> {
                 None => "group".to_owned(),
             },
         }
+    }
+}
+
+/// Whether a value is what a parameter has that is not given.
+fn is_default(param: &Param, value: &Value) -> bool {
+    let is = |a: f64, b: f64| a.total_cmp(&b).is_eq();
+    match (param.default, value) {
+        (Preset::Numbers(own), Value::Bool(yes)) => (own[0] > 0.5) == *yes,
+        (Preset::Numbers(own), Value::Number(x, _)) => is(own[0], *x),
+        (Preset::Numbers(own), Value::Vector(v)) => v.iter().zip(own).all(|(x, own)| is(own, *x)),
+        (Preset::Index(i), Value::Text(word)) => param.words().nth(i as usize) == Some(word),
+        (Preset::Text(own), Value::Text(text)) => own == &**text,
+        _ => false,
     }
 }
 

@@ -38,7 +38,7 @@ pub use conform::{
     DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, said,
     said_unit, wanted,
 };
-pub use diff::{Change, Difference, How, called, diff, diff_in};
+pub use diff::{Change, Difference, How, Known, called, diff, diff_in};
 pub use expect::{Area, Claim, Expectation, Expected};
 pub use feature::Feature;
 pub use hash::Hash;

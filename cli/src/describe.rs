@@ -248,7 +248,9 @@ mod tests {
             "{page}"
         );
         let page = text(builtins().entry(Kind::Film, "auto").unwrap());
-        assert!(page.contains("resolution: two numbers, from 1 to 65536, default (640, 480)"));
+        assert!(
+            page.contains("resolution: two whole numbers, from 1 to 65536, default (640, 480)")
+        );
         assert!(page.contains("one of srgb, linear, filmic, default srgb"), "{page}");
     }
 }

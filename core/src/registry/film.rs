@@ -42,7 +42,7 @@ pub enum Display {
 #[repr(C)]
 pub struct FilmSettings<'a> {
     /// Width and height in pixels.
-    #[param(default = [640.0, 480.0], min = 1, max = 65536)]
+    #[param(role = count, default = [640.0, 480.0], min = 1, max = 65536)]
     pub resolution: glam::Vec2,
     /// Exposure value at ISO 100 for the PNG: luminance 1.2·2^EV cd/m² is white. Without it a
     /// radiance of 1 W/m²/sr is white. The EXR is never exposed.

@@ -283,10 +283,7 @@ fn number(
     let (scale, dimension) = unit_of(param, found, units)?;
     let x = x * scale;
     if param.ty == Type::Int && x.is_finite() {
-        if x.fract().abs() > 0.0 {
-            let message = format!("`{}` wants a whole number, not {}", param.name, number_words(x));
-            return Err(Misfit::new("E0208", message));
-        }
+        whole(param, x)?;
         in_range(param, x, "")?;
         if !(0.0..=f64::from(u32::MAX)).contains(&x) {
             let found = number_words(x);
@@ -303,6 +300,15 @@ fn number(
     Ok(Value::Number(x, dimension))
 }
 
+/// Checks that a number is whole.
+fn whole(param: &Param, x: f64) -> Result<(), Misfit> {
+    if x.is_finite() && x.fract().abs() > 0.0 {
+        let message = format!("`{}` wants a whole number, not {}", param.name, number_words(x));
+        return Err(Misfit::new("E0208", message));
+    }
+    Ok(())
+}
+
 fn vector(
     param: &Param,
     v: &[f64],
@@ -316,6 +322,9 @@ fn vector(
     }
     let (scale, _) = unit_of(param, found, units)?;
     let v: Vec<f64> = v.iter().map(|x| x * scale).collect();
+    for x in v.iter().filter(|_| param.role == Role::Count) {
+        whole(param, *x)?;
+    }
     for (x, name) in v.iter().zip(["x", "y", "z"]) {
         in_range(param, *x, &format!(".{name}"))?;
     }

@@ -63,8 +63,8 @@ const KEYS: &str = "default, required, optional, min, max, unit, role, textured,
                     group, deprecated, emission, derived, shared";
 
 /// Every role, as scenes know them.
-const ROLES: [&str; 7] =
-    ["plain", "reflectance", "illuminant", "ior", "complex_ior", "coefficient", "waves"];
+const ROLES: [&str; 8] =
+    ["plain", "reflectance", "illuminant", "ior", "complex_ior", "coefficient", "waves", "count"];
 
 impl Attributes {
     /// Reads the field's attribute.

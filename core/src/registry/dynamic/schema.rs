@@ -17,7 +17,7 @@ const MOST_PARAMS: usize = 1 << 10;
 pub(super) const MOST_STRUCT: usize = 256;
 
 /// The roles, by their number in the boundary.
-const ROLES: [Role; 7] = [
+const ROLES: [Role; 8] = [
     Role::Plain,
     Role::Reflectance,
     Role::Illuminant,
@@ -25,6 +25,7 @@ const ROLES: [Role; 7] = [
     Role::ComplexIor,
     Role::Coefficient,
     Role::Waves,
+    Role::Count,
 ];
 
 /// Values in a row; an error where there are too many or where they stand nowhere.

@@ -67,7 +67,7 @@ fn suits(param: &Param, role: Role, color: &Color) -> Result<(), Misfit> {
         Role::ComplexIor => "an index of refraction: a number, a spectrum or `metal(…)`",
         Role::Coefficient => "a coefficient: a number, colour or spectrum per length",
         Role::Waves => "a length",
-        Role::Plain => "a colour or spectrum",
+        Role::Plain | Role::Count => "a colour or spectrum",
     };
     let message = format!("`{}` wants {wanted}, not {what}", param.name);
     Err(Misfit::new("E0214", message))

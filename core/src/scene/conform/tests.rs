@@ -54,6 +54,13 @@ fn whole_numbers_stay_whole() {
     assert_eq!(fit(&int, plain(1.5)), Err("E0208"));
     assert_eq!(fit(&int, plain(-1.0)), Err("E0405"));
     assert_eq!(fit(&int, plain(4294967296.0)), Err("E0405"));
+    let few = Param { max: 9.0, ..int };
+    let misfit = conform(&few, plain(-1.0), &|_| None).unwrap_err();
+    assert!(misfit.message.ends_with("from 0 to 9"), "{}", misfit.message);
+    let size = Param { ty: Type::Vec2, role: Role::Count, ..int };
+    let pair = |x, y| Given::Numbers(Arc::from([x, y]), Dimension::NONE);
+    assert_eq!(fit(&size, pair(640.0, 480.0)), Ok(Value::vector([640.0, 480.0])));
+    assert_eq!(fit(&size, pair(640.0, 480.5)), Err("E0208"));
 }
 
 #[test]

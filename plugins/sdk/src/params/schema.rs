@@ -62,6 +62,8 @@ pub enum Role {
     Coefficient,
     /// A length in metres, told as how many waves of each wavelength it is long.
     Waves,
+    /// Something that is counted: whole numbers, also in a vector.
+    Count,
 }
 
 /// A parameter's value when the scene gives none.

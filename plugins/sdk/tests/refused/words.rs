@@ -9,7 +9,7 @@ struct Surface {
     #[param(default = 0.5, minimum = 0)]
     key: f32,
     /// Unknown role.
-    //~ unknown role `refletance`; the roles are plain, reflectance, illuminant, ior, complex_ior, coefficient, waves
+    //~ unknown role `refletance`; the roles are plain, reflectance, illuminant, ior, complex_ior, coefficient, waves, count
     #[param(default = 0.5, role = refletance)]
     role: f32,
     /// Twice.

@@ -29,7 +29,7 @@ impl Word {
 
 const TRANSFORM: Field = (
     "transform",
-    "list of rotate, move, scale and matrix, optional",
+    "list of rotate, move, scale, matrix, motion and spin, optional",
     "Where it stands, applied first to last: [rotate((0, 1, 0), 30 deg), move((1, 0, 0) m)].",
 );
 const MATERIAL: Field =
@@ -136,6 +136,7 @@ pub fn what(param: &Param) -> String {
         Type::Emission | Type::Float | Type::Double | Type::MaybeFloat => "number".into(),
         Type::Int => "whole number".into(),
         Type::Bool => "true or false".into(),
+        Type::Vec2 if param.role == Role::Count => "two whole numbers".into(),
         Type::Vec2 => "two numbers".into(),
         Type::Vec3 | Type::DVec3 => "three numbers".into(),
         Type::Spectrum if param.role == Role::Waves => "number".into(),

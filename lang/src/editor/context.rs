@@ -199,7 +199,10 @@ impl<'d> Context<'d> {
                 ")" => scopes.iter_mut().for_each(|scope| scope.n_round -= 1),
                 name if token.kind == TokenKind::Word => {
                     let next = self.before.get(i + 1).map_or("", |token| token.text);
-                    let is_item = back(1) == "for" || back(1) == "," && back(3) == "for";
+                    // In what its loop runs over it is not known yet.
+                    let begins = |token: &Token<'_>| matches!(token.text, "{" | "=>");
+                    let is_item = (back(1) == "for" || back(1) == "," && back(3) == "for")
+                        && self.before[i..].iter().take(HEAD).any(begins);
                     let is_argument = next == ":" && matches!(back(1), "(" | ",");
                     let Some(scope) = scopes.last_mut() else { continue };
                     if is_item || is_argument {
@@ -217,6 +220,9 @@ impl<'d> Context<'d> {
         scopes.into_iter().flat_map(|scope| scope.names).collect()
     }
 }
+
+/// Tokens of the head of a loop that are looked at.
+const HEAD: usize = 64;
 
 /// Names of a block.
 #[derive(Default)]

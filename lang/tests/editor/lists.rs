@@ -54,6 +54,12 @@ fn values_fit_what_they_are_given_to() {
     check("material conductor { distribution = | }", &["\"ggx\"", "\"beckmann\""], &["n"]);
     check("material conductor { distribution = \"| }", &["ggx", "beckmann"], &["n"]);
     check("material diffuse { reflectance = | }", &["rgb.srgb", "metal"], &["red", "sin"]);
+    for text in ["group { transform = | }", "group { transform = [| }"] {
+        check(text, &["move", "rotate", "motion"], &["red", "sin", "shape"]);
+    }
+    check("for far in | ", &["n"], &["far"]);
+    check("for far in 0..3 { let b = |", &["n", "far"], &[]);
+    check("let q = [for far in 0..3 => |", &["n", "far"], &[]);
     check("let q = | ", &["n", "red", "sin", "shape"], &[]);
     check("let q = n + |", &["n", "sin"], &["let"]);
     check("let q = metal(\"|", &["Au", "gold"], &["N-BK7"]);

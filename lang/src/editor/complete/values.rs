@@ -8,11 +8,19 @@ use super::super::statements;
 use super::{Asked, Item, ItemKind};
 use crate::manual;
 
+/// Functions that make transforms.
+const TRANSFORMS: [&str; 6] = ["move", "rotate", "scale", "matrix", "motion", "spin"];
+
 impl Asked<'_> {
     /// What may be a value at the place.
     pub(super) fn values(&self) -> Vec<Item> {
         if let Some(Given::Param(param, _)) = schema::given_to(self.around, self.here) {
             return self.values_of(param);
+        }
+        if self.is_transform() {
+            let make = statements::functions(|name| TRANSFORMS.contains(&name));
+            let first = make.into_iter().map(|item| item.rank(0));
+            return first.chain(self.names(&["-"])).collect();
         }
         let mut out = self.names(&[]);
         if let Some(Head::Call(callee)) = self.here.head()
@@ -24,6 +32,12 @@ impl Asked<'_> {
         out.extend(statements::categories());
         out.extend(["true", "false", "if"].map(|word| Item::new(word, ItemKind::Keyword).rank(7)));
         out
+    }
+
+    /// Whether a transform is given there, or the first of a list of them.
+    fn is_transform(&self) -> bool {
+        let back = 1 + usize::from(self.here.text_back(1) == "[");
+        self.here.text_back(back) == "=" && self.here.text_back(back + 1) == "transform"
     }
 
     fn values_of(&self, param: &Param) -> Vec<Item> {

@@ -136,7 +136,7 @@ fn parameters_that_cannot_be_are_refused() {
     check_param(AMOUNT, "has the unknown type 17", |p| p.ty = 17);
     check_param(AMOUNT, "has the unknown type 4294967295", |p| p.ty = u32::MAX);
     check_param(AMOUNT, "has the unknown type 35", |p| p.ty = 35);
-    check_param(AMOUNT, "has the unknown role 7", |p| p.role = 7);
+    check_param(AMOUNT, "has the unknown role 8", |p| p.role = 8);
     let waves = "has the role waves, for spectra in m without default and texture";
     check_param(AMOUNT, waves, |p| p.role = 6);
     check_param(AMOUNT, "has the unknown unit `parsec`", |p| p.unit = Text::new("parsec"));

@@ -47,7 +47,9 @@ impl Reader<'_> {
                 self.sink.push(Diagnostic::error("E0021", span, XML).help(BEGINS));
                 return None;
             }
-            if !is_pbrt(first.text) {
+            // What can be read is not told to be pbrt's.
+            let line = self.text[first.end()..].lines().next().unwrap_or_default();
+            if !is_pbrt(first.text) || line.contains(['{', '=']) {
                 let start = self.span(first.start..first.start);
                 let message = "a scene begins with `scene 1`";
                 let found = Diagnostic::error("E0001", span, message).guess(start, "scene 1\n");

@@ -13,7 +13,7 @@ use crate::prescan::{Fault, opens_object};
 const SHOWN: usize = 8;
 
 /// Bytes in brackets that are looked at for what they were to be: of many that nest, each is.
-const LOOKED_AT: usize = 1 << 14;
+const LOOKED_AT: usize = 1 << 10;
 
 /// Bytes of a line behind a bracket that are looked at for another that closes the same.
 const REST: usize = 256;

@@ -122,7 +122,10 @@ impl Evaluator<'_> {
         units.dedup();
         let found = Diagnostic::error("E0214", field.span, message);
         self.tell(match &units[..] {
-            [_] => found.help("each has its unit, `(1 m, 2 m, x)`, or one stands behind bare numbers, `(1, 2, 3) m`"),
+            [_] => found.help(
+                "each has its unit, `(1 m, 2 m, x)`, or one stands behind bare numbers, \
+                 `(1, 2, 3) m`",
+            ),
             _ => found,
         });
         None

@@ -151,7 +151,10 @@ impl Evaluator<'_> {
                     let span = field.value.span;
                     let message = format!("a unit's name is wanted, for {}", wanted.name());
                     let found = Diagnostic::error("E0204", span, message);
+                    let fits =
+                        |name| Unit::named(name).is_some_and(|unit| unit.dimension == wanted);
                     let near = syntax::suggest_unit(self.written(span));
+                    let near = near.filter(|(name, _)| fits(name));
                     let near = near.map(|(name, grade)| Near { name, grade });
                     self.tell(found.meant(span, near));
                     out.extend([one(wanted)]);

@@ -111,6 +111,14 @@ impl<'a> Around<'a> {
         if is_fields { Place::Fields } else { Place::Block }
     }
 
+    /// Whether the place is in a group, in which objects stand beside fields.
+    pub(super) fn is_in_group(&self) -> bool {
+        self.open.last().is_some_and(|open| {
+            let mut words = (0..*open).rev().filter(|i| self.tokens[*i].kind != TokenKind::Text);
+            words.next().is_some_and(|i| self.word(i) == "group")
+        })
+    }
+
     /// Whether the brace that token `open` is belongs to an object or a record.
     fn holds_fields(&self, open: usize) -> bool {
         let Some(mut last) = open.checked_sub(1) else { return false };

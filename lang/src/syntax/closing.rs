@@ -120,7 +120,7 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
             if open.len() >= limit {
                 return None;
             }
-            let is_choice = std::mem::take(&mut is_choice);
+            let is_choice = token.text == "{" && std::mem::take(&mut is_choice);
             open.push(Open {
                 at: token.start,
                 bracket: token.text,

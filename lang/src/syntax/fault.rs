@@ -203,8 +203,10 @@ pub(super) fn told(
         }
         Fault::Escape { at } => {
             let message = "an unknown escape";
-            Diagnostic::error("E0007", span(at.clone()), message)
-                .help("known are \\\" \\\\ \\n \\t and \\u{…} of a character that there is; write a backslash as \\\\")
+            Diagnostic::error("E0007", span(at.clone()), message).help(
+                "known are \\\" \\\\ \\n \\t and \\u{…} of a character that there is; write a \
+                     backslash as \\\\",
+            )
         }
     }
 }

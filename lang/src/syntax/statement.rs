@@ -81,7 +81,8 @@ fn lone_name(around: &Around<'_>) -> Option<Diagnostic> {
     let name = &around.tokens[first];
     let is_name = around.is_word(first) && last.kind == TokenKind::Word;
     let is_ours = RESERVED.contains(&name.text) || is_category(name.text) || is_pbrt(name.text);
-    if !is_name || is_ours || !around.begins(first) || around.inner() == Place::Fields {
+    let is_field = around.inner() == Place::Fields && !around.is_in_group();
+    if !is_name || is_ours || !around.begins(first) || is_field {
         return None;
     }
     let all = around.span(name).to(around.span(last));

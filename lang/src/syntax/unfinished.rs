@@ -77,7 +77,9 @@ fn parameter(around: &Around<'_>) -> Option<Diagnostic> {
     let is_brace = around.open.last().map_or(around.place == Place::Fields, |open| {
         around.word(*open) == "{" && around.within(*open) == Place::Fields
     });
-    if !is_brace || !around.begins(around.at - 1) || !around.current().is_none_or(ends) {
+    let may_be_placed = around.is_in_group() && !is_category(name.text);
+    let is_begun = is_brace && around.begins(around.at - 1) && !may_be_placed;
+    if !is_begun || !around.current().is_none_or(ends) {
         return None;
     }
     let message = format!("`=` and a value are missing behind `{}`", name.text);

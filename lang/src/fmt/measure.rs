@@ -89,7 +89,8 @@ fn close(pieces: &mut [Piece<'_>], at: usize, inner: &Opened, lines: u32) {
 /// Whether the line break that its author put before the piece is kept within an expression.
 fn breaks_line(pieces: &[Piece<'_>], i: usize, before: Option<usize>) -> bool {
     let piece = &pieces[i];
-    if piece.newlines == 0 || piece.starts {
+    // Behind the comma of a vector of one the bracket follows.
+    if piece.newlines == 0 || piece.starts || piece.kind == Kind::Close {
         return false;
     }
     let Some(before) = before.map(|at| &pieces[at]) else { return false };

@@ -22,7 +22,8 @@ impl Around<'_> {
     pub(super) fn swallowed_by_head(&self) -> Option<usize> {
         let begins = |i: &usize| opens_block(self.word(*i)) && self.begins(*i);
         let start = (0..self.at).rev().find(begins)?;
-        (start + 1..self.at).find(|i| {
+        let mut head = (start + 1..self.at).take_while(|i| self.word(*i) != "{");
+        head.find(|i| {
             let (token, before) = (&self.tokens[*i], &self.tokens[i - 1]);
             let wants_more = before.is_operator() || matches!(before.text, "for" | "if" | "in");
             let is_object = is_category(token.text) && self.is_word(i + 1);

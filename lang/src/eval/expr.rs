@@ -333,11 +333,8 @@ impl Evaluator<'_> {
                     // `1...3` is read as `1.. .3`.
                     let dots = self.written(span).find("...");
                     self.tell(dots.into_iter().fold(found, |found, at| {
-                        let dots = Span::new(
-                            span.source,
-                            span.range().start + at,
-                            span.range().start + at + 3,
-                        );
+                        let start = span.range().start + at;
+                        let dots = Span::new(span.source, start, start + 3);
                         found.help("a range with its end is written `1..=3`").guess(dots, "..=")
                     }));
                     return None;

@@ -84,15 +84,13 @@ fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
     let first = around.tokens.iter().find(|t| t.kind != TokenKind::Doc)?;
     let in_head = first.text == "fn" && around.open.len() == 1 && name.kind == TokenKind::Word;
     let is_type = |token: &Token<'_>| type_names::names().any(|known| known == token.text);
-    if !in_head || name.first_on_line || !is_type(ty) && !is_type(name) {
+    if !in_head || name.first_on_line {
         return None;
-    }
-    if !is_type(ty) && around.begins_argument(around.at - 1) {
-        let gap = Span::new(around.source, ty.end(), name.start);
-        return Some(told(around.span(name), TYPES).fix(gap, ": "));
     }
     if !is_type(ty) {
-        return None;
+        let is_behind = is_type(name) && around.begins_argument(around.at - 1);
+        let gap = Span::new(around.source, ty.end(), name.start);
+        return is_behind.then(|| told(around.span(name), TYPES).fix(gap, ": "));
     }
     // `x: length length`
     if name.text == ty.text && around.word(around.at + 1) != ":" {

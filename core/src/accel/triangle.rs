@@ -164,9 +164,6 @@ impl Block {
         // Edge functions at the origin of the plane.
         let mut edges = Edges { u: cx * by - cy * bx, v: ax * cy - ay * cx, w: bx * ay - by * ax };
         let mut inside = edges.inside();
-        if !inside.any() {
-            return None;
-        }
         let zeros = edges.zeros();
         if (zeros & inside).any() {
             // Only where it must: what a triangle answers does not depend on its neighbours.

@@ -77,6 +77,6 @@ mod stage_cases;
 #[cfg(test)]
 mod truths;
 #[cfg(test)]
-mod turns;
+mod side_by_side;
 #[cfg(test)]
 mod tutorial;

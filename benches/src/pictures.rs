@@ -1,4 +1,4 @@
-//! What rays in turns, and numbers too small to be normal, do to whole pictures.
+//! What rays side by side, and numbers too small to be normal, do to whole pictures.
 
 use std::num::NonZeroUsize;
 use std::time::Instant;
@@ -52,16 +52,16 @@ pub(crate) fn run() -> Result<(), String> {
     ];
     println!("rays of whole pictures, one thread, Mpaths/s: best of {ROUNDS} rounds, interleaved");
     println!(
-        "  {:14}{:>12}{:>12}{:>12}{:>10}",
-        "", "one by one", "in turns", "as chosen", "spread"
+        "  {:14}{:>12}{:>14}{:>12}{:>10}",
+        "", "one by one", "side by side", "as chosen", "spread"
     );
     let paths = f64::from(PIXELS * SPP) / 1e6;
     for (name, stage) in &stages {
-        let [single, turns, chosen] =
+        let [single, flock, chosen] =
             rates([(stage, Some(false)), (stage, Some(true)), (stage, None)]);
-        let spread = single.spread().max(turns.spread()).max(chosen.spread());
-        let [single, turns, chosen] = [single, turns, chosen].map(|seconds| paths / seconds.min());
-        println!("  {name:14}{single:12.3}{turns:12.3}{chosen:12.3}{spread:8.1} %");
+        let spread = single.spread().max(flock.spread()).max(chosen.spread());
+        let [single, flock, chosen] = [single, flock, chosen].map(|seconds| paths / seconds.min());
+        println!("  {name:14}{single:12.3}{flock:14.3}{chosen:12.3}{spread:8.1} %");
     }
     precisions(waves, &of)?;
     let dim = cornell.replace(
@@ -102,11 +102,11 @@ fn precisions(waves: &str, of: &dyn Fn(u32, &str) -> Result<Stage, String>) -> R
 fn rates<const N: usize>(ways: [(&Stage, Option<bool>); N]) -> [Series; N] {
     let mut seconds = [const { vec![] }; N];
     for _ in 0..ROUNDS {
-        for ((stage, turns), seconds) in ways.iter().zip(&mut seconds) {
+        for ((stage, flock), seconds) in ways.iter().zip(&mut seconds) {
             let options = Options {
                 spp: Some(SPP),
                 threads: NonZeroUsize::new(1),
-                turns: *turns,
+                side_by_side: *flock,
                 ..Options::default()
             };
             let start = Instant::now();

@@ -35,7 +35,7 @@ const RINGS: u32 = 200;
 const SEGMENTS: u32 = 205;
 
 /// Prints how many of `n` rays for each case meet the triangle that they leave, and how many of as many
-/// others get out: by every precision, on every processor, one by one and in turns.
+/// others get out: by every precision, on every processor, one by one and side by side.
 pub(crate) fn run(library: Option<&Library>, n: usize) {
     let cases = CASES.map(|(scale, by)| case(scale, by, n));
     println!("\n== self-hits: rays of {n} from a closed mesh that meet it where they leave it");

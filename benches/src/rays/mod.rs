@@ -22,7 +22,7 @@ use obvhs::cwbvh::CwBvh;
 use crate::series::Series;
 use embree::{Embree, Flags};
 use knot::{Soup, eight, knot};
-use peers::{Obvhs, Single, Tracer, Turns};
+use peers::{Obvhs, SideBySide, Single, Tracer};
 use shots::{Landing, Set, Shot, sets};
 
 /// Rays traced between two looks at the clock.
@@ -121,16 +121,16 @@ fn knots([along, around]: [u32; 2]) -> Field {
     Field { name: "huge", soup: eight(&knot(along, around)), eye: Vec3::new(0.9, 2.4, 4.4) }
 }
 
-/// Rays per second in turns through eight knots of so many steps, in parts of those of Embree's default:
+/// Rays per second side by side through eight knots of so many steps, in parts of those of Embree's default:
 /// the least and the greatest of all sets. `None` without Embree.
-pub(crate) fn in_turns(
+pub(crate) fn side_by_side(
     given: Option<&Path>,
     python: Option<&Path>,
     steps: [u32; 2],
 ) -> Option<[f64; 2]> {
     let library = embree::load(&embree_path(given, python))?;
     let field = knots(steps);
-    let runners = [turns(&field.soup), with_embree(&library, &field.soup, EMBREE)?];
+    let runners = [flock(&field.soup), with_embree(&library, &field.soup, EMBREE)?];
     let best = race(&runners, &field.sets(&runners[0]));
     let ratios = best[0].iter().zip(&best[1]).map(|(ours, theirs)| theirs.min() / ours.min());
     let ratios = Series::from(ratios.collect());
@@ -153,9 +153,9 @@ fn tree(soup: &Soup) -> MeshBvh {
     MeshBvh::build(&soup.points, &soup.indices).expect("the knot is finite")
 }
 
-fn turns<'a>(soup: &Soup) -> Runner<'a> {
+fn flock<'a>(soup: &Soup) -> Runner<'a> {
     let processor = Processor::widest();
-    built("luxel, in turns".into(), || Turns { tree: tree(soup), processor })
+    built("luxel, side by side".into(), || SideBySide { tree: tree(soup), processor })
 }
 
 /// What Embree is asked for where others are compared with it.
@@ -185,7 +185,7 @@ fn mesh(field: &Field, library: Option<&Library>) {
         let name = format!("luxel, {}", precision.word());
         runners.push(built(name, || single(Processor::widest(), precision)));
     }
-    runners.push(turns(soup));
+    runners.push(flock(soup));
     runners.push(built("obvhs Bvh2".into(), || Obvhs::<Bvh2>::new(soup)));
     runners.push(built("obvhs CwBvh".into(), || Obvhs::<CwBvh>::new(soup)));
     for kind in [EMBREE, ("Embree, robust", Flags::Robust)] {

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 use luxel_core::accel::{
-    Begun, Direction, MeshBvh, MeshHit, MeshWalk, Precision, Processor, Query, Room, Work,
+    Begun, Direction, Flock, MeshBvh, MeshHit, MeshWalk, Precision, Processor, Query, Room, Work,
 };
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
@@ -86,22 +86,19 @@ impl Work for Any<'_> {
     }
 }
 
-/// Rays that take turns, with the instructions of a processor.
-pub(crate) struct Turns {
+/// Rays side by side, with the instructions of a processor.
+pub(crate) struct SideBySide {
     pub(crate) tree: MeshBvh,
     pub(crate) processor: Processor,
 }
 
-/// How many.
-const TURNS: usize = 8;
-
-impl Tracer for Turns {
+impl Tracer for SideBySide {
     fn nearest(&self, shots: &[Shot], found: &mut [Landing]) {
-        self.processor.run(InTurns::<false> { tree: &self.tree, shots, found });
+        self.processor.run(Flight::<false> { tree: &self.tree, shots, found });
     }
 
     fn any(&self, shots: &[Shot], found: &mut [Landing]) {
-        self.processor.run(InTurns::<true> { tree: &self.tree, shots, found });
+        self.processor.run(Flight::<true> { tree: &self.tree, shots, found });
     }
 
     fn bytes(&self) -> usize {
@@ -109,13 +106,13 @@ impl Tracer for Turns {
     }
 }
 
-struct InTurns<'a, const ANY: bool> {
+struct Flight<'a, const ANY: bool> {
     tree: &'a MeshBvh,
     shots: &'a [Shot],
     found: &'a mut [Landing],
 }
 
-impl<'a, const ANY: bool> InTurns<'a, ANY> {
+impl<'a, const ANY: bool> Flight<'a, ANY> {
     /// The next shot that is not done with at once.
     #[inline(always)]
     fn begin(&mut self, next: &mut usize) -> Option<(usize, Direction, MeshWalk<'a>)> {
@@ -133,32 +130,26 @@ impl<'a, const ANY: bool> InTurns<'a, ANY> {
     }
 }
 
-impl<const ANY: bool> Work for InTurns<'_, ANY> {
+impl<const ANY: bool> Work for Flight<'_, ANY> {
     #[inline(always)]
     fn run(mut self, processor: Processor) {
-        let mut rooms: Vec<Room<f32>> = (0..TURNS).map(|_| Room::default()).collect();
-        let mut next = 0;
-        let mut flights = Vec::with_capacity(TURNS);
+        let mut rooms: Vec<Room<f32>> = (0..Flock::MOST).map(|_| Room::default()).collect();
+        let (mut next, mut flock, mut flights) = (0, Flock::new(), vec![]);
         for room in &mut rooms {
-            let Some(begun) = self.begin(&mut next) else { break };
-            flights.push((begun, room.stack()));
+            let Some((number, direction, walk)) = self.begin(&mut next) else { break };
+            flights.push((number, direction));
+            flock.add(walk, room.stack());
         }
-        let mut turn = 0;
-        while !flights.is_empty() {
-            turn = if turn < flights.len() { turn } else { 0 };
-            let ((number, direction, walk), stack) = &mut flights[turn];
-            if !walk.step::<ANY>(processor, stack) {
-                walk.prefetch();
-                turn += 1;
-                continue;
-            }
-            if let Some(hit) = walk.hit() {
-                self.found[*number] = if ANY { answer(true) } else { landing(&hit, direction) };
-            }
-            stack.clear();
-            match self.begin(&mut next) {
-                Some(begun) => flights[turn].0 = begun,
-                None => drop(flights.swap_remove(turn)),
+        while flock.advance::<ANY>(processor) {
+            while let Some((slot, walk)) = flock.landed() {
+                let (number, direction) = &flights[slot];
+                if let Some(hit) = walk.hit() {
+                    self.found[*number] = if ANY { answer(true) } else { landing(&hit, direction) };
+                }
+                if let Some((number, direction, walk)) = self.begin(&mut next) {
+                    flights[slot] = (number, direction);
+                    flock.replace(slot, walk);
+                }
             }
         }
     }

@@ -21,17 +21,17 @@ pub(super) type Asked = (Ray, Option<u32>);
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Way {
     OneByOne,
-    InTurns,
+    SideBySide,
 }
 
 impl Way {
-    pub(super) const ALL: [Self; 2] = [Self::OneByOne, Self::InTurns];
+    pub(super) const ALL: [Self; 2] = [Self::OneByOne, Self::SideBySide];
 
     /// A name for people, behind another.
     pub(super) fn suffix(self) -> &'static str {
         match self {
             Self::OneByOne => "",
-            Self::InTurns => ", in turns",
+            Self::SideBySide => ", side by side",
         }
     }
 }
@@ -97,10 +97,10 @@ impl Work for Trace<'_> {
                     *hit = stage.opening().intersect(processor, ray, leaving(*from), &mut 0);
                 }
             }
-            Way::InTurns => {
+            Way::SideBySide => {
                 let asked = rays.iter().map(|(ray, from)| (ray, leaving(*from), 0.0));
                 let tell = |i: usize, hit, _| hits[i] = hit;
-                stage.intersect_all(processor, asked, &mut Rooms::in_turns(), tell);
+                stage.intersect_all(processor, asked, &mut Rooms::side_by_side(), tell);
             }
         }
     }

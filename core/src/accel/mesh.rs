@@ -1,5 +1,7 @@
 //! The triangles of one mesh, ready to trace.
 
+use std::hint::select_unpredictable;
+
 use glam::{DVec3, Vec3, Vec3A};
 
 use super::build::{Tree, build};
@@ -221,44 +223,46 @@ impl MeshBvh {
         (best.id != u32::MAX).then_some(MeshHit { t, triangle: best.id, b1, b2 })
     }
 
-    /// As `leaf`, of blocks whose points move. Apart, and by value: it would take registers from all
-    /// others.
+    /// As `block`, of one whose points move. Apart, and by value: it would take registers from all others.
     #[inline(never)]
-    fn leaf_in_motion<const ANY: bool>(
+    fn block_in_motion<const ANY: bool>(
         &self,
-        blocks: std::ops::Range<usize>,
+        i: usize,
         ray: Probe,
         mut best: Nearest,
-    ) -> (bool, u32, Nearest) {
-        let mut steps = 0;
-        for (block, shift) in self.blocks[blocks.clone()].iter().zip(&self.shifts[blocks]) {
-            steps += 1;
-            if ray.meets::<ANY>(&block.at(shift, ray.share), &mut best) && ANY {
-                best.id = 0;
-                return (true, steps, best);
-            }
+    ) -> (bool, Nearest) {
+        let found = ray.meets::<ANY>(&self.blocks[i].at(&self.shifts[i], ray.share), &mut best);
+        (found, best)
+    }
+
+    /// Whether a block has a hit, which `best` takes.
+    #[inline(always)]
+    fn block<const ANY: bool>(&self, i: usize, ray: &Probe, best: &mut Nearest) -> bool {
+        let found = if self.shifts.is_empty() {
+            ray.meets::<ANY>(&self.blocks[i], best)
+        } else {
+            let (found, nearest) = self.block_in_motion::<ANY>(i, *ray, *best);
+            *best = nearest;
+            found
+        };
+        if ANY && found {
+            best.id = 0;
         }
-        (false, steps, best)
+        found
     }
 
     /// Whether a leaf has a hit, which `best` takes, and how many blocks were looked at.
     #[inline(always)]
     fn leaf<const ANY: bool>(&self, leaf: Child, ray: &Probe, best: &mut Nearest) -> (bool, u32) {
-        let mut steps = 0;
-        let blocks = leaf.blocks();
-        if !self.shifts.is_empty() {
-            let (found, steps, nearest) = self.leaf_in_motion::<ANY>(blocks, *ray, *best);
-            *best = nearest;
-            return (found, steps);
-        }
-        for block in &self.blocks[blocks] {
+        let (mut steps, mut found) = (0, false);
+        for i in leaf.blocks() {
             steps += 1;
-            if ray.meets::<ANY>(block, best) && ANY {
-                best.id = 0;
-                return (true, steps);
+            found |= self.block::<ANY>(i, ray, best);
+            if ANY && found {
+                break;
             }
         }
-        (false, steps)
+        (found, steps)
     }
 }
 
@@ -320,28 +324,23 @@ pub enum Begun<'t> {
     Walk(MeshWalk<'t>),
 }
 
-/// A ray on its way through a mesh's tree: it may be left after any step and taken up again, so that
-/// others go on while the processor waits for memory.
+/// A ray on its way through a mesh's tree: beside others in a [`Flock`](super::Flock).
 #[derive(Debug)]
 pub struct MeshWalk<'t> {
     tree: &'t MeshBvh,
     probe: Probe,
     slabs: Slabs<f32>,
     best: Nearest,
-    current: Child,
+    pub(super) current: Child,
     /// Nodes and triangle blocks looked at so far.
     pub steps: u32,
 }
 
 impl MeshWalk<'_> {
-    /// Looks at the nodes down to a leaf, or at a leaf; true when there is nothing left. `ANY` as it
-    /// began; the stack is this walk's own, empty at first.
+    /// Looks at a node or at a leaf; true when there is nothing left. `ANY` as it began; the stack is
+    /// this walk's own, empty at first.
     #[inline(always)]
-    pub fn step<const ANY: bool>(
-        &mut self,
-        processor: Processor,
-        stack: &mut Stack<'_, f32>,
-    ) -> bool {
+    fn step<const ANY: bool>(&mut self, processor: Processor, stack: &mut Stack<'_, f32>) -> bool {
         if self.current.is_leaf() {
             let (found, n) = self.tree.leaf::<ANY>(self.current, &self.probe, &mut self.best);
             self.steps += n;
@@ -365,14 +364,50 @@ impl MeshWalk<'_> {
         }
     }
 
-    /// Asks for the memory of the next step.
+    /// Looks at a node. The stack is this walk's own, [`Child::OVER`] at its bottom, and holds nothing
+    /// that is entered beyond the nearest hit: so that no branch depends on what is found.
     #[inline(always)]
-    pub fn prefetch(&self) {
-        if self.current.is_leaf() {
-            prefetch(&self.tree.blocks[self.current.blocks().start]);
-        } else {
-            prefetch(&self.tree.nodes[self.current.index()]);
+    pub(super) fn at_node(&mut self, processor: Processor, stack: &mut Stack<'_, f32>) {
+        self.steps += 1;
+        let node = &self.tree.nodes[self.current.index()];
+        processor.enter_all(&self.slabs, node, self.best.t, stack);
+        self.go_to(stack.pop_unless(false, Child::OVER));
+    }
+
+    /// Looks at the first block of a leaf; true if it has a hit and any is enough. The stack as above.
+    #[inline(always)]
+    pub(super) fn at_block<const ANY: bool>(&mut self, stack: &mut Stack<'_, f32>) -> bool {
+        self.steps += 1;
+        let (rest, is_more) = self.current.behind_first();
+        let first = self.current.blocks().start;
+        if self.tree.block::<ANY>(first, &self.probe, &mut self.best) {
+            if ANY {
+                return true;
+            }
+            stack.keep_within(self.best.t);
         }
+        self.go_to(stack.pop_unless(is_more, rest));
+        false
+    }
+
+    /// Goes on there, and asks for its memory.
+    #[inline(always)]
+    fn go_to(&mut self, next: Child) {
+        self.current = next;
+        self.prefetch();
+    }
+
+    /// Asks for the memory of the next step, whatever that is.
+    #[inline(always)]
+    pub(super) fn prefetch(&self) {
+        let MeshBvh { nodes, blocks, .. } = self.tree;
+        let node = nodes.as_ptr().wrapping_add(self.current.index()).cast();
+        let block = blocks.as_ptr().wrapping_add(self.current.blocks().start).cast();
+        prefetch::<{ size_of::<Node>() }>(select_unpredictable(
+            self.current.is_leaf(),
+            block,
+            node,
+        ));
     }
 
     /// What has been met, once it is over.

@@ -20,6 +20,7 @@ mod build;
 mod cluster;
 mod collapse;
 mod error;
+mod flock;
 mod partition;
 mod passes;
 mod triangles;
@@ -37,6 +38,7 @@ mod soup;
 mod watch_tests;
 
 pub use error::BuildError;
+pub use flock::Flock;
 pub use mesh::{Begun, MeshBvh, MeshHit, MeshWalk, Query};
 pub use precision::Precision;
 pub use processor::{Processor, Work};

@@ -22,6 +22,9 @@ impl Child {
     /// How many blocks 29 bits number.
     pub(super) const BLOCK_LIMIT: usize = 1 << 29;
 
+    /// What is no part of any tree: a leaf behind the last.
+    pub(super) const OVER: Self = Self(u32::MAX);
+
     pub(super) fn node(index: usize) -> Self {
         debug_assert!(index < Self::LEAF as usize);
         Self(narrow(index))
@@ -55,6 +58,14 @@ impl Child {
     pub(super) fn blocks(self) -> std::ops::Range<usize> {
         let first = ((self.0 & !Self::LEAF) >> 2) as usize;
         first..first + (self.0 & 3) as usize + 1
+    }
+
+    /// The blocks of a leaf but for the first, and whether there are any.
+    #[inline(always)]
+    pub(super) fn behind_first(self) -> (Self, bool) {
+        let others = self.0 & 3;
+        // One block further on, one fewer behind it.
+        (Self(self.0.wrapping_add((1 << 2) - 1)), others != 0)
     }
 
     /// The same reference after its array was appended to others of these lengths.
@@ -232,6 +243,10 @@ mod tests {
             let leaf = Child::leaf(first, n);
             assert!(leaf.is_leaf());
             assert_eq!(leaf.blocks(), first..first + n);
+            assert_ne!(leaf, Child::OVER);
+            let (rest, is_more) = leaf.behind_first();
+            assert_eq!(is_more, n > 1);
+            assert!(!is_more || rest == Child::leaf(first + 1, n - 1));
         }
         // The number behind the last one would reach the bit that tells a leaf.
         assert_eq!(narrow(Child::BLOCK_LIMIT << 2), Child::LEAF);

@@ -97,9 +97,6 @@ impl<T: Real> Slabs<T> {
 
     /// The nearest of the children that the ray enters at or before `t_max`, and where it does; puts
     /// the others on the stack, the nearest of them last.
-    ///
-    /// A direction component of zero makes infinities, and NaN where the origin lies in a plane: a
-    /// slab with a NaN does not cut.
     #[inline(always)]
     pub(super) fn enter(
         &self,
@@ -107,6 +104,17 @@ impl<T: Real> Slabs<T> {
         t_max: T,
         stack: &mut Stack<'_, T>,
     ) -> Option<(Child, T)> {
+        let below = stack.len();
+        self.enter_all(boxes, t_max, stack);
+        stack.pop_above(below)
+    }
+
+    /// Puts the children that the ray enters at or before `t_max` on the stack, the nearest last.
+    ///
+    /// A direction component of zero makes infinities, and NaN where the origin lies in a plane: a
+    /// slab with a NaN does not cut.
+    #[inline(always)]
+    pub(super) fn enter_all(&self, boxes: &Boxes<T>, t_max: T, stack: &mut Stack<'_, T>) {
         let mut t_near = [T::ZERO; WIDTH];
         let mut t_far = [t_max; WIDTH];
         for axis in 0..3 {
@@ -119,12 +127,10 @@ impl<T: Real> Slabs<T> {
                 t_far[lane] = if leave < t_far[lane] { leave } else { t_far[lane] };
             }
         }
-        let below = stack.len();
         for slot in boxes.order.far_to_near(self.octant) {
             let entered = t_near[slot] <= t_far[slot] * T::FAR;
             stack.push_if(entered, boxes.children[slot], t_near[slot]);
         }
-        stack.pop_above(below)
     }
 }
 
@@ -134,9 +140,21 @@ impl<T: Real> Stack<'_, T> {
     pub(super) fn pop_within(&mut self, t_max: T) -> Option<(Child, T)> {
         loop {
             let top = self.pop()?;
-            if top.1 <= t_max * T::FAR {
+            if is_within(top.1, t_max) {
                 return Some(top);
             }
         }
     }
+
+    /// Forgets what is entered beyond `t_max`.
+    #[inline(always)]
+    pub(super) fn keep_within(&mut self, t_max: T) {
+        self.keep_if(|entry| is_within(entry, t_max));
+    }
+}
+
+/// Whether a box that a ray enters there may hold something at or before `t_max`.
+#[inline(always)]
+fn is_within<T: Real>(t_enter: T, t_max: T) -> bool {
+    t_enter <= t_max * T::FAR
 }

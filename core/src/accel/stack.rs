@@ -1,6 +1,7 @@
 //! What a walk through a tree has still to visit.
 #![expect(unsafe_code, reason = "room that is not cleared for each ray")]
 
+use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 use super::node::{Child, WIDTH};
@@ -100,6 +101,27 @@ impl<T: Copy> Stack<'_, T> {
         self.len += n;
     }
 
+    /// Forgets those whose entry is not as it has to be.
+    #[inline(always)]
+    pub(super) fn keep_if(&mut self, keeps: impl Fn(T) -> bool) {
+        for i in 0..std::mem::take(&mut self.len) {
+            let (child, entry) = self.at(i);
+            self.push_if(keeps(entry), child, entry);
+        }
+    }
+
+    /// What was kept last; if `stays`, that is left where it is, and this is `instead`. Without a branch.
+    ///
+    /// # Panics
+    /// Where nothing is kept.
+    #[inline(always)]
+    pub(super) fn pop_unless(&mut self, stays: bool, instead: Child) -> Child {
+        assert!(self.len > 0, "something is kept");
+        let (last, _) = self.at(self.len - 1);
+        self.len -= usize::from(!stays);
+        select_unpredictable(stays, instead, last)
+    }
+
     /// How many are kept.
     #[inline(always)]
     pub(super) fn len(&self) -> usize {
@@ -119,11 +141,17 @@ impl<T: Copy> Stack<'_, T> {
             return None;
         }
         self.len -= 1;
-        // SAFETY: this entry was written before it was counted.
-        let child = unsafe { self.room.children[self.len].assume_init() };
+        Some(self.at(self.len))
+    }
+
+    /// An entry that is kept, or was until now.
+    #[inline(always)]
+    fn at(&self, i: usize) -> (Child, T) {
+        // SAFETY: entries are written before they are counted, in their order, and stay written.
+        let child = unsafe { self.room.children[i].assume_init() };
         // SAFETY: as above.
-        let entry = unsafe { self.room.entries[self.len].assume_init() };
-        Some((child, entry))
+        let entry = unsafe { self.room.entries[i].assume_init() };
+        (child, entry)
     }
 }
 
@@ -140,6 +168,27 @@ mod tests {
         }
         let mut pop = || stack.pop().map(|(child, value)| (child.index(), value));
         assert_eq!([pop(), pop(), pop()], [Some((3, 3)), Some((1, 1)), None]);
+    }
+
+    #[test]
+    fn some_are_forgotten_and_the_others_keep_their_order() {
+        let mut room = Room::default();
+        let mut stack = room.stack();
+        (0..6).for_each(|value| stack.push_if(true, Child::node(value), value));
+        stack.keep_if(|value| value % 2 == 1);
+        let mut pop = || stack.pop().map(|(child, value)| (child.index(), value));
+        assert_eq!([pop(), pop(), pop(), pop()], [Some((5, 5)), Some((3, 3)), Some((1, 1)), None]);
+    }
+
+    #[test]
+    fn the_last_is_taken_unless_it_stays() {
+        let mut room = Room::default();
+        let mut stack = room.stack();
+        (0..2).for_each(|value| stack.push_if(true, Child::node(value), value));
+        let mut pop = |stays| stack.pop_unless(stays, Child::OVER);
+        assert_eq!([pop(true), pop(false)], [Child::OVER, Child::node(1)]);
+        assert_eq!([pop(true), pop(false)], [Child::OVER, Child::node(0)]);
+        assert_eq!(stack.len(), 0);
     }
 
     #[test]

@@ -45,9 +45,9 @@ pub struct Options {
     pub crop: Option<Rect>,
     /// Threads; as many as there are cores if absent.
     pub threads: Option<NonZeroUsize>,
-    /// Whether rays of path integrators take turns, which changes no bit; as is sooner for the stage
+    /// Whether rays of path integrators go side by side, which changes no bit; as is sooner for the stage
     /// if absent.
-    pub turns: Option<bool>,
+    pub side_by_side: Option<bool>,
     /// Whether the first sample comes in steps, every eighth pixel of every eighth row first: for
     /// those who look on. Changes no bit.
     pub coarse: bool,
@@ -254,9 +254,9 @@ pub fn render_on(
     let stop = Stop { control, stage, failures: &failures, first: false, end: None };
     let plan = Plan::new(options.goal, options.samples(stage));
     let seed = options.seed(stage);
-    let rooms = || match options.turns {
+    let rooms = || match options.side_by_side {
         None => Rooms::of(stage),
-        Some(true) => Rooms::in_turns(),
+        Some(true) => Rooms::side_by_side(),
         Some(false) => Rooms::one_by_one(),
     };
     pool.install(|| {

@@ -1,36 +1,33 @@
-//! Many rays through the whole stage: one by one, or a few at a time in turns, so that while one waits
+//! Many rays through the whole stage: one by one, or some at a time side by side, so that while one waits
 //! for memory the others go on. What they meet is the same.
 
 use glam::DVec2;
 use luxel_sdk::kind::Hit;
 use luxel_sdk::num::Ray;
 
-use crate::accel::{Begun, Direction, MeshHit, MeshWalk, Processor, Room, Stack, TopWalk};
+use crate::accel::{Begun, Direction, Flock, MeshHit, MeshWalk, Processor, Room, Stack, TopWalk};
 
 use super::geometry::{Approach, Geometry, Landed, Mesh, Taken};
 use super::trace::{Carried, Local};
 use super::{Leaving, Moment, SceneHit, Skin, Stage};
 
-/// Rays that take turns.
-const TURNS: usize = 8;
-
-/// Bytes of trees from which on rays wait for memory so much that taking turns pays. Below, one by one is
-/// faster by what it costs to turn: 1.12 times with 4.6 MB, 0.91 times with 140 MB (docs/performance.md).
+/// Bytes of trees from which on rays are traced sooner side by side. Below, one by one is faster by what
+/// it costs to keep many under way: 1.05 times with 4.6 MB, 0.79 times with 140 MB (docs/performance.md).
 const CACHE_BYTES: usize = 1 << 23;
 
-/// How many rays are traced: room for those that take turns, made once.
+/// How many rays are traced: room for those that go side by side, made once.
 #[derive(Debug)]
 pub struct Rooms(Vec<(Room<f64>, Room<f32>)>);
 
 impl Rooms {
     /// As is sooner with a stage.
     pub fn of(stage: &Stage) -> Self {
-        if stage.is_for_turns() { Self::in_turns() } else { Self::one_by_one() }
+        if stage.is_for_flocks() { Self::side_by_side() } else { Self::one_by_one() }
     }
 
-    /// Rays take turns.
-    pub fn in_turns() -> Self {
-        Self((0..TURNS).map(|_| (Room::default(), Room::default())).collect())
+    /// Rays go side by side.
+    pub fn side_by_side() -> Self {
+        Self((0..Flock::MOST).map(|_| (Room::default(), Room::default())).collect())
     }
 
     /// Each ray is traced to its end before the next.
@@ -43,8 +40,8 @@ impl Rooms {
 pub type Asked<'a> = (&'a Ray, Option<Leaving>, f64);
 
 impl Stage {
-    /// Whether many rays are traced sooner in turns than one by one.
-    pub fn is_for_turns(&self) -> bool {
+    /// Whether many rays are traced sooner side by side than one by one.
+    pub fn is_for_flocks(&self) -> bool {
         let bytes = |geometry: &Geometry| match geometry {
             Geometry::Analytic(_) => 0,
             Geometry::Mesh(mesh) => mesh.bytes(),
@@ -70,7 +67,7 @@ impl Stage {
             }
             return;
         }
-        self.take_turns::<false>(processor, rays, rooms, |flight| {
+        self.side_by_side::<false>(processor, rays, rooms, |flight| {
             tell(flight.number, flight.hit, flight.steps);
         });
     }
@@ -90,43 +87,74 @@ impl Stage {
             }
             return;
         }
-        self.take_turns::<true>(processor, rays, rooms, |flight| {
+        self.side_by_side::<true>(processor, rays, rooms, |flight| {
             tell(flight.number, flight.hit.is_some());
         });
     }
 
     #[inline(always)]
-    fn take_turns<'a, const ANY: bool>(
+    fn side_by_side<'a, const ANY: bool>(
         &self,
         processor: Processor,
         rays: impl Iterator<Item = Asked<'a>>,
         rooms: &mut Rooms,
-        mut land: impl FnMut(&Flight<'_>),
+        land: impl FnMut(&Flight<'_>),
     ) {
-        let mut rays = rays.enumerate();
-        let mut flights = Vec::with_capacity(TURNS);
+        let mut queue = Queue { stage: self, processor, rays: rays.enumerate(), land };
+        let mut flights = Vec::with_capacity(Flock::MOST);
+        let mut flock = Flock::new();
         for (top, mesh) in &mut rooms.0 {
-            let Some(ray) = rays.next() else { break };
-            flights.push((Flight::new(self, ray), top.stack(), mesh.stack()));
+            let mut top = top.stack();
+            let Some(mut flight) = queue.next() else { break };
+            let Some(walk) = queue.go_on::<ANY>(&mut flight, &mut top) else { break };
+            flights.push((flight, top));
+            flock.add(walk, mesh.stack());
         }
-        let mut turn = 0;
-        while !flights.is_empty() {
-            turn = if turn < flights.len() { turn } else { 0 };
-            let (flight, top, mesh) = &mut flights[turn];
-            if !flight.step::<ANY>(processor, (top, mesh)) {
-                turn += 1;
-                continue;
-            }
-            land(flight);
-            match rays.next() {
-                Some(ray) => {
-                    top.clear();
-                    mesh.clear();
-                    *flight = Flight::new(self, ray);
-                    turn += 1;
+        while flock.advance::<ANY>(processor) {
+            while let Some((slot, walk)) = flock.landed() {
+                let (flight, top) = &mut flights[slot];
+                flight.leave::<ANY>(processor, walk);
+                if let Some(walk) = queue.go_on::<ANY>(flight, top) {
+                    flock.replace(slot, walk);
                 }
-                None => drop(flights.swap_remove(turn)),
             }
+        }
+    }
+}
+
+/// Rays that have not set out yet, and where is told of those that are over.
+struct Queue<'s, I, L> {
+    stage: &'s Stage,
+    processor: Processor,
+    rays: I,
+    land: L,
+}
+
+impl<'s, 'a, I, L> Queue<'s, I, L>
+where
+    I: Iterator<Item = (usize, Asked<'a>)>,
+    L: FnMut(&Flight<'_>),
+{
+    #[inline(always)]
+    fn next(&mut self) -> Option<Flight<'s>> {
+        self.rays.next().map(|ray| Flight::new(self.stage, ray))
+    }
+
+    /// Goes on with a flight, and with the next ones in its place once it is over, until one sets out
+    /// through the tree of a mesh; `None` when there are no more rays.
+    #[inline(always)]
+    fn go_on<const ANY: bool>(
+        &mut self,
+        flight: &mut Flight<'s>,
+        top: &mut Stack<'_, f64>,
+    ) -> Option<MeshWalk<'s>> {
+        loop {
+            if let Some(walk) = flight.go_on::<ANY>(self.processor, top) {
+                return Some(walk);
+            }
+            (self.land)(flight);
+            top.clear();
+            *flight = self.next()?;
         }
     }
 }
@@ -140,7 +168,7 @@ struct Flight<'s> {
     moment: Moment<'s>,
     walk: TopWalk<'s>,
     /// The mesh that it is in.
-    within: Option<(Visit<'s>, MeshWalk<'s>)>,
+    within: Option<Visit<'s>>,
     hit: Option<SceneHit>,
     steps: u32,
 }
@@ -154,8 +182,6 @@ struct Visit<'s> {
     taken: Taken,
 }
 
-type Stacks<'a, 'r> = (&'a mut Stack<'r, f64>, &'a mut Stack<'r, f32>);
-
 impl<'s> Flight<'s> {
     #[inline(always)]
     fn new(stage: &'s Stage, (number, (ray, from, time)): (usize, Asked<'_>)) -> Self {
@@ -164,36 +190,35 @@ impl<'s> Flight<'s> {
         Self { number, ray: *ray, direction, from, moment, walk, within: None, hit: None, steps: 0 }
     }
 
-    /// Goes on until it has to wait for memory; true when it is over.
+    /// Goes on until it sets out through the tree of a mesh; `None` when it is over.
     #[inline(always)]
-    fn step<const ANY: bool>(&mut self, processor: Processor, (top, mesh): Stacks<'_, '_>) -> bool {
-        if let Some((_, walk)) = &mut self.within {
-            if !walk.step::<ANY>(processor, mesh) {
-                walk.prefetch();
-                return false;
-            }
-            mesh.clear();
-            if self.leave::<ANY>(processor) && ANY {
-                return true;
-            }
-        }
-        while self.within.is_none() {
-            let Some((index, t_enter)) = self.walk.next(processor, top) else { return true };
-            if self.enter::<ANY>(processor, index, t_enter) && ANY {
-                return true;
+    fn go_on<const ANY: bool>(
+        &mut self,
+        processor: Processor,
+        top: &mut Stack<'_, f64>,
+    ) -> Option<MeshWalk<'s>> {
+        while !ANY || self.hit.is_none() {
+            let (index, t_enter) = self.walk.next(processor, top)?;
+            if let Some(walk) = self.enter::<ANY>(processor, index, t_enter) {
+                return Some(walk);
             }
         }
-        false
+        None
     }
 
-    /// Enters a placement; true if it is done with at once and was hit.
+    /// Enters a placement: its mesh's tree, or it is done with at once.
     #[inline(always)]
-    fn enter<const ANY: bool>(&mut self, processor: Processor, index: u32, t_enter: f64) -> bool {
+    fn enter<const ANY: bool>(
+        &mut self,
+        processor: Processor,
+        index: u32,
+        t_enter: f64,
+    ) -> Option<MeshWalk<'s>> {
         self.steps += 1;
         let Moment { stage, time } = self.moment;
         let placement = &stage.placements[index as usize];
         if ANY && placement.skin == Skin::Open {
-            return false;
+            return None;
         }
         let mut carried = None;
         let local = Local::of(placement, self.local(), time, &mut carried);
@@ -210,36 +235,38 @@ impl<'s> Flight<'s> {
                     shape.intersect(local.ray, processor, &mut steps)
                 };
                 self.steps += steps;
-                return self.take(index, hit);
+                self.take(index, hit);
+                return None;
             }
             Geometry::Mesh(mesh) => mesh,
         };
-        let Some(direction) = local.direction else { return false };
+        let direction = local.direction?;
         let taken = mesh.take_up(direction, t_enter);
         let visit = Visit { placement: index, mesh, carried, t_enter, taken };
         let (ray, approach) = self.approach(&visit, processor);
         match mesh.begin::<ANY>(ray, &approach, taken) {
             Begun::Over(hit, steps) => {
                 self.steps += steps;
-                self.land::<ANY>(processor, &visit, hit)
+                self.land::<ANY>(processor, &visit, hit);
+                None
             }
             Begun::Walk(walk) => {
-                walk.prefetch();
-                self.within = Some((visit, walk));
-                false
+                self.within = Some(visit);
+                Some(walk)
             }
         }
     }
 
-    /// Leaves the mesh that it was in; true if it was hit.
+    /// Leaves the mesh whose tree it has gone through.
     #[inline(always)]
-    fn leave<const ANY: bool>(&mut self, processor: Processor) -> bool {
-        let Some((visit, walk)) = self.within.take() else { return false };
-        self.steps += walk.steps;
-        self.land::<ANY>(processor, &visit, walk.hit())
+    fn leave<const ANY: bool>(&mut self, processor: Processor, walk: &MeshWalk<'_>) {
+        if let Some(visit) = self.within.take() {
+            self.steps += walk.steps;
+            self.land::<ANY>(processor, &visit, walk.hit());
+        }
     }
 
-    /// True if what the tree found is a hit. Of any triangle that is found it is not known whether
+    /// Takes what the tree found if it is a hit. Of any triangle that is found it is not known whether
     /// others lie before it: one behind the ray's origin is asked about again.
     #[inline(always)]
     fn land<const ANY: bool>(
@@ -247,8 +274,8 @@ impl<'s> Flight<'s> {
         processor: Processor,
         visit: &Visit<'_>,
         hit: Option<MeshHit>,
-    ) -> bool {
-        let Some(found) = hit else { return false };
+    ) {
+        let Some(found) = hit else { return };
         let (ray, approach) = self.approach(visit, processor);
         let mesh = visit.mesh;
         let mut steps = 0;
@@ -264,15 +291,14 @@ impl<'s> Flight<'s> {
             }
         };
         self.steps += steps;
-        self.take(visit.placement, landed)
+        self.take(visit.placement, landed);
     }
 
     #[inline(always)]
-    fn take(&mut self, placement: u32, hit: Option<Hit>) -> bool {
-        let Some(hit) = hit else { return false };
+    fn take(&mut self, placement: u32, hit: Option<Hit>) {
+        let Some(hit) = hit else { return };
         self.hit = SceneHit { placement, hit }.or_before(self.hit);
         (self.walk.t_max, self.ray.t_max) = (hit.t, hit.t);
-        true
     }
 
     /// The ray in the world.

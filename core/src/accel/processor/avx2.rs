@@ -86,6 +86,14 @@ pub(super) fn enter(
     stack: &mut Stack<'_, f32>,
 ) -> Option<Child> {
     let below = stack.len();
+    enter_all(ray, node, t_max, stack);
+    Some(stack.pop_above(below)?.0)
+}
+
+/// See [`Processor::enter_all`](super::Processor::enter_all).
+#[inline]
+#[target_feature(enable = "avx2,popcnt")]
+pub(super) fn enter_all(ray: &Slabs<f32>, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
     let Ordered { t_near, t_far, children } = Spans::of(ray, node, t_max).ordered(node, ray.octant);
     let entered = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(t_near, t_far)) & 0xff;
     let first = &FIRST[entered.cast_unsigned() as usize];
@@ -100,7 +108,6 @@ pub(super) fn enter(
     unsafe { _mm256_storeu_si256(top.children.as_mut_ptr().cast(), children) };
     // SAFETY: all eight have been written.
     unsafe { stack.keep(entered.count_ones() as usize) };
-    Some(stack.pop_above(below)?.0)
 }
 
 /// The slots in the order of these bits; a permutation looks at three bits of each.

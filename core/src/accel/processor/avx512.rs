@@ -30,19 +30,34 @@ pub(super) fn enter(
     let Ordered { t_near, t_far, children } = spans.ordered(node, against(ray.octant));
     let entered = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(t_near, t_far);
     let nearest = first(_mm256_maskz_compress_epi32(entered, children));
-    let Ordered { t_near, t_far, children } = spans.ordered(node, ray.octant);
-    let entered = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(t_near, t_far);
-    let top = stack.top();
-    let entries = _mm256_maskz_compress_ps(entered, t_near);
-    // SAFETY: eight values fit at the top of the stack.
-    unsafe { _mm256_storeu_ps(top.entries.as_mut_ptr().cast(), entries) };
-    let children = _mm256_maskz_compress_epi32(entered, children);
-    // SAFETY: as above; a child is one word.
-    unsafe { _mm256_storeu_si256(top.children.as_mut_ptr().cast(), children) };
-    let others = (entered.count_ones() as usize).checked_sub(1)?;
+    let others = write(&spans.ordered(node, ray.octant), stack).checked_sub(1)?;
     // SAFETY: all eight have been written.
     unsafe { stack.keep(others) };
     Some(nearest)
+}
+
+/// See [`Processor::enter_all`](super::Processor::enter_all).
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,popcnt")]
+pub(super) fn enter_all(ray: &Slabs<f32>, node: &Node, t_max: f32, stack: &mut Stack<'_, f32>) {
+    let entered = write(&Spans::of(ray, node, t_max).ordered(node, ray.octant), stack);
+    // SAFETY: all eight have been written.
+    unsafe { stack.keep(entered) };
+}
+
+/// Writes eight entries on top of a stack, those that are entered first; how many these are.
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,popcnt")]
+fn write(boxes: &Ordered, stack: &mut Stack<'_, f32>) -> usize {
+    let entered = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(boxes.t_near, boxes.t_far);
+    let top = stack.top();
+    let entries = _mm256_maskz_compress_ps(entered, boxes.t_near);
+    // SAFETY: eight values fit at the top of the stack.
+    unsafe { _mm256_storeu_ps(top.entries.as_mut_ptr().cast(), entries) };
+    let children = _mm256_maskz_compress_epi32(entered, boxes.children);
+    // SAFETY: as above; a child is one word.
+    unsafe { _mm256_storeu_si256(top.children.as_mut_ptr().cast(), children) };
+    entered.count_ones() as usize
 }
 
 /// See [`Processor::enter_top`](super::Processor::enter_top).

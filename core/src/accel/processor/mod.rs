@@ -117,7 +117,32 @@ impl Processor {
         }
     }
 
-    /// The same for a node of placements, and where the ray enters the nearest.
+    /// Puts the children of a node that the ray enters at or before `t_max` on the stack, the nearest
+    /// last.
+    #[inline(always)]
+    pub(super) fn enter_all(
+        self,
+        ray: &Slabs<f32>,
+        node: &Node,
+        t_max: f32,
+        stack: &mut Stack<'_, f32>,
+    ) {
+        match self.0 {
+            Kind::Any => ray.enter_all(node, t_max, stack),
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2 => {
+                // SAFETY: whoever made this value found the instructions.
+                unsafe { avx2::enter_all(ray, node, t_max, stack) }
+            }
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512 => {
+                // SAFETY: as above.
+                unsafe { avx512::enter_all(ray, node, t_max, stack) }
+            }
+        }
+    }
+
+    /// As `enter` for a node of placements, and where the ray enters the nearest.
     #[inline(always)]
     pub(super) fn enter_top(
         self,
@@ -137,18 +162,17 @@ impl Processor {
     }
 }
 
-/// Asks for a value of a few cache lines, so that it is near when it is read.
+/// Asks for the cache lines of so many bytes, so that they are near when they are read.
 #[inline(always)]
-pub(super) fn prefetch<T>(value: &T) {
+pub(super) fn prefetch<const BYTES: usize>(at: *const u8) {
     #[cfg(target_arch = "x86_64")]
-    for line in 0..size_of::<T>().div_ceil(64) {
+    for line in 0..BYTES.div_ceil(64) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let at = std::ptr::from_ref(value).cast::<i8>().wrapping_add(64 * line);
         // SAFETY: it reads nothing, and every x86-64 has it.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(at) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(at.wrapping_add(64 * line).cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = value;
+    let _ = at;
 }
 
 /// Whether the processor has what x86-64-v3 names.

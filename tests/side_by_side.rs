@@ -1,4 +1,4 @@
-//! Rays that take turns meet what they meet one by one, on every processor.
+//! Rays side by side meet what they meet one by one, on every processor.
 
 use glam::DVec3;
 use luxel_core::accel::{Processor, Work};
@@ -60,13 +60,13 @@ impl Work for OneByOne<'_> {
     }
 }
 
-struct InTurns<'a>(&'a Stage, &'a Rays, &'a mut Found);
+struct SideBySide<'a>(&'a Stage, &'a Rays, &'a mut Found);
 
-impl Work for InTurns<'_> {
+impl Work for SideBySide<'_> {
     #[inline(always)]
     fn run(self, processor: Processor) {
         let Self(stage, rays, found) = self;
-        let mut rooms = Rooms::in_turns();
+        let mut rooms = Rooms::side_by_side();
         found.resize(rays.len(), (None, 0, false));
         let asked = || rays.iter().map(|(ray, from, time)| (ray, *from, *time));
         stage.intersect_all(processor, asked(), &mut rooms, |i, hit, steps| {
@@ -77,7 +77,7 @@ impl Work for InTurns<'_> {
 }
 
 #[test]
-fn turns_change_nothing() {
+fn going_side_by_side_changes_nothing() {
     for name in SCENES {
         let path = root().join(format!("scenes/{name}.scene"));
         let stage = stage_of(&path, &OnDisk, &[], None).unwrap_or_else(|said| panic!("{said:?}"));
@@ -87,11 +87,11 @@ fn turns_change_nothing() {
         let hits = reference.iter().filter(|found| found.0.is_some()).count();
         assert!(hits > 1000, "{name}: {hits} of {} rays hit", rays.len());
         for processor in Processor::all() {
-            let (mut single, mut turns) = (vec![], vec![]);
+            let (mut single, mut flock) = (vec![], vec![]);
             processor.run(OneByOne(&stage, &rays, &mut single));
-            processor.run(InTurns(&stage, &rays, &mut turns));
+            processor.run(SideBySide(&stage, &rays, &mut flock));
             assert!(single == reference, "{name}: {}, one by one", processor.name());
-            assert!(turns == reference, "{name}: {}, in turns", processor.name());
+            assert!(flock == reference, "{name}: {}, side by side", processor.name());
         }
     }
 }

@@ -137,7 +137,8 @@ where
 {
     #[inline(always)]
     fn next(&mut self) -> Option<Flight<'s>> {
-        self.rays.next().map(|ray| Flight::new(self.stage, ray))
+        let ray = self.rays.next()?;
+        Some(Flight::new(self.stage, ray))
     }
 
     /// Goes on with a flight, and with the next ones in its place once it is over, until one sets out

@@ -140,7 +140,7 @@ impl<const ANY: bool> Work for Flight<'_, ANY> {
             flights.push((number, direction));
             flock.add(walk, room.stack());
         }
-        while flock.advance::<ANY>(processor) {
+        while flock.advance::<ANY>(processor, |_, _, _| {}) {
             while let Some((slot, walk)) = flock.landed() {
                 let (number, direction) = &flights[slot];
                 if let Some(hit) = walk.hit() {

@@ -18,6 +18,8 @@ pub struct Flock<'t, 'r> {
     slots: Vec<(MeshWalk<'t>, Stack<'r, f32>)>,
     at_nodes: Slots,
     at_leaves: Slots,
+    /// Those that will be over in the next round.
+    ending: Slots,
     over: Slots,
 }
 
@@ -32,6 +34,7 @@ impl<'t, 'r> Flock<'t, 'r> {
             slots: Vec::with_capacity(Self::MOST),
             at_nodes: none(),
             at_leaves: none(),
+            ending: none(),
             over: none(),
         }
     }
@@ -66,11 +69,20 @@ impl<'t, 'r> Flock<'t, 'r> {
         self.at_nodes.add_if(true, slot);
     }
 
-    /// Takes each walk one or two steps on; false where none is on its way. `ANY` as they began.
+    /// Takes each walk one or two steps on; false where none is on its way. `ANY` as they began. `ask`
+    /// is given each triangle that is the nearest so far, with its slot, to ask for the memory of what
+    /// will be wanted of it; and once more, with `true`, a round before its walk is given as over.
     #[inline(always)]
-    pub fn advance<const ANY: bool>(&mut self, processor: Processor) -> bool {
-        let Self { slots, at_nodes, at_leaves, over } = self;
-        let is_on = at_nodes.n + at_leaves.n > 0;
+    pub fn advance<const ANY: bool>(
+        &mut self,
+        processor: Processor,
+        ask: impl Fn(usize, u32, bool),
+    ) -> bool {
+        let Self { slots, at_nodes, at_leaves, ending, over } = self;
+        let is_on = at_nodes.n + at_leaves.n + ending.n > 0;
+        for i in 0..ending.take() {
+            over.add_if(true, ending.at(i));
+        }
         for i in 0..at_nodes.take() {
             let slot = at_nodes.at(i);
             let (walk, stack) = &mut slots[slot];
@@ -81,8 +93,12 @@ impl<'t, 'r> Flock<'t, 'r> {
         for i in 0..at_leaves.take() {
             let slot = at_leaves.at(i);
             let (walk, stack) = &mut slots[slot];
-            if walk.current == Child::OVER || walk.at_block::<ANY>(stack) {
-                over.add_if(true, slot);
+            let nearer = |triangle| ask(slot, triangle, false);
+            if walk.current == Child::OVER || walk.at_block::<ANY>(stack, nearer) {
+                if let Some(triangle) = walk.nearest() {
+                    ask(slot, triangle, true);
+                }
+                ending.add_if(true, slot);
                 continue;
             }
             at_nodes.add_if(!walk.current.is_leaf(), slot);

@@ -374,9 +374,14 @@ impl MeshWalk<'_> {
         self.go_to(stack.pop_unless(false, Child::OVER));
     }
 
-    /// Looks at the first block of a leaf; true if it has a hit and any is enough. The stack as above.
+    /// Looks at the first block of a leaf; true if it has a hit and any is enough. If not, `nearer` is
+    /// told which triangle is the nearest now. The stack as above.
     #[inline(always)]
-    pub(super) fn at_block<const ANY: bool>(&mut self, stack: &mut Stack<'_, f32>) -> bool {
+    pub(super) fn at_block<const ANY: bool>(
+        &mut self,
+        stack: &mut Stack<'_, f32>,
+        nearer: impl Fn(u32),
+    ) -> bool {
         self.steps += 1;
         let (rest, is_more) = self.current.behind_first();
         let first = self.current.blocks().start;
@@ -384,6 +389,7 @@ impl MeshWalk<'_> {
             if ANY {
                 return true;
             }
+            nearer(self.best.id);
             stack.keep_within(self.best.t);
         }
         self.go_to(stack.pop_unless(is_more, rest));
@@ -408,6 +414,12 @@ impl MeshWalk<'_> {
             block,
             node,
         ));
+    }
+
+    /// The triangle that is the nearest so far; any that is enough is not told.
+    #[inline(always)]
+    pub(super) fn nearest(&self) -> Option<u32> {
+        (self.best.id != u32::MAX).then_some(self.best.id)
     }
 
     /// What has been met, once it is over.

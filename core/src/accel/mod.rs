@@ -41,7 +41,7 @@ pub use error::BuildError;
 pub use flock::Flock;
 pub use mesh::{Begun, MeshBvh, MeshHit, MeshWalk, Query};
 pub use precision::Precision;
-pub use processor::{Processor, Work};
+pub use processor::{Processor, Work, prefetch_value};
 pub use ray::Direction;
 pub use stack::{Room, Stack};
 pub use top::{Box64, TopBvh, TopWalk};

@@ -162,6 +162,12 @@ impl Processor {
     }
 }
 
+/// Asks for the cache line where a small value begins, so that it is near when it is read.
+#[inline(always)]
+pub fn prefetch_value<T>(value: &T) {
+    prefetch::<1>(std::ptr::from_ref(value).cast());
+}
+
 /// Asks for the cache lines of so many bytes, so that they are near when they are read.
 #[inline(always)]
 pub(super) fn prefetch<const BYTES: usize>(at: *const u8) {

@@ -71,7 +71,8 @@ impl<'t, 'r> Flock<'t, 'r> {
 
     /// Takes each walk one or two steps on; false where none is on its way. `ANY` as they began. `ask`
     /// is given each triangle that is the nearest so far, with its slot, to ask for the memory of what
-    /// will be wanted of it; and once more, with `true`, a round before its walk is given as over.
+    /// will be wanted of it; and once more, with `true`, a round before its walk is given as over. Where
+    /// any hit is enough nothing is wanted.
     #[inline(always)]
     pub fn advance<const ANY: bool>(
         &mut self,
@@ -95,7 +96,7 @@ impl<'t, 'r> Flock<'t, 'r> {
             let (walk, stack) = &mut slots[slot];
             let nearer = |triangle| ask(slot, triangle, false);
             if walk.current == Child::OVER || walk.at_block::<ANY>(stack, nearer) {
-                if let Some(triangle) = walk.nearest() {
+                if !ANY && let Some(triangle) = walk.nearest() {
                     ask(slot, triangle, true);
                 }
                 ending.add_if(true, slot);

@@ -416,7 +416,7 @@ impl MeshWalk<'_> {
         ));
     }
 
-    /// The triangle that is the nearest so far; any that is enough is not told.
+    /// The triangle that is the nearest so far.
     #[inline(always)]
     pub(super) fn nearest(&self) -> Option<u32> {
         (self.best.id != u32::MAX).then_some(self.best.id)

@@ -113,7 +113,7 @@ impl Stage {
             flock.add(walk, mesh.stack());
         }
         while flock.advance::<ANY>(processor, |slot, triangle, is_over| {
-            flights[slot].0.ask::<ANY>(triangle, is_over);
+            flights[slot].0.ask(triangle, is_over);
         }) {
             while let Some((slot, walk)) = flock.landed() {
                 let (flight, top) = &mut flights[slot];
@@ -265,8 +265,8 @@ impl<'s> Flight<'s> {
     /// Asks for the memory of what will be wanted of a triangle that it meets: its corners' numbers, and
     /// once its walk is over what these number.
     #[inline(always)]
-    fn ask<const ANY: bool>(&self, triangle: u32, is_over: bool) {
-        let Some(visit) = self.within.as_ref().filter(|_| !ANY) else { return };
+    fn ask(&self, triangle: u32, is_over: bool) {
+        let Some(visit) = &self.within else { return };
         let triangles = visit.mesh.triangles();
         if !is_over {
             return prefetch_value(&triangles.indices[triangle as usize]);

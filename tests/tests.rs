@@ -71,12 +71,12 @@ mod scenes;
 #[cfg(test)]
 mod seeded;
 #[cfg(test)]
+mod side_by_side;
+#[cfg(test)]
 mod solids;
 #[cfg(test)]
 mod stage_cases;
 #[cfg(test)]
 mod truths;
-#[cfg(test)]
-mod side_by_side;
 #[cfg(test)]
 mod tutorial;

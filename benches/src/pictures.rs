@@ -102,11 +102,11 @@ fn precisions(waves: &str, of: &dyn Fn(u32, &str) -> Result<Stage, String>) -> R
 fn rates<const N: usize>(ways: [(&Stage, Option<bool>); N]) -> [Series; N] {
     let mut seconds = [const { vec![] }; N];
     for _ in 0..ROUNDS {
-        for ((stage, flock), seconds) in ways.iter().zip(&mut seconds) {
+        for ((stage, side_by_side), seconds) in ways.iter().zip(&mut seconds) {
             let options = Options {
                 spp: Some(SPP),
                 threads: NonZeroUsize::new(1),
-                side_by_side: *flock,
+                side_by_side: *side_by_side,
                 ..Options::default()
             };
             let start = Instant::now();

@@ -121,8 +121,8 @@ fn knots([along, around]: [u32; 2]) -> Field {
     Field { name: "huge", soup: eight(&knot(along, around)), eye: Vec3::new(0.9, 2.4, 4.4) }
 }
 
-/// Rays per second side by side through eight knots of so many steps, in parts of those of Embree's default:
-/// the least and the greatest of all sets. `None` without Embree.
+/// Rays per second side by side through eight knots of so many steps, in parts of those of Embree's
+/// default: the least and the greatest of all sets. `None` without Embree.
 pub(crate) fn side_by_side(
     given: Option<&Path>,
     python: Option<&Path>,

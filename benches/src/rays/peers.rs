@@ -94,11 +94,11 @@ pub(crate) struct SideBySide {
 
 impl Tracer for SideBySide {
     fn nearest(&self, shots: &[Shot], found: &mut [Landing]) {
-        self.processor.run(Flight::<false> { tree: &self.tree, shots, found });
+        self.processor.run(InFlock::<false> { tree: &self.tree, shots, found });
     }
 
     fn any(&self, shots: &[Shot], found: &mut [Landing]) {
-        self.processor.run(Flight::<true> { tree: &self.tree, shots, found });
+        self.processor.run(InFlock::<true> { tree: &self.tree, shots, found });
     }
 
     fn bytes(&self) -> usize {
@@ -106,13 +106,13 @@ impl Tracer for SideBySide {
     }
 }
 
-struct Flight<'a, const ANY: bool> {
+struct InFlock<'a, const ANY: bool> {
     tree: &'a MeshBvh,
     shots: &'a [Shot],
     found: &'a mut [Landing],
 }
 
-impl<'a, const ANY: bool> Flight<'a, ANY> {
+impl<'a, const ANY: bool> InFlock<'a, ANY> {
     /// The next shot that is not done with at once.
     #[inline(always)]
     fn begin(&mut self, next: &mut usize) -> Option<(usize, Direction, MeshWalk<'a>)> {
@@ -130,7 +130,7 @@ impl<'a, const ANY: bool> Flight<'a, ANY> {
     }
 }
 
-impl<const ANY: bool> Work for Flight<'_, ANY> {
+impl<const ANY: bool> Work for InFlock<'_, ANY> {
     #[inline(always)]
     fn run(mut self, processor: Processor) {
         let mut rooms: Vec<Room<f32>> = (0..Flock::MOST).map(|_| Room::default()).collect();

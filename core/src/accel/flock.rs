@@ -152,3 +152,63 @@ impl Slots {
         usize::from(self.numbers[i % Flock::MOST])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::soup::{Rng, soup};
+    use crate::accel::{Direction, MeshBvh, Precision, Query, Watch};
+
+    /// Holds what many rays meet side by side against what each meets alone, when a quarter of the way
+    /// is done.
+    fn check(tree: &MeshBvh, rng: &mut Rng) {
+        let rays: Vec<_> = (0..20 * Flock::MOST)
+            .filter_map(|_| {
+                let (o, d) = (rng.point() * 2.0, rng.point());
+                Some((o.as_dvec3(), Direction::new(d.as_dvec3())?))
+            })
+            .collect();
+        for precision in Precision::ALL {
+            let query = |(o, direction)| Query {
+                o,
+                direction,
+                t_max: f64::INFINITY,
+                skip: None,
+                precision,
+                share: 0.25,
+            };
+            let queries: Vec<_> = rays.iter().map(|(o, d)| query((*o, d))).collect();
+            for processor in Processor::all() {
+                let name = processor.name();
+                let alone = queries.iter().map(|query| tree.intersect(processor, query));
+                let alone: Vec<_> = alone.collect();
+                assert!(alone.iter().filter(|found| found.0.is_some()).count() > 2 * Flock::MOST);
+                let nearest = tree.flocked::<false>(processor, &queries);
+                assert_eq!(nearest, alone, "{precision:?}, {name}");
+                let any = tree.flocked::<true>(processor, &queries);
+                let is_hit = |found: &(_, u32)| Option::is_some(&found.0);
+                assert!(
+                    any.iter().map(is_hit).eq(alone.iter().map(is_hit)),
+                    "{precision:?}, {name}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn many_rays_meet_what_each_meets_alone() {
+        let mut rng = Rng(51);
+        let (points, indices) = soup(2000, 0.2, &mut rng);
+        check(&MeshBvh::build(&points, &indices).unwrap(), &mut rng);
+    }
+
+    #[test]
+    fn many_rays_meet_moving_triangles_as_each_meets_them_alone() {
+        let mut rng = Rng(52);
+        let (points, indices) = soup(2000, 0.2, &mut rng);
+        let last: Vec<_> = points.iter().map(|p| *p + rng.point() * 0.1).collect();
+        let moving = (points.as_slice(), last.as_slice());
+        let tree = MeshBvh::build_moving(moving, &indices, [0.0, 1.0], &Watch::default()).unwrap();
+        check(&tree, &mut rng);
+    }
+}

@@ -1,10 +1,11 @@
 //! Meshes and random numbers for the tests of this room.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use glam::Vec3;
 
-use super::{Direction, MeshBvh, MeshHit, Precision, Processor, Query};
+use super::{Begun, Direction, Flock, MeshBvh, MeshHit, Precision, Processor, Query, Room};
 
 /// Points and triangles.
 pub(super) type Arrays = (Vec<Vec3>, Vec<[u32; 3]>);
@@ -110,8 +111,45 @@ impl MeshBvh {
             let name = processor.name();
             assert_eq!(self.intersect(processor, &query), (hit, steps), "{name}");
             assert_eq!(self.occluded(processor, &query), hit.is_some(), "{name}");
+            assert_eq!(self.flocked::<false>(processor, &[query]), [(hit, steps)], "{name}");
         }
         (hit.map(|hit| MeshHit { t: hit.t * direction.per_scale(), ..hit }), steps)
+    }
+
+    /// What rays side by side meet, in their order, and the steps taken.
+    pub(super) fn flocked<const ANY: bool>(
+        &self,
+        processor: Processor,
+        queries: &[Query<'_>],
+    ) -> Vec<(Option<MeshHit>, u32)> {
+        let mut found = vec![(None, 0); queries.len()];
+        let mut rest = 0..queries.len();
+        let begin = |rest: &mut Range<usize>, found: &mut [(Option<MeshHit>, u32)]| {
+            rest.find_map(|ray| match self.begin::<ANY>(&queries[ray]) {
+                Begun::Walk(walk) => Some((ray, walk)),
+                Begun::Over(hit, steps) => {
+                    found[ray] = (hit, steps);
+                    None
+                }
+            })
+        };
+        let mut rooms: Vec<_> = queries.iter().take(Flock::MOST).map(|_| Room::default()).collect();
+        let (mut flock, mut rays) = (Flock::new(), vec![]);
+        for room in &mut rooms {
+            let Some((ray, walk)) = begin(&mut rest, &mut found) else { break };
+            rays.push(ray);
+            flock.add(walk, room.stack());
+        }
+        while flock.advance::<ANY>(processor, |_, _, _| {}) {
+            while let Some((slot, walk)) = flock.landed() {
+                found[rays[slot]] = (walk.hit(), walk.steps);
+                if let Some((ray, walk)) = begin(&mut rest, &mut found) {
+                    rays[slot] = ray;
+                    flock.replace(slot, walk);
+                }
+            }
+        }
+        found
     }
 
     pub(super) fn hit(&self, o: Vec3, d: Vec3, t_max: f32) -> Option<MeshHit> {

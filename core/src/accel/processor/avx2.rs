@@ -76,20 +76,6 @@ impl Spans {
     }
 }
 
-/// See [`Processor::enter`](super::Processor::enter).
-#[inline]
-#[target_feature(enable = "avx2,popcnt")]
-pub(super) fn enter(
-    ray: &Slabs<f32>,
-    node: &Node,
-    t_max: f32,
-    stack: &mut Stack<'_, f32>,
-) -> Option<Child> {
-    let below = stack.len();
-    enter_all(ray, node, t_max, stack);
-    Some(stack.pop_above(below)?.0)
-}
-
 /// See [`Processor::enter_all`](super::Processor::enter_all).
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]

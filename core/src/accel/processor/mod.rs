@@ -103,16 +103,15 @@ impl Processor {
         stack: &mut Stack<'_, f32>,
     ) -> Option<Child> {
         match self.0 {
-            Kind::Any => Some(ray.enter(node, t_max, stack)?.0),
-            #[cfg(target_arch = "x86_64")]
-            Kind::Avx2 => {
-                // SAFETY: whoever made this value found the instructions.
-                unsafe { avx2::enter(ray, node, t_max, stack) }
-            }
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512 => {
-                // SAFETY: as above.
+                // SAFETY: whoever made this value found the instructions.
                 unsafe { avx512::enter(ray, node, t_max, stack) }
+            }
+            _ => {
+                let below = stack.len();
+                self.enter_all(ray, node, t_max, stack);
+                Some(stack.pop_above(below)?.0)
             }
         }
     }

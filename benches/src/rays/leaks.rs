@@ -76,7 +76,7 @@ fn rows(
 }
 
 fn heads() {
-    print!("{:<34}", "scale / translation");
+    print!("{:<39}", "scale / translation");
     for (scale, by) in CASES {
         print!("{:>11}", format!("{scale:.0e}/{by:.0e}"));
     }
@@ -84,7 +84,7 @@ fn heads() {
 }
 
 fn row(name: &str, cases: &[Case], counted: impl Fn(&Soup, &[Shot]) -> Option<usize>) {
-    print!("{name:<34}");
+    print!("{name:<39}");
     for (soup, shots) in cases {
         let n = counted(soup, shots).map_or_else(|| "–".to_owned(), |n| n.to_string());
         print!("{n:>11}");

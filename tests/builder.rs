@@ -3,7 +3,9 @@
 //! The seeded form runs here; `tests/fuzz/run builder` lets a fuzzer choose the bytes.
 
 use glam::{DVec3, Vec3};
-use luxel_core::accel::{Direction, MeshBvh, MeshHit, Precision, Processor, Query};
+use luxel_core::accel::{
+    Begun, Direction, Flock, MeshBvh, MeshHit, Precision, Processor, Query, Room,
+};
 
 /// Numbers between which meshes have seams, cracks and no area.
 const NUMBERS: [f32; 16] = [
@@ -86,9 +88,11 @@ fn shoot(tree: &MeshBvh, singles: &[MeshBvh], o: DVec3, direction: &Direction) -
     for precision in Precision::ALL {
         let query = Query { o, direction, t_max: f64::INFINITY, skip: None, precision, share: 0.0 };
         for processor in Processor::all() {
-            let (hit, _) = tree.intersect(processor, &query);
+            let (hit, steps) = tree.intersect(processor, &query);
             met |= hit.is_some();
             assert_eq!(hit.is_some(), tree.occluded(processor, &query));
+            assert_eq!(hit.is_some(), in_flock::<true>(tree, processor, &query).0.is_some());
+            assert_eq!((hit, steps), in_flock::<false>(tree, processor, &query));
             // Boxes that are not widened may miss what lies on their faces.
             if precision != Precision::Fast {
                 let same = nearest(singles, processor, &query);
@@ -98,6 +102,24 @@ fn shoot(tree: &MeshBvh, singles: &[MeshBvh], o: DVec3, direction: &Direction) -
         }
     }
     met
+}
+
+/// What a ray meets as those that go side by side do, and in how many steps.
+fn in_flock<const ANY: bool>(
+    tree: &MeshBvh,
+    processor: Processor,
+    query: &Query<'_>,
+) -> (Option<MeshHit>, u32) {
+    let walk = match tree.begin::<ANY>(query) {
+        Begun::Over(hit, steps) => return (hit, steps),
+        Begun::Walk(walk) => walk,
+    };
+    let mut room = Room::default();
+    let mut flock = Flock::new();
+    flock.add(walk, room.stack());
+    while flock.advance::<ANY>(processor, |_, _, _| {}) {}
+    let (_, walk) = flock.landed().expect("its only walk is over");
+    (walk.hit(), walk.steps)
 }
 
 /// The nearest hit of trees of one triangle each, of equally near ones the first.

@@ -37,6 +37,7 @@ impl Child {
     }
 
     /// The reference as it stands in memory.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn from_bits(bits: u32) -> Self {
         Self(bits)

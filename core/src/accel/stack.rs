@@ -36,6 +36,7 @@ pub struct Stack<'a, T: Copy> {
 }
 
 /// Room for the children of one node on top of a stack.
+#[cfg(target_arch = "x86_64")]
 pub(super) struct Top<'a, T> {
     pub(super) children: &'a mut [MaybeUninit<Child>; WIDTH],
     pub(super) entries: &'a mut [MaybeUninit<T>; WIDTH],
@@ -59,24 +60,9 @@ impl<T: Copy> Room<T> {
     }
 }
 
+/// For instructions that write eight children at once.
+#[cfg(target_arch = "x86_64")]
 impl<T: Copy> Stack<'_, T> {
-    /// Forgets what it holds.
-    #[inline(always)]
-    pub fn clear(&mut self) {
-        self.len = 0;
-    }
-
-    /// Writes a value and keeps it if `kept`: without a branch, which could not be foreseen.
-    ///
-    /// # Panics
-    /// Beyond the room.
-    #[inline(always)]
-    pub(super) fn push_if(&mut self, kept: bool, child: Child, entry: T) {
-        self.room.children[self.len].write(child);
-        self.room.entries[self.len].write(entry);
-        self.len += usize::from(kept);
-    }
-
     /// Where eight more would stand.
     ///
     /// # Panics
@@ -99,6 +85,25 @@ impl<T: Copy> Stack<'_, T> {
     #[inline(always)]
     pub(super) unsafe fn keep(&mut self, n: usize) {
         self.len += n;
+    }
+}
+
+impl<T: Copy> Stack<'_, T> {
+    /// Forgets what it holds.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Writes a value and keeps it if `kept`: without a branch, which could not be foreseen.
+    ///
+    /// # Panics
+    /// Beyond the room.
+    #[inline(always)]
+    pub(super) fn push_if(&mut self, kept: bool, child: Child, entry: T) {
+        self.room.children[self.len].write(child);
+        self.room.entries[self.len].write(entry);
+        self.len += usize::from(kept);
     }
 
     /// Forgets those whose entry is not as it has to be.

@@ -1,5 +1,8 @@
 //! One piece of work, compiled for what the processor has.
-#![expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")]
+#![cfg_attr(
+    target_arch = "x86_64",
+    expect(unsafe_code, reason = "calls what was compiled for a processor that has been found")
+)]
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -41,13 +44,16 @@ impl Processor {
 
     /// What there is here, the widest last.
     pub fn all() -> Vec<Self> {
-        let mut all = vec![Self::ANY];
-        #[cfg(target_arch = "x86_64")]
-        {
-            all.extend(has_avx2().then_some(Self(Kind::Avx2)));
-            all.extend(has_avx512().then_some(Self(Kind::Avx512)));
-        }
-        all
+        [
+            Some(Self::ANY),
+            #[cfg(target_arch = "x86_64")]
+            has_avx2().then_some(Self(Kind::Avx2)),
+            #[cfg(target_arch = "x86_64")]
+            has_avx512().then_some(Self(Kind::Avx512)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 
     /// The widest there is.

@@ -163,6 +163,13 @@ impl Tally {
     }
 }
 
+/// What the language tells of a text.
+pub(crate) fn messages(path: &Path, text: &str) -> Vec<String> {
+    let files = Beside(path.into(), text.as_bytes().into());
+    let loaded = load(path, &files, &registry(), &Settings::default());
+    loaded.diagnostics.iter().map(ToString::to_string).collect()
+}
+
 /// What `luxel check` tells of a text, with the lines that each diagnostic points to.
 fn told(path: &Path, text: &str) -> Vec<(Vec<usize>, String)> {
     let files = Beside(path.into(), text.as_bytes().into());

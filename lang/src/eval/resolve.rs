@@ -309,9 +309,9 @@ impl<'a> Resolver<'a> {
             };
             let end = one.value.span.end;
             let between = self.text.get(end as usize..place.start as usize);
-            // What ends with a line ends in a brace that was put there.
+            // What ends with a line ends in a brace that was put there; of a `.` it is said what it is.
             let ends_line = self.text.get(..end as usize).is_some_and(|it| it.ends_with('\n'));
-            if ends_line || between.is_none_or(|between| between.contains([',', ';', '\n'])) {
+            if ends_line || between.is_none_or(|between| between.contains([',', ';', '.', '\n'])) {
                 continue;
             }
             let gap = Span { start: end, end, ..place };

@@ -117,6 +117,9 @@ impl Resolver<'_> {
             found = found.help("a colour is written `rgb.srgb(1, 0.5, 0)`, and has no alpha");
         } else if shown == "not" {
             found = found.help("`not` is written `!`").guess(place, "!");
+        } else if let Some(call) = self.call_without_bracket(shown, place) {
+            found = found.help("the bracket of a call stands behind the function's name");
+            found = found.guess(call, "(");
         } else if meant.is_some() {
             found = found.meant(place, meant);
         } else if VECTORS.contains(&&*shown.to_lowercase()) {
@@ -146,6 +149,27 @@ impl Resolver<'_> {
         }
         let (all, mended) = self.per_unit(name)?;
         Some(found(all).help("one over a unit is written with a power").guess(all, mended))
+    }
+
+    /// Where the bracket of a call is missing whose other one is there: `lerp2200, 3000, t)`.
+    fn call_without_bracket(&self, shown: &str, place: Span) -> Option<Span> {
+        let rest = self.text.get(place.range().end..)?;
+        let line = &rest[..rest.find('\n').unwrap_or(rest.len()).min(LOOKED_AT)];
+        let mut depth = 0_i32;
+        let is_closed = line.bytes().any(|byte| {
+            depth += i32::from(b"([{".contains(&byte)) - i32::from(b")]}".contains(&byte));
+            depth < 0 && byte == b')'
+        });
+        let is_function = |name: &str| {
+            let ours = self.scopes.iter().rev().find_map(|scope| scope.names.get(name));
+            let before = ours.and_then(|at| self.text.get(..at.range().start));
+            before.is_some_and(|before| before.trim_end().ends_with("fn"))
+                || builtins::names().any(|known| known == name) && !builtins::is_value(name)
+        };
+        let mut ends = (1..shown.len()).rev().filter(|_| is_closed);
+        let end = ends.find(|end| shown.get(..*end).is_some_and(is_function))?;
+        let at = place.range().start + end;
+        Some(Span::new(place.source, at, at))
     }
 
     /// The name that an unknown one most likely stands for.

@@ -1,8 +1,8 @@
 //! Numbers that are none.
 
-use luxel_core::diag::Diagnostic;
+use luxel_core::diag::{Diagnostic, Span};
 
-use super::around::Around;
+use super::around::{Around, Place};
 use super::lex::{Token, TokenKind};
 use super::number;
 
@@ -17,7 +17,7 @@ impl Around<'_> {
             .into_iter()
             .flatten()
             .find(|t| t.kind == TokenKind::Number && number::parse(t.text.as_bytes()).is_none())?;
-        if let Some(found) = self.parted(bad) {
+        if let Some(found) = self.dotted(bad).or_else(|| self.parted(bad)) {
             return Some(found);
         }
         let found = self.error("E0016", bad, format!("`{}` is not a number", bad.text));
@@ -25,6 +25,25 @@ impl Around<'_> {
             Some(whole) => found.fix(self.span(bad), whole),
             None => found.help("a number is written as 12, 0.5, .5, 1_000 or 2.5e-3"),
         })
+    }
+
+    /// `(0.1. 0.2)`
+    fn dotted(&self, bad: &Token<'_>) -> Option<Diagnostic> {
+        let at = self.tokens.iter().position(|token| token.start == bad.start)?;
+        let next = self.tokens.get(at + 1).filter(|next| next.begins_operand());
+        let is_inside = !self.open.is_empty() && next.is_some_and(|next| !next.first_on_line);
+        let whole = bad.text.strip_suffix('.').filter(|whole| is_inside && whole.contains('.'))?;
+        number::parse(whole.as_bytes())?;
+        let dot = Span::new(self.source, bad.end() - 1, bad.end());
+        Some(comma_for(dot))
+    }
+
+    /// `center = (0, 1, 0) m. radius = 1 m`
+    pub(super) fn dot_before_field(&self) -> Option<Diagnostic> {
+        let (dot, end) = (self.before(1).filter(|dot| dot.text == ".")?, self.before(2)?);
+        let is_field = self.is_word(self.at) && self.word(self.at + 1) == "=";
+        let is_it = is_field && end.ends_operand() && self.inner() == Place::Fields;
+        is_it.then(|| comma_for(self.span(dot)))
     }
 
     /// `0. 75` and `0. .75`
@@ -62,4 +81,9 @@ impl Around<'_> {
             Some(Diagnostic::error("E0016", span, message).fix(span, value.to_string()))
         })
     }
+}
+
+/// A dot where a comma is meant.
+fn comma_for(dot: Span) -> Diagnostic {
+    Diagnostic::error("E0014", dot, "a comma is missing: a `.` stands in its place").fix(dot, ",")
 }

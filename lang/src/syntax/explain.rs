@@ -81,6 +81,7 @@ impl<'a> Around<'a> {
             .or_else(|| self.reserved())
             .or_else(|| self.nameless_field())
             .or_else(|| self.equals())
+            .or_else(|| self.dot_before_field())
             .or_else(|| self.missing_operand())
             .or_else(|| self.unit_behind_call())
             .or_else(|| self.unit_twice())

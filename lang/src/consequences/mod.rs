@@ -1,5 +1,8 @@
 //! Mistakes of which the cause is told already, or of which another says more.
 
+mod names;
+mod nearby;
+
 use std::collections::BTreeSet;
 
 use luxel_core::diag::{Diagnostic, Sources, Span};
@@ -34,7 +37,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         let has_cause =
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
         let says_less = match found.code {
-            "E0101" => has_cause(&words) || is_nameless && says_no_more(found),
+            "E0101" => has_cause(&words) || is_nameless && found.sure().is_none(),
             "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
@@ -56,6 +59,8 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
                 || is_doubtful && doubts.iter().any(|doubt| lies_in(span, doubt))
         })
     });
+    names::sift(diagnostics, sources);
+    nearby::sift(diagnostics, sources);
 }
 
 /// Where it is not known which values stand in which brackets: between one and another that closes it, and on
@@ -114,11 +119,6 @@ fn stands_behind(found: &Diagnostic, places: &BTreeSet<Span>, sources: &Sources)
         });
         is_inside && depth == 0
     })
-}
-
-/// Whether of a name that nothing stands for nothing else is known.
-fn says_no_more(found: &Diagnostic) -> bool {
-    found.fixes.is_empty() && found.labels.len() == 1
 }
 
 /// Where something is told with a code.

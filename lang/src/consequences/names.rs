@@ -1,0 +1,125 @@
+//! Names that nothing stands for because of what their definition is written like.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
+use luxel_sdk::kind::Kind;
+use memchr::memmem;
+
+use crate::syntax::{TokenKind, tokens};
+
+use super::nearby::is_unread;
+
+/// Words beside something that cannot be read that may be what was to be defined there, on each side.
+const WORDS: usize = 3;
+/// Bytes on each side of it that are looked at.
+const BYTES: usize = 200;
+/// Letters from which on the beginning of such a word may be meant by it: `fn riseb: int)`.
+const LONG: usize = 3;
+/// Places of one name that are shown.
+const SHOWN: usize = 4;
+
+/// A word of a text, and where it begins.
+type Word<'a> = (SourceId, &'a str, u32);
+
+/// Takes out what is told of names that stand beside something that cannot be read: their definition may be
+/// what stands there. Of other names each is told once, with the places where it stands.
+pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+    let is_cause = |found: &&Diagnostic| is_unread(found) && found.sure().is_none();
+    let causes = diagnostics.iter().filter(is_cause).filter_map(Diagnostic::span);
+    let unread: BTreeSet<Word<'_>> = causes.flat_map(|at| words_beside(at, sources)).collect();
+    let mut places: BTreeMap<(SourceId, &str), Vec<Span>> = BTreeMap::new();
+    for found in &*diagnostics {
+        if let Some(name) = name(found, sources) {
+            places.entry(name).or_default().extend(found.span());
+        }
+    }
+    diagnostics.retain_mut(|found| {
+        let Some(name) = name(found, sources) else { return true };
+        if found.sure().is_none() && is_defined_by_one(name, found.span(), &unread) {
+            return false;
+        }
+        told_once(found, name, &places[&name], sources)
+    });
+}
+
+/// Whether a word that stands elsewhere may be what defines a name.
+fn is_defined_by_one(name: (SourceId, &str), at: Option<Span>, words: &BTreeSet<Word<'_>>) -> bool {
+    let (source, name) = name;
+    let from = words.range((source, name, 0)..);
+    let mut alike = from.take_while(|word| word.0 == source && word.1.starts_with(name));
+    alike.any(|word| {
+        let is_elsewhere = at.is_none_or(|at| at.start != word.2);
+        is_elsewhere && (word.1 == name || name.len() >= LONG)
+    })
+}
+
+/// Whether this is the first that is said of a name, which then shows the other places. Where each has its
+/// own mend, each is told; but where the name that is meant stands nowhere but in its definition, that is
+/// what is mended.
+fn told_once(
+    found: &mut Diagnostic,
+    name: (SourceId, &str),
+    places: &[Span],
+    sources: &Sources,
+) -> bool {
+    let definition = meant(found).and_then(|near| only_place(near, name.0, sources));
+    if places.len() < 2 || found.sure().is_some() && definition.is_none() {
+        return true;
+    }
+    if found.span() != Some(places[0]) {
+        return false;
+    }
+    let others = places[1..].iter().take(SHOWN - 1);
+    found.labels.extend(others.map(|at| Label { span: *at, text: "and here".into() }));
+    if places.len() > SHOWN {
+        found.help.push(format!("it stands in {} places", places.len()));
+    }
+    if let Some(span) = definition {
+        found.fixes = vec![Fix { span, replacement: name.1.to_owned(), grade: Grade::Guess }];
+    }
+    true
+}
+
+/// The name that nothing stands for.
+fn name<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a str)> {
+    let at = found.span().filter(|_| found.code == "E0101")?;
+    let name = sources.text(at.source).get(at.range())?;
+    Some((at.source, name)).filter(|_| Kind::of_word(name).is_none())
+}
+
+/// The name that may be meant.
+fn meant(found: &Diagnostic) -> Option<&str> {
+    match &found.fixes[..] {
+        [only] => Some(&only.replacement),
+        _ => None,
+    }
+}
+
+/// Where a word stands, if it stands in one place of a text.
+fn only_place(word: &str, source: SourceId, sources: &Sources) -> Option<Span> {
+    let text = sources.text(source).as_bytes();
+    let in_word =
+        |byte: Option<&u8>| byte.is_some_and(|byte| byte.is_ascii_alphanumeric() || *byte == b'_');
+    let all = memmem::find_iter(text, word.as_bytes());
+    let mut all = all.filter(|at| {
+        let before = at.checked_sub(1).and_then(|before| text.get(before));
+        !in_word(before) && !in_word(text.get(at + word.len()))
+    });
+    let at = all.next().filter(|_| all.next().is_none())?;
+    Some(Span::new(source, at, at + word.len()))
+}
+
+/// The words on both sides of a place.
+fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
+    let text = sources.text(at.source);
+    let first = text[..at.range().start].rfind('\n').map_or(0, |end| end + 1);
+    let first = text.ceil_char_boundary(first.max(at.range().start.saturating_sub(BYTES)));
+    let last = text.floor_char_boundary((at.range().start + BYTES).min(text.len()));
+    let before: Vec<_> = tokens(text, first..at.range().start).collect();
+    let behind = tokens(text, at.range().start..last).take(WORDS + 1);
+    let before = before.into_iter().rev().take(WORDS);
+    let words = before.chain(behind).filter(|token| token.kind == TokenKind::Word);
+    words
+        .map(move |word| (at.source, word.text, Span::new(at.source, word.start, word.end()).start))
+}

@@ -94,7 +94,7 @@ fn judges_of_scenes_look_at_them() {
     assert!(targets::damage::judge(scene) && targets::readers::judge(scene));
     assert!(targets::evaluate::judge(scene));
     assert!(targets::nested::judge(b"group {\n~a = = 1\n~}\n"));
-    let wrong: Vec<String> = (0..20).map(|i| format!("let a{i} = nope")).collect();
+    let wrong: Vec<String> = (0..20).map(|i| format!("let a{i} = nope_{i}")).collect();
     assert!(!targets::damage::judge(format!("scene 1\n{}", wrong.join("\n")).as_bytes()));
     assert!(!targets::import::judge(b"nope\n"));
 }

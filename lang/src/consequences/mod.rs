@@ -24,6 +24,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         found.span().into_iter().chain(mended).collect::<Vec<Span>>()
     };
     let doubts: Vec<Span> = causes.clone().filter_map(|found| in_doubt(found, sources)).collect();
+    let is_unended = causes.clone().any(|found| found.code == "E0005");
     let is_nameless = causes.clone().any(|found| lacks_name(found, sources));
     let mut causes: Vec<Span> = causes.flat_map(of).collect();
     causes.sort_unstable();
@@ -38,6 +39,8 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
         let says_less = match found.code {
             "E0101" => has_cause(&words) || is_nameless && found.sure().is_none(),
+            // A text that does not end may be a label.
+            "E0109" => is_unended,
             "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
@@ -143,15 +146,17 @@ mod tests {
     use luxel_core::registry::Registry;
 
     use super::*;
-    use crate::{Settings, load};
+    use crate::{Loaded, Settings, load};
+
+    fn load_of(lines: &str) -> Loaded {
+        let text = format!("scene 1\n{lines}\n");
+        let files = MemoryFiles::default().with("a.scene", text.as_bytes());
+        load(Path::new("a.scene"), &files, &Registry::new(), &Settings::default())
+    }
 
     /// The codes of what is told of these lines.
     fn codes(lines: &str) -> Vec<&'static str> {
-        let text = format!("scene 1\n{lines}\n");
-        let files = MemoryFiles::default().with("a.scene", text.as_bytes());
-        let path = Path::new("a.scene");
-        let told = load(path, &files, &Registry::new(), &Settings::default()).diagnostics;
-        told.iter().map(|found| found.code).collect()
+        load_of(lines).diagnostics.iter().map(|found| found.code).collect()
     }
 
     #[test]
@@ -170,14 +175,40 @@ mod tests {
     }
 
     #[test]
+    fn a_name_is_not_told_of_that_an_unreadable_line_may_define() {
+        let uses = "let a = tall * 2\nlet b = tall * 3";
+        assert_eq!(codes(uses), ["E0101", "E0409"]);
+        for head in ["let = tall 3", "tall let = 3", "fn tall x = 3"] {
+            assert_eq!(codes(&format!("{head}\n{uses}")), ["E0023", "E0409"], "{head}");
+        }
+        let both = load_of("let a = tall * 2\nlet b = tall * 3").diagnostics.remove(0);
+        assert_eq!(both.labels.len(), 2);
+        // What is meant stands nowhere but where it is defined: that is mended.
+        let found = load_of(&format!("let tal = 3\n{uses}")).diagnostics.remove(0);
+        assert_eq!((found.fixes.len(), &*found.fixes[0].replacement), (1, "tall"));
+        assert_eq!(found.fixes[0].span.range(), 12..15);
+    }
+
+    #[test]
+    fn of_two_slips_on_a_line_both_are_told_where_their_mends_are_sure() {
+        assert_eq!(codes("let a = (1 2, 3 4)"), ["E0014", "E0014", "E0409"]);
+        assert_eq!(codes("let a = (1.5. 2, 3)"), ["E0014", "E0409"]);
+        assert_eq!(codes("let a = { b = 1. c = 2 }"), ["E0016", "E0409"]);
+        assert_eq!(codes("let a = max(1, min1, 2))"), ["E0101", "E0409"]);
+    }
+
+    #[test]
     fn values_around_what_cannot_be_read_are_not_judged() {
+        let mut sources = Sources::default();
+        sources.add("a.scene", "let a = f(1, 2, 3, 4}; let other = 1");
+        sources.add("b.scene", "let b = f(5, 6, 7, 8); let other = 2");
         let error = |code, file, start, end| {
             Diagnostic::error(code, Span::new(SourceId(file), start, end), "")
         };
         let cause = || error("E0009", 0, 20, 21).guess(Span::new(SourceId(0), 19, 19), ")");
         let kept = |found: Diagnostic| {
             let mut all = vec![found, cause()];
-            sift(&mut all, &Sources::default());
+            sift(&mut all, &sources);
             all.len() == 2
         };
         assert!(!kept(error("E0403", 0, 10, 19)) && !kept(error("E0214", 0, 19, 30)));

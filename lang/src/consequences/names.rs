@@ -1,6 +1,7 @@
 //! Names that nothing stands for because of what their definition is written like.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
 use luxel_sdk::kind::Kind;
@@ -12,7 +13,7 @@ use super::nearby::is_unread;
 
 /// Words beside something that cannot be read that may be what was to be defined there, on each side.
 const WORDS: usize = 3;
-/// Bytes on each side of it that are looked at.
+/// Bytes of its line before it that are looked at.
 const BYTES: usize = 200;
 /// Letters from which on the beginning of such a word may be meant by it: `fn riseb: int)`.
 const LONG: usize = 3;
@@ -36,21 +37,28 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     }
     diagnostics.retain_mut(|found| {
         let Some(name) = name(found, sources) else { return true };
-        if found.sure().is_none() && is_defined_by_one(name, found.span(), &unread) {
+        let long = if found.sure().is_some() { usize::MAX } else { LONG };
+        if is_defined_by_one(name, found.span(), &unread, long) {
             return false;
         }
         told_once(found, name, &places[&name], sources)
     });
 }
 
-/// Whether a word that stands elsewhere may be what defines a name.
-fn is_defined_by_one(name: (SourceId, &str), at: Option<Span>, words: &BTreeSet<Word<'_>>) -> bool {
+/// Whether a word that stands elsewhere may be what defines a name: the same, or one that begins with the name
+/// if that is `long` enough.
+fn is_defined_by_one(
+    name: (SourceId, &str),
+    at: Option<Span>,
+    words: &BTreeSet<Word<'_>>,
+    long: usize,
+) -> bool {
     let (source, name) = name;
     let from = words.range((source, name, 0)..);
     let mut alike = from.take_while(|word| word.0 == source && word.1.starts_with(name));
     alike.any(|word| {
         let is_elsewhere = at.is_none_or(|at| at.start != word.2);
-        is_elsewhere && (word.1 == name || name.len() >= LONG)
+        is_elsewhere && (word.1 == name || name.len() >= long)
     })
 }
 
@@ -112,12 +120,13 @@ fn only_place(word: &str, source: SourceId, sources: &Sources) -> Option<Span> {
 
 /// The words on both sides of a place.
 fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
-    let text = sources.text(at.source);
-    let first = text[..at.range().start].rfind('\n').map_or(0, |end| end + 1);
-    let first = text.ceil_char_boundary(first.max(at.range().start.saturating_sub(BYTES)));
-    let last = text.floor_char_boundary((at.range().start + BYTES).min(text.len()));
-    let before: Vec<_> = tokens(text, first..at.range().start).collect();
-    let behind = tokens(text, at.range().start..last).take(WORDS + 1);
+    let (text, start) = (sources.text(at.source), at.range().start);
+    let line = text[..start].rfind('\n').map_or(0, |end| end + 1);
+    let shorter = |bytes: &Range<usize>| bytes.len() <= BYTES && text.get(bytes.clone()).is_some();
+    // Of a longer line nothing is looked at before the place.
+    let before = Some(line..start).filter(shorter).unwrap_or(start..start);
+    let before: Vec<_> = tokens(text, before).collect();
+    let behind = tokens(text, start..text.len()).take(WORDS + 1);
     let before = before.into_iter().rev().take(WORDS);
     let words = before.chain(behind).filter(|token| token.kind == TokenKind::Word);
     words

@@ -7,9 +7,12 @@ use luxel_sdk::params::Unit;
 use crate::syntax::tokens;
 
 /// Tokens that stand between two mistakes of one slip at most.
-const TOKENS: usize = 2;
+const TOKENS: usize = 3;
 /// Bytes between two mistakes that are looked at.
 const BYTES: usize = 200;
+
+/// Bytes between two brackets on one line that are looked at.
+const LINE: usize = 1000;
 
 /// What is told where something cannot be read.
 const UNREAD: [&str; 9] =
@@ -18,7 +21,8 @@ const UNREAD: [&str; 9] =
 /// Takes out what is told next to something that cannot be read, unless how that is mended is sure; of two
 /// such beside one another, the second. A sure mend beside which something else cannot be read is none.
 pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
-    let errors = diagnostics.iter().enumerate().filter(|(_, found)| found.is_error());
+    let counts = |found: &Diagnostic| found.is_error() || found.code == "E0114";
+    let errors = diagnostics.iter().enumerate().filter(|(_, found)| counts(found));
     let mut all: Vec<(Span, usize)> =
         errors.filter_map(|(i, found)| Some((found.span()?, i))).collect();
     all.sort_unstable();
@@ -26,12 +30,16 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let mut unsure = vec![];
     for pair in all.windows(2) {
         let [(before, i), (span, j)] = pair else { continue };
+        if closes_what(&diagnostics[*i], &diagnostics[*j], sources) {
+            let of = if opens(&diagnostics[*i]) { *j } else { *i };
+            is_out[of] = true;
+            continue;
+        }
         let Some(n) = tokens_between(*before, *span, sources) else { continue };
         let (first, second) = (&diagnostics[*i], &diagnostics[*j]);
-        if is_unread(first) && is_unread(second) {
-            let text = sources.text(span.source).get(before.range().end..span.range().start);
-            let is_line = text.is_none_or(|between| !between.contains('\n'));
-            if second.sure().is_none() || first.sure().is_none() && is_line {
+        if is_unread(first) && is_unread(second) && (first.code, second.code) != ("E0016", "E0014")
+        {
+            if first.sure().is_none() || second.sure().is_none() {
                 is_out[*j] = true;
                 unsure.push(*i);
             }
@@ -61,16 +69,25 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
     let is_unsure = found.sure().is_none() && cause.sure().is_none();
     match (found.code, cause.code) {
         // A unit's own name is unknown only because the rest of it is.
-        ("E0101", "E0101" | "E0204" | "E0014" | "E0016" | "E0023") if is_unit() => true,
+        ("E0101", "E0101" | "E0204" | "E0214" | "E0014" | "E0016" | "E0023") if is_unit() => true,
+        ("E0101", "E0023") if is_category() => true,
         // `radius = 6 material m = gold`
         ("E0402", "E0204") => n == 0 && is_unit(),
-        // What begins with a name that nothing stands for.
-        ("E0114", "E0014" | "E0214") => n == 0,
-        ("E0101", "E0023") if is_category() => true,
+        // `material = radius`, and on the next line `gold = 1 m`
+        ("E0402", "E0101") | ("E0023", "E0001") => n == 0 && found.sure().is_none(),
+        // `material diffuse { { reflectance = 1 }`
+        ("E0403", "E0008") => n <= 1,
+        // `chance(3 b)`
+        ("E0403", "E0204") => true,
+        // `[for for i in 0..3 => i]`, `(2 *q a, 3)`, `[0, 1. 2]`, `f(1. i)`, `rgb.srgb rgb.srgb(1, 1, 1)`
+        ("E0014", "E0019" | "E0016") | ("E0204", "E0016") | ("E0114", "E0014" | "E0214") => n == 0,
+        ("E0014", "E0101") => n == 0 && cause.sure().is_none(),
         ("E0101", "E0012" | "E0013" | "E0014" | "E0015" | "E0016" | "E0017" | "E0023") => {
             n == 0 && is_unsure
         }
-        ("E0401", "E0023") => is_unsure,
+        ("E0401", "E0023") => found.sure().is_none(),
+        // Vectors in which several numbers have a unit already.
+        ("E0203", "E0203") => found.message == cause.message && found.sure().is_none(),
         (code, "E0012" | "E0013" | "E0014" | "E0015" | "E0016" | "E0017" | "E0023") => {
             is_unsure && ["E01", "E02", "E04"].iter().any(|group| code.starts_with(group))
         }
@@ -78,7 +95,34 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
     }
 }
 
-/// How many tokens stand between two places, of which the first begins first; `None` if more than a few.
+/// Whether a mistake tells by itself what a bracket behind it closes: of a name, only where its bracket is.
+fn opens(cause: &Diagnostic) -> bool {
+    cause.code != "E0101" || cause.fixes.iter().any(|fix| fix.replacement == "(")
+}
+
+/// Whether a bracket that closes nothing closes what a mistake before it has left open.
+fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> bool {
+    let (Some(before), Some(at)) = (cause.span(), found.span()) else { return false };
+    let text = sources.text(at.source);
+    let bracket = text.get(at.range()).unwrap_or_default();
+    let is_stray = found.code == "E0010" || found.code == "E0023" && bracket == "}";
+    if before.source != at.source || !is_stray {
+        return false;
+    }
+    let is_line = || {
+        let between = text.get(before.range().end..at.range().start);
+        between.is_some_and(|it| it.len() <= LINE && !it.contains('\n'))
+    };
+    match cause.code {
+        "E0101" => cause.sure().is_none() && !bracket.starts_with('}') && is_line(),
+        "E0009" => is_line(),
+        "E0023" => cause.sure().is_none() && (bracket.starts_with('}') || is_line()),
+        _ => false,
+    }
+}
+
+/// How many tokens stand between two places, of which the first begins first; `None` if more than a few, or
+/// if they stand on two lines and are not beside one another.
 fn tokens_between(a: Span, b: Span, sources: &Sources) -> Option<usize> {
     if a.source != b.source {
         return None;
@@ -87,7 +131,10 @@ fn tokens_between(a: Span, b: Span, sources: &Sources) -> Option<usize> {
         return Some(0);
     }
     let between = a.range().end..b.range().start;
+    let text = sources.text(a.source);
+    let is_line = !text.get(between.clone()).is_some_and(|between| between.contains('\n'));
+    let most = if is_line { TOKENS } else { 1 };
     let is_short = between.len() <= BYTES;
-    let n = is_short.then(|| tokens(sources.text(a.source), between).take(TOKENS + 1).count());
-    n.filter(|n| *n <= TOKENS)
+    let n = is_short.then(|| tokens(text, between).take(most + 1).count());
+    n.filter(|n| *n <= most)
 }

@@ -151,7 +151,7 @@ impl Resolver<'_> {
         Some(found(all).help("one over a unit is written with a power").guess(all, mended))
     }
 
-    /// Where the bracket of a call is missing whose other one is there: `lerp2200, 3000, t)`.
+    /// Where the bracket of a call is missing whose other one is there: `min2, 3)`.
     fn call_without_bracket(&self, shown: &str, place: Span) -> Option<Span> {
         let rest = self.text.get(place.range().end..)?;
         let line = &rest[..rest.find('\n').unwrap_or(rest.len()).min(LOOKED_AT)];

@@ -1,6 +1,6 @@
 //! What a file begins with: `scene 1`.
 
-use luxel_core::diag::Diagnostic;
+use luxel_core::diag::{Diagnostic, near};
 
 use super::habits::COMMENTS;
 use super::lex::{Token, TokenKind, tokens};
@@ -43,6 +43,9 @@ impl Reader<'_> {
             let message = "`scene` is written in small letters";
             self.sink.push(Diagnostic::error("E0001", span, message).fix(span, "scene"));
         } else if first.text != "scene" {
+            if let Some(end) = self.slipped(&first, tokens.next()) {
+                return Some(end);
+            }
             if is_xml(self.text, first.start) {
                 self.sink.push(Diagnostic::error("E0021", span, XML).help(BEGINS));
                 return None;
@@ -81,6 +84,19 @@ impl Reader<'_> {
             return None;
         }
         Some(version.end())
+    }
+
+    /// `sene 1` and `1 scene`: where what is to be read begins.
+    fn slipped(&mut self, first: &Token<'_>, next: Option<Token<'_>>) -> Option<usize> {
+        let next = next.filter(|next| !next.first_on_line)?;
+        let is_misspelt = next.text == "1" && near(first.text, ["scene"]).is_some();
+        if !is_misspelt && (first.text, next.text) != ("1", "scene") {
+            return None;
+        }
+        let span = self.span(first.start..next.end());
+        let found = Diagnostic::error("E0001", span, "a scene begins with `scene 1`");
+        self.sink.push(found.fix(span, "scene 1"));
+        Some(next.end())
     }
 
     /// What is told of a line before `scene` that begins with `#`.

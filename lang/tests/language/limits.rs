@@ -245,7 +245,7 @@ fn bytes_that_are_no_text_are_told_of() {
 
 #[test]
 fn a_hundred_mistakes_are_shown_and_the_rest_counted() {
-    let text: Vec<String> = (0..1000).map(|i| format!("let a{i} = nope")).collect();
+    let text: Vec<String> = (0..1000).map(|i| format!("let a{i} = nope_{i}")).collect();
     let found = codes(&text.join("\n"));
     assert_eq!((found.len(), found[99], found[100]), (101, "E0101", "E0508"));
 }

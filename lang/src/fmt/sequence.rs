@@ -13,6 +13,8 @@ enum Joint {
     Comma,
     /// After `=`.
     Assign,
+    /// Before `in` and the range of a parameter.
+    In,
     /// After `=>`.
     Arrow,
     /// Before `with`.
@@ -28,7 +30,7 @@ enum Joint {
 impl Joint {
     /// Whether the line ends before it, not after.
     fn is_before(self) -> bool {
-        matches!(self, Self::Where | Self::With | Self::Else)
+        matches!(self, Self::Where | Self::In | Self::With | Self::Else)
     }
 }
 
@@ -56,7 +58,8 @@ impl Layout<'_> {
 
     /// The joint at which the pieces are divided first.
     fn weakest(&self, from: usize, to: usize) -> Option<Joint> {
-        // The operators of a condition or a loop's head are not for dividing it.
+        // The operators of a condition or a loop's head are not for dividing it, but where it stands in
+        // brackets and alone.
         let head = |at: usize| {
             let piece = &self.pieces[at];
             piece.kind == Kind::Keyword && matches!(piece.text, "if" | "for" | "else")
@@ -65,7 +68,8 @@ impl Layout<'_> {
         while at + 2 < to && self.pieces[at].kind == Kind::At {
             at += 2;
         }
-        let controls = at < to && head(at);
+        let is_alone = from < to && self.pieces[to - 1].kind == Kind::Arrow;
+        let controls = at < to && head(at) && !is_alone;
         let (mut weakest, mut seen, mut at) = (None, false, from);
         while at < to {
             let next = self.next(at);
@@ -100,6 +104,7 @@ impl Layout<'_> {
             Kind::Keyword if seen && piece.newlines > 0 && piece.text == "with" => {
                 Some(Joint::With)
             }
+            Kind::Keyword if seen && piece.text == "in" => Some(Joint::In),
             Kind::Keyword if seen && piece.text == "else" => Some(Joint::Else),
             _ => None,
         }
@@ -165,8 +170,8 @@ impl Layout<'_> {
             Joint::Assign if self.pieces[from].is_keyword("if") => !self.is_hard(from, to),
             // Rather within brackets than before them, but for those of an operand.
             Joint::Assign => {
-                let sum = matches!(self.weakest(from, to), Some(Joint::Operator(_)));
-                (sum || !self.has_brackets(from, to)) && self.fits(from, to, cont, tail)
+                let parts = matches!(self.weakest(from, to), Some(Joint::In | Joint::Operator(_)));
+                (parts || !self.has_brackets(from, to)) && self.fits(from, to, cont, tail)
             }
             _ => self.fits(from, to, cont, tail),
         }

@@ -44,20 +44,30 @@ impl Refusal {
 
 /// Reads messages into the queue until there are no more.
 pub(super) fn read(mut input: impl BufRead, queue: &Queue) {
-    loop {
-        let event = match message(&mut input) {
-            Ok(Some(Ok(bytes))) => match serde_json::from_slice(&bytes) {
+    while let Ok(Some(Told { wrong, bytes })) = message(&mut input) {
+        wrong.into_iter().for_each(|why| queue.put(malformed(why)));
+        if let Some(bytes) = bytes {
+            queue.put(match serde_json::from_slice(&bytes) {
                 Ok(value) => Event::Message(value),
                 Err(error) => malformed(format!("the message is not JSON: {error}")),
-            },
-            Ok(Some(Err(why))) => malformed(why),
-            Ok(None) | Err(_) => Event::End,
-        };
-        let ends = matches!(event, Event::End);
-        queue.put(event);
-        if ends {
-            return;
+            });
         }
+    }
+    queue.put(Event::End);
+}
+
+/// What came up to the end of a message.
+struct Told {
+    /// What is wrong with its head. The message may be right all the same: a line of something else that has
+    /// got between two.
+    wrong: Option<String>,
+    /// The message, if its head says where it ends.
+    bytes: Option<Vec<u8>>,
+}
+
+impl Told {
+    fn nothing(why: String) -> Self {
+        Self { wrong: Some(why), bytes: None }
     }
 }
 
@@ -65,8 +75,8 @@ fn malformed(why: String) -> Event {
     Event::Malformed(Refusal::new(Code::Parse, why))
 }
 
-/// The bytes of the next message, or why there are none; `None` at the end.
-fn message(input: &mut impl BufRead) -> io::Result<Option<Result<Vec<u8>, String>>> {
+/// The next message, or why there is none; `None` at the end.
+fn message(input: &mut impl BufRead) -> io::Result<Option<Told>> {
     let (mut length, mut line, mut wrong) = (None, vec![], None);
     loop {
         line.clear();
@@ -95,21 +105,22 @@ fn message(input: &mut impl BufRead) -> io::Result<Option<Result<Vec<u8>, String
     }
     let Some(length) = length else {
         let why = wrong.unwrap_or_else(|| "the header has no `Content-Length`".to_owned());
-        return Ok(Some(Err(why)));
+        return Ok(Some(Told::nothing(why)));
     };
     if length > NEVER {
-        return Ok(Some(Err(format!("nobody sends a message of {length} bytes"))));
+        return Ok(Some(Told::nothing(format!("nobody sends a message of {length} bytes"))));
     }
     if length > MAX_BYTES {
         io::copy(&mut input.by_ref().take(length), &mut io::sink())?;
-        return Ok(Some(Err(format!("a message of {length} bytes; the limit is {MAX_BYTES}"))));
+        let why = format!("a message of {length} bytes; the limit is {MAX_BYTES}");
+        return Ok(Some(Told::nothing(why)));
     }
     let mut bytes = vec![];
     let found = input.by_ref().take(length).read_to_end(&mut bytes)?;
     if (found as u64) < length {
         return Ok(None);
     }
-    Ok(Some(wrong.map_or(Ok(bytes), Err)))
+    Ok(Some(Told { wrong, bytes: Some(bytes) }))
 }
 
 /// Sends a message.
@@ -205,6 +216,7 @@ mod tests {
         check("Content-Type: x\r\n\r\n", "the header has no `Content-Length`");
         check("hello\r\n\r\n", "a header has the form `Name: value`");
         let found = heard(&format!("{{\"method\":\"lost\"}}{good}{good}"));
-        assert_eq!(found, ["something stands before the header", "a"]);
+        assert_eq!(found, ["something stands before the header", "a", "a"]);
+        assert_eq!(heard(&format!("hello\n{good}")), ["a header has the form `Name: value`", "a"]);
     }
 }

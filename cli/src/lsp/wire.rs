@@ -45,7 +45,9 @@ impl Refusal {
 /// Reads messages into the queue until there are no more.
 pub(super) fn read(mut input: impl BufRead, queue: &Queue) {
     while let Ok(Some(Told { wrong, bytes })) = message(&mut input) {
-        wrong.into_iter().for_each(|why| queue.put(malformed(why)));
+        if let Some(why) = wrong {
+            queue.put(malformed(why));
+        }
         if let Some(bytes) = bytes {
             queue.put(match serde_json::from_slice(&bytes) {
                 Ok(value) => Event::Message(value),

@@ -187,6 +187,10 @@ mod tests {
         let found = load_of(&format!("let tal = 3\n{uses}")).diagnostics.remove(0);
         assert_eq!((found.fixes.len(), &*found.fixes[0].replacement), (1, "tall"));
         assert_eq!(found.fixes[0].span.range(), 12..15);
+        // What is meant is no definition of the scene.
+        let found =
+            load_of("let a = mxi(1, 2, 0)\nlet b = [mxi(1, 2, 1), mix(0, 1, 2)]").diagnostics;
+        assert!(found[0].fixes.iter().all(|fix| fix.replacement == "mix"), "{found:?}");
     }
 
     #[test]

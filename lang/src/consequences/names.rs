@@ -1,13 +1,12 @@
 //! Names that nothing stands for because of what their definition is written like.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
 use luxel_sdk::kind::Kind;
 use memchr::memmem;
 
-use crate::syntax::{TokenKind, tokens};
+use crate::syntax::{BEFORE_NAMES, TokenKind, tokens};
 
 use super::nearby::is_unread;
 
@@ -71,8 +70,11 @@ fn told_once(
     places: &[Span],
     sources: &Sources,
 ) -> bool {
-    let definition = meant(found).and_then(|near| only_place(near, name.0, sources));
-    if places.len() < 2 || found.sure().is_some() && definition.is_none() {
+    if places.len() < 2 {
+        return true;
+    }
+    let definition = meant(found).and_then(|near| definition(near, name.0, sources));
+    if found.sure().is_some() && definition.is_none() {
         return true;
     }
     if found.span() != Some(places[0]) {
@@ -99,32 +101,33 @@ fn name<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a s
 /// The name that may be meant.
 fn meant(found: &Diagnostic) -> Option<&str> {
     match &found.fixes[..] {
-        [only] => Some(&only.replacement),
+        [only] if Some(only.span) == found.span() => Some(&only.replacement),
         _ => None,
     }
 }
 
-/// Where a word stands, if it stands in one place of a text.
-fn only_place(word: &str, source: SourceId, sources: &Sources) -> Option<Span> {
-    let text = sources.text(source).as_bytes();
-    let in_word =
-        |byte: Option<&u8>| byte.is_some_and(|byte| byte.is_ascii_alphanumeric() || *byte == b'_');
-    let all = memmem::find_iter(text, word.as_bytes());
+/// Where a name is defined that stands nowhere else in a text.
+fn definition(name: &str, source: SourceId, sources: &Sources) -> Option<Span> {
+    let text = sources.text(source);
+    let in_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let all = memmem::find_iter(text.as_bytes(), name.as_bytes());
     let mut all = all.filter(|at| {
-        let before = at.checked_sub(1).and_then(|before| text.get(before));
-        !in_word(before) && !in_word(text.get(at + word.len()))
+        let (before, behind) = (&text[..*at], &text[at + name.len()..]);
+        !name.is_empty() && !before.ends_with(in_word) && !behind.starts_with(in_word)
     });
     let at = all.next().filter(|_| all.next().is_none())?;
-    Some(Span::new(source, at, at + word.len()))
+    let before = text[..at].trim_end_matches([' ', '\t']);
+    let defines = BEFORE_NAMES.iter().any(|word| before.ends_with(word));
+    defines.then(|| Span::new(source, at, at + name.len()))
 }
 
 /// The words on both sides of a place.
 fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
     let (text, start) = (sources.text(at.source), at.range().start);
-    let line = text[..start].rfind('\n').map_or(0, |end| end + 1);
-    let shorter = |bytes: &Range<usize>| bytes.len() <= BYTES && text.get(bytes.clone()).is_some();
+    let near = start.saturating_sub(BYTES);
+    let line = memchr::memrchr(b'\n', &text.as_bytes()[near..start]).map(|end| near + end + 1);
     // Of a longer line nothing is looked at before the place.
-    let before = Some(line..start).filter(shorter).unwrap_or(start..start);
+    let before = line.or((near == 0).then_some(0)).map_or(start..start, |line| line..start);
     let before: Vec<_> = tokens(text, before).collect();
     let behind = tokens(text, start..text.len()).take(WORDS + 1);
     let before = before.into_iter().rev().take(WORDS);

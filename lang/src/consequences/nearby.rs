@@ -31,8 +31,8 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     for pair in all.windows(2) {
         let [(before, i), (span, j)] = pair else { continue };
         if closes_what(&diagnostics[*i], &diagnostics[*j], sources) {
-            let of = if opens(&diagnostics[*i]) { *j } else { *i };
-            is_out[of] = true;
+            let out = if opens(&diagnostics[*i]) { *j } else { *i };
+            is_out[out] = true;
             continue;
         }
         let Some(n) = tokens_between(*before, *span, sources) else { continue };
@@ -132,9 +132,8 @@ fn tokens_between(a: Span, b: Span, sources: &Sources) -> Option<usize> {
     }
     let between = a.range().end..b.range().start;
     let text = sources.text(a.source);
-    let is_line = !text.get(between.clone()).is_some_and(|between| between.contains('\n'));
-    let most = if is_line { TOKENS } else { 1 };
-    let is_short = between.len() <= BYTES;
-    let n = is_short.then(|| tokens(text, between).take(most + 1).count());
-    n.filter(|n| *n <= most)
+    let written = text.get(between.clone()).filter(|written| written.len() <= BYTES)?;
+    let most = if written.contains('\n') { 1 } else { TOKENS };
+    let n = tokens(text, between).take(most + 1).count();
+    (n <= most).then_some(n)
 }

@@ -6,7 +6,7 @@ use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
 use luxel_sdk::kind::Kind;
 use memchr::memmem;
 
-use crate::syntax::{BEFORE_NAMES, TokenKind, tokens};
+use crate::syntax::{BEFORE_NAMES, Token, TokenKind, tokens};
 
 use super::nearby::is_unread;
 
@@ -86,7 +86,9 @@ fn told_once(
         found.help.push(format!("it stands in {} places", places.len()));
     }
     if let Some(span) = definition {
-        found.fixes = vec![Fix { span, replacement: name.1.to_owned(), grade: Grade::Guess }];
+        found.fixes.iter_mut().for_each(|fix| fix.grade = Grade::Guess);
+        let replacement = name.1.to_owned();
+        found.fixes.insert(0, Fix { span, replacement, grade: Grade::Guess });
     }
     true
 }
@@ -121,17 +123,26 @@ fn definition(name: &str, source: SourceId, sources: &Sources) -> Option<Span> {
     defines.then(|| Span::new(source, at, at + name.len()))
 }
 
-/// The words on both sides of a place.
+/// The words on both sides of a place that may be what is defined there: beside what defines a name, or where a
+/// line begins. What stands where a value does defines nothing.
 fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
     let (text, start) = (sources.text(at.source), at.range().start);
     let near = start.saturating_sub(BYTES);
     let line = memchr::memrchr(b'\n', &text.as_bytes()[near..start]).map(|end| near + end + 1);
     // Of a longer line nothing is looked at before the place.
-    let before = line.or((near == 0).then_some(0)).map_or(start..start, |line| line..start);
-    let before: Vec<_> = tokens(text, before).collect();
-    let behind = tokens(text, start..text.len()).take(WORDS + 1);
-    let before = before.into_iter().rev().take(WORDS);
-    let words = before.chain(behind).filter(|token| token.kind == TokenKind::Word);
-    words
-        .map(move |word| (at.source, word.text, Span::new(at.source, word.start, word.end()).start))
+    let line = line.or((near == 0).then_some(0)).unwrap_or(start);
+    let mut all: Vec<Token<'_>> = tokens(text, line..start).collect();
+    let first = all.len().saturating_sub(WORDS);
+    all.extend(tokens(text, start..text.len()).take(WORDS + 1));
+    let defines = |i: usize| all.get(i).is_some_and(|token| BEFORE_NAMES.contains(&token.text));
+    let may_be = |i: &usize| {
+        let token = &all[*i];
+        let is_behind = (1..=2).any(|back| i.checked_sub(back).is_some_and(defines));
+        token.kind == TokenKind::Word && (*i == 0 || token.first_on_line || is_behind)
+    };
+    let words: Vec<usize> = (first..all.len()).filter(may_be).collect();
+    words.into_iter().map(move |i| {
+        let word = Span::new(at.source, all[i].start, all[i].end());
+        (at.source, all[i].text, word.start)
+    })
 }

@@ -77,8 +77,8 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         ("E0402", "E0101") | ("E0023", "E0001") => n == 0 && found.sure().is_none(),
         // `material diffuse { { reflectance = 1 }`
         ("E0403", "E0008") => n <= 1,
-        // `chance(3 b)`
-        ("E0403", "E0204") => true,
+        // `chance(3 b)`, and `shape: sphere { radius = 1 m }` in a file
+        ("E0403", "E0204") | ("E0017", "E0113") => true,
         // `[for for i in 0..3 => i]`, `(2 *q a, 3)`, `[0, 1. 2]`, `f(1. i)`, `rgb.srgb rgb.srgb(1, 1, 1)`
         ("E0014", "E0019" | "E0016") | ("E0204", "E0016") | ("E0114", "E0014" | "E0214") => n == 0,
         ("E0014", "E0101") => n == 0 && cause.sure().is_none(),

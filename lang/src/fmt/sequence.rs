@@ -77,6 +77,7 @@ impl Layout<'_> {
             let joint = self.joint(at, seen).filter(|joint| {
                 (joint.is_before() || next < to)
                     && (!controls || matches!(joint, Joint::Arrow | Joint::Else))
+                    && (!is_alone || matches!(joint, Joint::In | Joint::Operator(_)))
             });
             weakest = match (weakest, joint) {
                 (Some(a), Some(b)) => Some(std::cmp::min::<Joint>(a, b)),
@@ -166,6 +167,7 @@ impl Layout<'_> {
         }
         match joint {
             Joint::With => false,
+            Joint::In => true,
             Joint::Else => free && !self.is_block_before(from),
             Joint::Assign if self.pieces[from].is_keyword("if") => !self.is_hard(from, to),
             // Rather within brackets than before them, but for those of an operand.

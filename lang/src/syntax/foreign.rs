@@ -82,7 +82,8 @@ pub(super) const TYPES: &str = "a type stands behind `:`";
 fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
     let (name, ty) = (around.current()?, around.before(1)?);
     let first = around.tokens.iter().find(|t| t.kind != TokenKind::Doc)?;
-    let in_head = first.text == "fn" && around.open.len() == 1 && name.kind == TokenKind::Word;
+    let is_open = matches!(&around.open[..], [open] if around.word(*open) == "(");
+    let in_head = first.text == "fn" && is_open && name.kind == TokenKind::Word;
     let is_type = |token: &Token<'_>| type_names::names().any(|known| known == token.text);
     if !in_head || name.first_on_line {
         return None;

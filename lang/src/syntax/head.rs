@@ -19,7 +19,23 @@ const FOREIGN: [&str; 22] = [
 
 /// Why the first words of a statement or object near the place cannot be read.
 pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
-    misspelt(around).or_else(|| plugin(around)).or_else(|| block(around)).or_else(|| object(around))
+    misspelt(around)
+        .or_else(|| plugin(around))
+        .or_else(|| function(around))
+        .or_else(|| block(around))
+        .or_else(|| object(around))
+}
+
+/// `let double(x: length) = x * 2`
+fn function(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(4);
+    let start = (first..around.at).find(|i| around.begins(*i) && around.word(*i) == "let")?;
+    let opens = around.is_word(start + 1) && around.word(start + 2) == "(";
+    let close = around.closing(start + 2).filter(|_| opens)?;
+    let is_head = close == start + 3 || around.word(start + 4) == ":";
+    let word = &around.tokens[start];
+    let found = around.error("E0023", word, "a function is defined with `fn`");
+    (is_head && around.at <= close).then(|| found.guess(around.span(word), "fn"))
 }
 
 /// `for i in 0..3` and `if x > 1` that go on without `{`.

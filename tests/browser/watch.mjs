@@ -343,6 +343,10 @@ const tests = {
     await page.screenshot({ path: join(shots, "watch-phone-pixel.png") });
     await press(page, "Escape");
     const tap = (id) => page.locator(`#${id}`).tap();
+    await tap("camera-on");
+    await done(page);
+    const before = (await readback(page)).data;
+    await tap("camera-on");
     await tap("params-on");
     await until("the params", () => page.locator("#rows").isVisible());
     await slide(page, "radius_of_the_ball", 120);
@@ -353,9 +357,8 @@ const tests = {
     await tap("params-reset");
     await tap("params-on");
     await tap("camera-on");
-    await until("the file's picture", async () => isHidden(page, "set-line"));
-    await done(page);
-    const before = (await readback(page)).data;
+    await until("no line", () => isHidden(page, "set-line"));
+    await until("the file's picture", async () => worst((await readback(page)).data, before) === 0);
     const session = await page.context().newCDPSession(page);
     const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
     await touch("touchStart", [150, 200]);

@@ -201,8 +201,11 @@ impl Resolver<'_> {
         let grade = if shown == "file" { Grade::Guess } else { Grade::Sure };
         let ending = ending.map(|name| Near { name, grade });
         let alike = || known.iter().copied().find(|known| known.eq_ignore_ascii_case(shown));
-        let near = ending.or_else(|| near(shown, known.iter().copied()));
-        near.or_else(|| alike().map(|name| Near { name, grade: Grade::Guess }))
+        let alike = || alike().map(|name| Near { name, grade: Grade::Guess });
+        let near = near(shown, known.iter().copied());
+        // `Sin` is `sin`, and as near to `min`.
+        let is_other = near.is_none_or(|near| !near.name.eq_ignore_ascii_case(shown));
+        ending.or_else(|| alike().filter(|_| is_other)).or(near)
     }
 
     /// `0.2/m` and `0.2 /m^2`: the unit that divides a number, and how it is written.

@@ -3,7 +3,7 @@
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, told};
-use super::lex::TokenKind;
+use super::lex::{Token, TokenKind};
 
 /// Signs that editors and other notations write, and what stands here for them.
 const SIGNS: [(&str, &str, &str); 16] = [
@@ -54,7 +54,7 @@ fn typed(around: &Around<'_>) -> Option<Diagnostic> {
 /// `20 °C`
 fn temperature(around: &Around<'_>) -> Option<Diagnostic> {
     let mark = around.current().filter(|mark| mark.text == "°")?;
-    let scale = around.tokens.get(around.at + 1).filter(|t| t.start == mark.end())?;
+    let scale = around.tokens.get(around.at + 1).filter(|t| !t.first_on_line)?;
     let span = around.span(mark).to(around.span(scale));
     let found = told(span, KELVIN);
     match scale.text {
@@ -65,6 +65,11 @@ fn temperature(around: &Around<'_>) -> Option<Diagnostic> {
             Some(found.guess(around.span(number).to(span), kelvin))
         }
         "F" => Some(found),
+        "K" => {
+            let from = around.before(1).map_or(span.range().start, Token::end);
+            let all = Span::new(around.source, from, scale.end());
+            Some(told(span, "kelvin are no degrees").fix(all, " K"))
+        }
         _ => None,
     }
 }

@@ -163,10 +163,12 @@ impl Tally {
     }
 }
 
-/// What the language tells of a text.
+/// What the language tells of a text: something, if it makes no scene of it.
 pub(crate) fn messages(path: &Path, text: &str) -> Vec<String> {
     let files = Beside(path.into(), text.as_bytes().into());
     let loaded = load(path, &files, &registry(), &Settings::default());
+    let is_told = loaded.diagnostics.iter().any(Diagnostic::is_error);
+    assert!(is_told || loaded.scene.is_some(), "{}: nothing is told of\n{text}", path.display());
     loaded.diagnostics.iter().map(ToString::to_string).collect()
 }
 

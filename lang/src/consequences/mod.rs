@@ -205,6 +205,14 @@ mod tests {
     }
 
     #[test]
+    fn long_lines_of_wide_letters_are_looked_at_in_part() {
+        for gap in ["", " "] {
+            let wide = format!("let a = max(1, min2, {gap}\"{}\"))", "é".repeat(40_000));
+            assert_eq!(codes(&wide), ["E0010", "E0101", "E0409"]);
+        }
+    }
+
+    #[test]
     fn values_around_what_cannot_be_read_are_not_judged() {
         let mut sources = Sources::default();
         sources.add("a.scene", "let a = f(1, 2, 3, 4}; let other = 1");

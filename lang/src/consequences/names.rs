@@ -12,10 +12,12 @@ use super::nearby::is_unread;
 
 /// Words beside something that cannot be read that may be what was to be defined there, on each side.
 const WORDS: usize = 3;
-/// Bytes of its line before it that are looked at.
+/// Bytes of its line before it, and of the text behind it, that are looked at.
 const BYTES: usize = 200;
 /// Letters from which on the beginning of such a word may be meant by it: `fn riseb: int)`.
 const LONG: usize = 3;
+/// Bytes of a text in which a definition is looked for.
+const SEARCHED: usize = 1 << 20;
 /// Places of one name that are shown.
 const SHOWN: usize = 4;
 
@@ -110,7 +112,7 @@ fn meant(found: &Diagnostic) -> Option<&str> {
 
 /// Where a name is defined that stands nowhere else in a text.
 fn definition(name: &str, source: SourceId, sources: &Sources) -> Option<Span> {
-    let text = sources.text(source);
+    let text = Some(sources.text(source)).filter(|text| text.len() <= SEARCHED)?;
     let in_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let all = memmem::find_iter(text.as_bytes(), name.as_bytes());
     let mut all = all.filter(|at| {
@@ -133,7 +135,9 @@ fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
     let line = line.or((near == 0).then_some(0)).unwrap_or(start);
     let mut all: Vec<Token<'_>> = tokens(text, line..start).collect();
     let first = all.len().saturating_sub(WORDS);
-    all.extend(tokens(text, start..text.len()).take(WORDS + 1));
+    let is_end = |end: &usize| text.is_char_boundary(*end);
+    let end = (start + BYTES..text.len()).find(is_end).unwrap_or(text.len());
+    all.extend(tokens(text, start..end).take(WORDS + 1));
     let defines = |i: usize| all.get(i).is_some_and(|token| BEFORE_NAMES.contains(&token.text));
     let may_be = |i: &usize| {
         let token = &all[*i];

@@ -14,6 +14,11 @@ use crate::syntax::{Expr, ExprNode, Name, OF_A_TEXT, Op, path_around};
 /// twice counted.
 const LOOKED_AT: usize = 30_000;
 
+/// Bytes behind a name that are looked at for the end of its call.
+const CALL: usize = 1 << 10;
+/// Bytes of a function's name that may have lost its bracket.
+const FUNCTION: usize = 64;
+
 /// What other languages call a vector.
 const VECTORS: [&str; 11] = [
     "vec", "vec2", "vec3", "vec4", "vector", "vector3", "float3", "point", "point3", "dvec3",
@@ -153,12 +158,12 @@ impl Resolver<'_> {
 
     /// Where the bracket of a call is missing whose other one is there: `min2, 3)`.
     fn call_without_bracket(&self, shown: &str, place: Span) -> Option<Span> {
-        let rest = self.text.get(place.range().end..)?;
-        let line = &rest[..rest.find('\n').unwrap_or(rest.len()).min(LOOKED_AT)];
+        let rest = self.text.as_bytes().get(place.range().end..)?;
+        let mut line = rest.iter().take(CALL).take_while(|byte| **byte != b'\n');
         let mut depth = 0_i32;
-        let is_closed = line.bytes().any(|byte| {
-            depth += i32::from(b"([{".contains(&byte)) - i32::from(b")]}".contains(&byte));
-            depth < 0 && byte == b')'
+        let is_closed = line.any(|byte| {
+            depth += i32::from(b"([{".contains(byte)) - i32::from(b")]}".contains(byte));
+            depth < 0 && *byte == b')'
         });
         let is_function = |name: &str| {
             let ours = self.scopes.iter().rev().find_map(|scope| scope.names.get(name));
@@ -166,7 +171,7 @@ impl Resolver<'_> {
             before.is_some_and(|before| before.trim_end().ends_with("fn"))
                 || builtins::names().any(|known| known == name) && !builtins::is_value(name)
         };
-        let mut ends = (1..shown.len()).rev().filter(|_| is_closed);
+        let mut ends = (1..shown.len().min(FUNCTION)).rev().filter(|_| is_closed);
         let end = ends.find(|end| shown.get(..*end).is_some_and(is_function))?;
         let at = place.range().start + end;
         Some(Span::new(place.source, at, at))

@@ -61,7 +61,7 @@ impl Terms {
             hashing.update(b"override");
             text(&mut hashing, name);
             hashing.update(&child(*material));
-            own = own.plus(Sum::of(&hashing.finish()));
+            own = own.plus(Sum::of(&hashing.finish_soon()));
         }
         [own.plus(host).hash(), own.hash()]
     }
@@ -74,7 +74,7 @@ impl Terms {
                 hashing.update(b"class");
                 text(&mut hashing, node.kind.word());
                 text(&mut hashing, &node.class);
-                let term = Sum::of(&hashing.finish());
+                let term = Sum::of(&hashing.finish_soon());
                 self.class = Some((node.kind, node.class.clone(), term));
                 term
             }
@@ -114,7 +114,7 @@ fn param(name: &str, value: &Value, child: impl Fn(NodeId) -> Hash) -> Sum {
     hashing.update(b"param");
     text(&mut hashing, name);
     hash_value(&mut hashing, value, &child);
-    Sum::of(&hashing.finish())
+    Sum::of(&hashing.finish_soon())
 }
 
 /// Whether a parameter is the class's own, not one that the host adds to its kind.

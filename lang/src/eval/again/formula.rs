@@ -26,11 +26,56 @@ const OPEN: usize = 16;
 /// Where such an expression came to a number, each of its operands was one, for no operator makes a number
 /// of anything else; and where one came to a vector of numbers, each of its items did. So it takes as many
 /// steps when it comes to that again.
-#[derive(Debug)]
-pub(super) struct Formula {
-    pub(super) text: Arc<str>,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Formula<'a> {
+    pub(super) text: &'a Arc<str>,
     form: Of,
-    steps: Box<[Step]>,
+    steps: &'a [Step],
+}
+
+/// Formulas by number. All their steps are one piece of memory: where a name changes that many have, they are
+/// gone through one after the other.
+#[derive(Debug, Default)]
+pub(super) struct Formulas {
+    /// The text of each, what it is, and where its steps end.
+    each: Vec<(Arc<str>, Of, u32)>,
+    steps: Vec<Step>,
+}
+
+impl Formulas {
+    pub(super) fn get(&self, i: u32) -> Formula<'_> {
+        let i = i as usize;
+        let start = i.checked_sub(1).map_or(0, |last| self.each[last].2);
+        let (text, form, end) = &self.each[i];
+        Formula { text, form: *form, steps: &self.steps[start as usize..*end as usize] }
+    }
+
+    /// Each in turn.
+    pub(super) fn iter(&self) -> impl Iterator<Item = Formula<'_>> {
+        (0..narrow(self.each.len())).map(|i| self.get(i))
+    }
+
+    /// Adds a text as one, and gives its number; `None` of any other.
+    pub(super) fn read(&mut self, text: &str, budgets: &Budgets, known: &Known) -> Option<u32> {
+        let first = self.steps.len();
+        let found = read(text, budgets).and_then(|expr| form(&expr, known, &mut self.steps));
+        if found.is_none() {
+            self.steps.truncate(first);
+        }
+        found.map(|form| self.put(text.into(), form))
+    }
+
+    /// Adds one of others.
+    pub(super) fn add(&mut self, other: Formula<'_>) -> u32 {
+        self.steps.extend_from_slice(other.steps);
+        self.put(other.text.clone(), other.form)
+    }
+
+    /// One whose steps have been added.
+    fn put(&mut self, text: Arc<str>, form: Of) -> u32 {
+        self.each.push((text, form, narrow(self.steps.len())));
+        narrow(self.each.len() - 1)
+    }
 }
 
 /// What a formula is.
@@ -54,41 +99,24 @@ enum Step {
     Join(Op),
 }
 
-impl Formula {
-    /// A text as one; `None` of any other.
-    pub(super) fn of(text: &str, budgets: &Budgets, known: &Known) -> Option<Self> {
-        let expr = read(text, budgets)?;
-        let mut steps = vec![];
-        let form = match &expr.node {
-            ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
-                items.iter().try_for_each(|item| reckon(item, known, &mut steps))?;
-                Of::Vector
-            }
-            node => {
-                reckon(&expr, known, &mut steps)?;
-                if matches!(node, ExprNode::Path(_)) { Of::Name } else { Of::Number }
-            }
-        };
-        Some(Self { text: text.into(), form, steps: steps.into() })
-    }
-
+impl<'a> Formula<'a> {
     /// It, to be evaluated.
-    pub(super) fn expr(&self, budgets: &Budgets) -> Option<Expr> {
-        read(&self.text, budgets)
+    pub(super) fn expr(self, budgets: &Budgets) -> Option<Expr> {
+        read(self.text, budgets)
     }
 
     /// Whether it is a name alone, which may stand for anything.
-    pub(super) fn is_name(&self) -> bool {
+    pub(super) fn is_name(self) -> bool {
         self.form == Of::Name
     }
 
     /// Whether it is a vector of what is reckoned.
-    pub(super) fn is_vector(&self) -> bool {
+    pub(super) fn is_vector(self) -> bool {
         self.form == Of::Vector
     }
 
     /// The names that the file knows, each as often as it stands there.
-    pub(super) fn names(&self) -> impl Iterator<Item = u32> {
+    pub(super) fn names(self) -> impl Iterator<Item = u32> + 'a {
         self.steps.iter().filter_map(|step| match step {
             Step::Name(name) => Some(*name),
             _ => None,
@@ -97,9 +125,9 @@ impl Formula {
 
     /// The number that it comes to, with those that names stand for; `None` where it is none, a mistake, or
     /// too many stand open.
-    pub(super) fn number(&self, name: &dyn Fn(u32) -> Option<Measured>) -> Option<Measured> {
+    pub(super) fn number(self, name: &dyn Fn(u32) -> Option<Measured>) -> Option<Measured> {
         let mut open: ArrayVec<Measured, OPEN> = ArrayVec::new();
-        for step in &self.steps {
+        for step in self.steps {
             let next = match step {
                 Step::Number(number) => *number,
                 Step::Name(number) => name(*number)?,
@@ -124,6 +152,20 @@ fn read(text: &str, budgets: &Budgets) -> Option<Expr> {
     let mut sink = Sink::new(1);
     let expr = parse_expr(text, 0, source_of(u32::MAX), budgets, &mut sink);
     expr.filter(|_| sink.kept().is_empty())
+}
+
+/// What a formula is, whose steps are added; `None` of any other expression.
+fn form(expr: &Expr, known: &Known, steps: &mut Vec<Step>) -> Option<Of> {
+    match &expr.node {
+        ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
+            items.iter().try_for_each(|item| reckon(item, known, steps))?;
+            Some(Of::Vector)
+        }
+        node => {
+            reckon(expr, known, steps)?;
+            Some(if matches!(node, ExprNode::Path(_)) { Of::Name } else { Of::Number })
+        }
+    }
 }
 
 /// Adds the steps of an expression; `None` if it is not reckoned from numbers.
@@ -168,25 +210,34 @@ fn joins(op: Op) -> bool {
     matches!(op, Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Rem)
 }
 
+fn narrow(n: usize) -> u32 {
+    u32::try_from(n).unwrap_or(u32::MAX)
+}
+
 #[cfg(test)]
 mod tests {
     use luxel_sdk::params::Dimension;
 
     use super::*;
 
-    /// A formula of a file that knows some names, which have the numbers of their letters.
-    fn formula(text: &str) -> Option<Formula> {
+    /// A formula, behind another, of a file that knows some names, which have the numbers of their letters.
+    fn formula(text: &str) -> Option<(Formulas, u32)> {
         let mut known = Known::default();
         for name in 'a'..='z' {
             known.number(&name.to_string().into());
         }
-        Formula::of(text, &Budgets::default(), &known)
+        let (mut formulas, budgets) = (Formulas::default(), Budgets::default());
+        formulas.read("z - y", &budgets, &known)?;
+        let i = formulas.read(text, &budgets, &known)?;
+        Some((formulas, i))
     }
 
     #[test]
     fn numbers_and_names_are_reckoned_with_and_nothing_else_is() {
         let names = |text: &str| -> Option<String> {
-            Some(formula(text)?.names().filter_map(|i| ('a'..='z').nth(i as usize)).collect())
+            let (formulas, i) = formula(text)?;
+            let names = formulas.get(i).names();
+            Some(names.filter_map(|i| ('a'..='z').nth(i as usize)).collect())
         };
         let yes =
             [("r", "r"), ("2 * r", "r"), ("-(a + b % 3 m) cm ^ a / c", "abac"), ("1.5 km", "")];
@@ -240,7 +291,8 @@ mod tests {
             ("k * q", None),
             ("(r, r)", None),
         ] {
-            assert_eq!(formula(text).unwrap().number(&name), wanted, "{text}");
+            let (formulas, i) = formula(text).unwrap();
+            assert_eq!(formulas.get(i).number(&name), wanted, "{text}");
         }
     }
 }

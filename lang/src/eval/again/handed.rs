@@ -114,7 +114,8 @@ impl Handing {
 impl State {
     /// Whether what a statement makes is only what it says itself.
     pub(super) fn may_hand_on(&self, stmt: &Statement) -> bool {
-        stmt.is_plain && !stmt.names.labels().iter().any(|label| self.set_labels.contains(label))
+        let is_set = |label: &u32| self.set_labels.contains(label);
+        stmt.is_plain && (self.set_labels.is_empty() || !stmt.names.labels().iter().any(is_set))
     }
 
     /// Which of statements that may only hand on do so, and the numbers of those that do not.
@@ -188,7 +189,7 @@ impl State {
     /// or wrong.
     fn fit(
         &self,
-        (wanted, formula): (&Wanted, &Formula),
+        (wanted, formula): (&Wanted, Formula<'_>),
         value: Value,
         (handed, env): (&Handed, &Env),
         evaluator: &mut Evaluator<'_>,

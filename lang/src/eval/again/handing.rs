@@ -10,7 +10,7 @@ use luxel_core::registry::Registry;
 use luxel_core::scene::{self, Argument, IsOver, Node, NodeId};
 use luxel_sdk::kind::Kind;
 
-use super::formula::{Formula, MOST_ITEMS};
+use super::formula::{Formula, Formulas, MOST_ITEMS};
 use super::vector;
 use super::{Statement, source_of};
 use crate::Budgets;
@@ -31,7 +31,7 @@ const WHOLE: usize = 2;
 pub(super) struct Handing {
     /// By statement; also of statements that are gone.
     places: Vec<Place>,
-    formulas: Vec<Formula>,
+    formulas: Formulas,
     /// Which of those a text is, if it is one.
     of_texts: HashMap<Arc<str>, Option<u32>>,
     /// How many vectors are.
@@ -169,11 +169,13 @@ impl Handing {
     /// With those of later statements.
     fn with(mut self, other: Self) -> Self {
         let mut formulas = vec![];
-        for formula in other.formulas {
-            let text = formula.text.clone();
-            let known = self.of_texts.get(&text).copied().flatten();
-            let i = known.unwrap_or_else(|| self.put(formula));
-            self.of_texts.insert(text, Some(i));
+        for formula in other.formulas.iter() {
+            let known = self.of_texts.get(formula.text).copied().flatten();
+            let i = known.unwrap_or_else(|| {
+                let i = self.formulas.add(formula);
+                self.met(i)
+            });
+            self.of_texts.insert(formula.text.clone(), Some(i));
             formulas.push(i);
         }
         let number = |wanted: Wanted| {
@@ -202,8 +204,8 @@ impl Handing {
     }
 
     /// The formula whose value is wanted, by the number of what is.
-    pub(super) fn formula(&self, i: u32) -> &Formula {
-        &self.formulas[self.wanted(i).formula as usize]
+    pub(super) fn formula(&self, i: u32) -> Formula<'_> {
+        self.formulas.get(self.wanted(i).formula)
     }
 
     /// Adds what a statement hands on, if it does nothing but make objects that nobody names.
@@ -265,7 +267,7 @@ impl Handing {
     /// Counts the names of a formula among those that are used. Of each of these is known how often it is used
     /// elsewhere; nothing, once it was met more often.
     fn use_names(&self, formula: u32, uses: &[(u32, u32)], left: &mut [Option<u32>]) {
-        for name in self.formulas[formula as usize].names() {
+        for name in self.formulas.get(formula).names() {
             let met = uses.iter().zip(left.iter_mut()).find(|((used, _), _)| *used == name);
             if let Some((_, left)) = met {
                 *left = left.and_then(|left| left.checked_sub(1));
@@ -324,17 +326,17 @@ impl Handing {
         if self.of_texts.len() >= TEXTS {
             return None;
         }
-        let found = Formula::of(text, written.budgets, written.names);
-        let found = found.map(|formula| self.put(formula));
+        let found = self.formulas.read(text, written.budgets, written.names);
+        let found = found.map(|i| self.met(i));
         self.of_texts.insert(text.into(), found);
         found
     }
 
-    fn put(&mut self, formula: Formula) -> u32 {
-        self.n_vectors += usize::from(formula.is_vector());
-        self.formulas.push(formula);
+    /// Counts a formula that was added last.
+    fn met(&mut self, i: u32) -> u32 {
+        self.n_vectors += usize::from(self.formulas.get(i).is_vector());
         self.of_formulas.push(vec![]);
-        narrow(self.formulas.len() - 1)
+        i
     }
 
     /// Which of those that are wanted this is.

@@ -1,6 +1,6 @@
 //! What formulas come to that are numbers: each by itself, so that threads share them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use luxel_core::registry::Registry;
 use luxel_core::scene::{self, Given, conform};
@@ -26,8 +26,8 @@ struct Reckoning<'a> {
     registry: &'a Registry,
     /// What bare numbers count, by dimension.
     units: &'a BTreeMap<Dimension, f64>,
-    /// The numbers that names stand for.
-    names: HashMap<u32, Measured>,
+    /// The numbers that names stand for, in the order of the names.
+    names: Vec<(u32, Measured)>,
     /// Whether anybody is shown values.
     is_shown: bool,
 }
@@ -78,14 +78,18 @@ impl<'a> Reckoning<'a> {
         last.map(|(_, param)| param)
     }
 
+    fn number_of(&self, name: u32) -> Option<Measured> {
+        let found = self.names.binary_search_by_key(&name, |(known, _)| *known);
+        found.ok().map(|i| self.names[i].1)
+    }
+
     /// The value of one that is wanted, by its number.
     fn value(&self, i: u32, last: &mut Last<'a>) -> Option<FittedValue> {
         let wanted = self.handing.wanted(i);
         if wanted.is_node {
             return None;
         }
-        let (x, measure) =
-            self.handing.formula(i).number(&|name| self.names.get(&name).copied())?;
+        let (x, measure) = self.handing.formula(i).number(&|name| self.number_of(name))?;
         let param = self.param(wanted, last)?;
         let units = |dimension: Dimension| self.units.get(&dimension).copied();
         let given = match wanted.n_items {

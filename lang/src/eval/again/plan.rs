@@ -18,6 +18,7 @@ use crate::eval::mention::mention_stmts;
 use crate::eval::names::Facts;
 use crate::eval::numbered::{Firsts, Tables};
 use crate::eval::turns::declares;
+use crate::shares;
 use crate::syntax::{Cut, Stmt, read_head, read_piece};
 
 /// Of how many statements one at most is evaluated again: of more, all are as soon.
@@ -101,6 +102,34 @@ impl<'s> After<'s> {
         before.chain(self.fresh).chain(&self.stmts[self.gone.end..])
     }
 
+    fn len(&self) -> usize {
+        self.stmts.len() - self.gone.len() + self.fresh.len()
+    }
+
+    /// Those from one on that use a name of these, by number.
+    fn users(&self, from: usize, is_named: &[bool]) -> Vec<usize> {
+        let end = self.gone.start + self.fresh.len();
+        let pieces = [
+            (0, &self.stmts[..self.gone.start]),
+            (self.gone.start, self.fresh),
+            (end, &self.stmts[self.gone.end..]),
+        ];
+        let is_user = |stmt: &Statement| stmt.names.uses().any(|(name, _)| is_named[name as usize]);
+        let some = |part: &[Statement]| -> (usize, Vec<usize>) {
+            (part.len(), (0..part.len()).filter(|i| is_user(&part[*i])).collect())
+        };
+        let mut users = vec![];
+        for (start, stmts) in pieces {
+            let passed = from.saturating_sub(start).min(stmts.len());
+            let mut at = start + passed;
+            for (n, found) in shares::map(&stmts[passed..], |stmt| stmt.range.len(), some) {
+                users.extend(found.into_iter().map(|i| at + i));
+                at += n;
+            }
+        }
+        users
+    }
+
     /// One of them.
     pub(super) fn at(&self, i: usize) -> &'s Statement {
         let fresh = self.gone.start..self.gone.start + self.fresh.len();
@@ -118,6 +147,44 @@ impl<'s> After<'s> {
             return (stmt, stmt.range.clone());
         }
         (stmt, edit.shifted(stmt.range.start)..edit.shifted(stmt.range.end))
+    }
+}
+
+/// Statements that come to something else, as far as they have been seen, in order.
+struct Concerned<'s> {
+    /// Which names have another value, by number.
+    is_changed: Vec<bool>,
+    new: Vec<usize>,
+    /// Those that may only hand a value on.
+    handing: Vec<(usize, &'s Statement)>,
+    /// New ones, at most.
+    most: usize,
+}
+
+impl<'s> Concerned<'s> {
+    fn is_user(&self, stmt: &Statement) -> bool {
+        stmt.names.uses().any(|(name, _)| self.is_changed[name as usize])
+    }
+
+    /// Sees a statement that is new or uses a name that has another value; whether by it more names have.
+    /// `None` if there are too many.
+    fn see(
+        &mut self,
+        state: &State,
+        (i, stmt): (usize, &'s Statement),
+        is_new: bool,
+    ) -> Option<bool> {
+        let is_changed = &mut self.is_changed;
+        if !is_new && state.may_hand_on(stmt) {
+            self.handing.push((i, stmt));
+            return Some(false);
+        }
+        if stmt.is_wide() || self.new.len() >= self.most {
+            return None;
+        }
+        self.new.push(i);
+        let change = |name: &u32| !std::mem::replace(&mut is_changed[*name as usize], true);
+        Some(stmt.names.defines().iter().map(change).fold(false, |any, is_more| any | is_more))
     }
 }
 
@@ -231,10 +298,10 @@ impl State {
 
     /// The statements that are new, one of `those`, or use a name that a statement with another value defines;
     /// apart from them those that only hand that value on.
-    fn concerned(
-        &self,
+    fn concerned<'s>(
+        &'s self,
         gone: &Range<usize>,
-        after: &After<'_>,
+        after: &After<'s>,
         those: &BTreeSet<usize>,
     ) -> Option<(Vec<usize>, Handed)> {
         let mut is_changed = vec![false; self.names.len()];
@@ -251,26 +318,33 @@ impl State {
         if !changes {
             return Some((fresh.collect(), Handed::default()));
         }
-        let (mut new, mut handing) = (vec![], vec![]);
-        let most = (self.stmts.len() / SHARE).max(1);
         let first = those.first().map_or(fresh.start, |first| fresh.start.min(*first));
-        for (i, stmt) in after.iter().enumerate().skip(first) {
-            let is_new = fresh.contains(&i) || those.contains(&i);
-            let is_user = stmt.names.uses().any(|(name, _)| is_changed[name as usize]);
-            if is_user && !is_new && self.may_hand_on(stmt) {
-                handing.push((i, stmt));
-            } else if is_new || is_user {
-                if stmt.is_wide() || new.len() >= most + fresh.len() {
-                    return None;
-                }
-                stmt.names.defines().iter().for_each(|name| is_changed[*name as usize] = true);
-                new.push(i);
+        let mut candidates = after.users(first, &is_changed);
+        candidates.extend(fresh.clone().chain(those.iter().copied()));
+        candidates.sort_unstable();
+        candidates.dedup();
+        let most = (self.stmts.len() / SHARE).max(1) + fresh.len();
+        let mut found = Concerned { is_changed, new: vec![], handing: vec![], most };
+        let is_new = |i: usize| fresh.contains(&i) || those.contains(&i);
+        let mut grown = None;
+        for i in candidates {
+            if found.see(self, (i, after.at(i)), is_new(i))? {
+                grown = Some(i);
+                break;
             }
         }
+        // Of what follows, more may be concerned than uses the names that had changed at first.
+        for i in grown.map_or(0..0, |i| i + 1..after.len()) {
+            let stmt = after.at(i);
+            if is_new(i) || found.is_user(stmt) {
+                found.see(self, (i, stmt), is_new(i))?;
+            }
+        }
+        let Concerned { is_changed, mut new, handing, most } = found;
         let (handed, others) = self.handed(&handing, &is_changed);
         new.extend(others);
         new.sort_unstable();
-        (new.len() <= most + fresh.len()).then_some((new, handed))
+        (new.len() <= most).then_some((new, handed))
     }
 
     /// The statements that are wanted, some of which are new, and those that define what they use.

@@ -36,11 +36,14 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     if first.text == "import" {
         return imported(&words).map(|(text, token)| name(text, token, token)).collect();
     }
-    // `for i, ball in balls` without its block.
-    if first.text == "for" {
-        let both = [word(1), word(3).filter(|_| mark(2) == ",")];
-        let both = both.into_iter().flatten().filter(|name| !RESERVED.contains(&name.text));
-        return both.map(|token| name(token.text, token, token)).collect();
+    // `for i, ball in balls` without its block, `for (int i = 0;`, `for i ball in balls`
+    if matches!(first.text, "for" | "foreach") {
+        let end = words.iter().position(|t| t.text == "in");
+        let end =
+            end.unwrap_or(if mark(2) == "," { 4 } else { 2 + usize::from(mark(1) == "(") * 2 });
+        let names = words.iter().take(end).filter(|t| t.kind == TokenKind::Word);
+        let names = names.filter(|name| !RESERVED.contains(&name.text) && !is_type(name.text));
+        return names.filter(|t| t.text != "foreach").map(|t| name(t.text, t, t)).collect();
     }
     // `x := 3`, `letx: float = 3`
     if gives(1) && mark(1) != "(" {
@@ -72,13 +75,16 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
                 format!("{}{}", second.text, third.text),
                 format!("{}_{}", second.text, third.text),
             ];
-            let is_type = type_names::names().any(|known| known == third.text);
-            let n = if is_type { 1 } else { all.len() };
+            let n = if is_type(third.text) { 1 } else { all.len() };
             all[..n].iter().map(|text| name(text, second, third)).collect()
         }
         _ if begins || gives(2) => Box::new([name(second.text, second, second)]),
         _ => Box::default(),
     }
+}
+
+fn is_type(word: &str) -> bool {
+    type_names::names().any(|known| known == word)
 }
 
 /// What `import "a.scene" …` may name: words that follow, or else as the file is called.

@@ -8,6 +8,7 @@ use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, told};
 use super::lex::{Token, TokenKind};
+use super::loops::loops;
 use super::type_names;
 
 /// Numbers that stand side by side in a vector, at most.
@@ -15,7 +16,7 @@ const WIDEST: usize = 4;
 
 /// Why the place cannot be read, if it has another language's shape.
 pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
-    looping(around)
+    loops(around)
         .or_else(|| returned(around))
         .or_else(|| steps(around))
         .or_else(|| typed_before(around))
@@ -37,13 +38,6 @@ fn beginning<'a>(around: &'a Around<'_>, words: &[&str]) -> Option<(&'a Token<'a
         let is_one = words.contains(&word.text) && around.begins(i) && !next.first_on_line;
         (is_one && next.text != "=").then_some((word, next))
     })
-}
-
-/// `while true { … }`
-fn looping(around: &Around<'_>) -> Option<Diagnostic> {
-    let (word, _) = beginning(around, &["while", "until"])?;
-    let found = told(around.span(word), format!("`{}` begins no loop", word.text));
-    Some(found.help("a loop runs over a range or a list: `for i in 0..10 { … }`"))
 }
 
 /// `return y` in a block.

@@ -1,10 +1,12 @@
 //! What people write who think of another language, or whose editor sets type for them.
 
 use luxel_core::diag::{Diagnostic, Span};
+use luxel_sdk::kind::Kind;
 
 use super::around::{Around, Place, is_category, told};
 use super::defined::stem;
 use super::foreign::{TYPES, foreign};
+use super::headless::is_value;
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
 use super::paths::{imported_from, unquoted};
@@ -386,8 +388,16 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
                 }
             }
             let both = around.span(kind).to(around.span(label));
-            let found = told(both, "an object has one kind, and its label is a text");
+            let category = &around.tokens[start];
             let (kind, label) = (kind.text, label.text);
+            if Kind::of_word(category.text).is_some_and(is_value) {
+                let (word, all) = (category.text, around.span(category).to(both));
+                let found = told(both, format!("a {word} gets its name by `let`"));
+                let help = format!("or `let {kind} = {word} {label}`, if `{label}` is the kind");
+                let mend = format!("let {label} = {word} {kind}");
+                return Some(found.help(help).guess(all, mend));
+            }
+            let found = told(both, "an object has one kind, and its label is a text");
             let help = format!("or `{label} \"{kind}\"`, if `{label}` is the kind");
             Some(found.help(help).guess(both, format!("{kind} \"{label}\"")))
         }

@@ -388,8 +388,9 @@ impl Reader<'_> {
                 let after = keep.then_some(self.out.stmts.len());
                 self.recover(at, chunk.clone(), place);
                 if let Some(after) = after {
-                    let stmt = self.repaired(&chunk);
-                    self.out.stmts.insert(after, stmt);
+                    let later = self.out.stmts.split_off(after);
+                    self.left(&chunk, at);
+                    self.out.stmts.extend(later);
                 }
             }
         }

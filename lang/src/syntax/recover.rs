@@ -13,6 +13,7 @@ use super::defined::perhaps_defined;
 use super::edits::{Edits, Mended};
 use super::explain::explain;
 use super::gaps::Gaps;
+use super::headless::{Headed, headed};
 use super::lex::{TokenKind, tokens};
 use super::parse::Reader;
 use super::strays::Mend;
@@ -47,6 +48,21 @@ pub(super) fn whole_before(text: &str, at: usize, chunk: &Range<usize>) -> Optio
 }
 
 impl Reader<'_> {
+    /// Reads what is left of a statement of the file that cannot be read near byte `at`, which has been told.
+    pub(super) fn left(&mut self, chunk: &Range<usize>, at: usize) {
+        let is_worth = self.edits.is_empty() && chunk.len() <= REPAIRED && !self.sink.is_full();
+        let piece = Some(&self.text[chunk.clone()]).filter(|_| is_worth);
+        let headed = piece.and_then(|piece| headed(piece, chunk.start, at - chunk.start));
+        let Some(Headed { mended, brace }) = headed else {
+            let stmt = self.repaired(chunk);
+            return self.out.stmts.push(stmt);
+        };
+        // The names of its head.
+        self.broken(chunk.start..chunk.start + brace);
+        let whole = 0..mended.text.len();
+        self.read_mended(mended, whole, Place::File);
+    }
+
     /// A statement of the file without the inner statements that cannot be read: more mistakes may be
     /// found in the rest.
     pub(super) fn repaired(&mut self, chunk: &Range<usize>) -> Stmt {

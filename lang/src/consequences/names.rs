@@ -21,6 +21,9 @@ const SEARCHED: usize = 1 << 20;
 /// Places of one name that are shown.
 const SHOWN: usize = 4;
 
+/// What is told of words of the language that are names.
+const WORD: &str = "E0019";
+
 /// A word of a text, and where it begins.
 type Word<'a> = (SourceId, &'a str, u32);
 
@@ -38,6 +41,9 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     }
     diagnostics.retain_mut(|found| {
         let Some(name) = name(found, sources) else { return true };
+        if found.code == WORD {
+            return told_once(found, name, &places[&name], sources);
+        }
         let long = if found.sure().is_some() { usize::MAX } else { LONG };
         if is_defined_by_one(name, found.span(), &unread, long) {
             return false;
@@ -95,11 +101,11 @@ fn told_once(
     true
 }
 
-/// The name that nothing stands for.
+/// The name that nothing stands for, or that is a word of the language.
 fn name<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a str)> {
-    let at = found.span().filter(|_| found.code == "E0101")?;
+    let at = found.span().filter(|_| found.code == "E0101" || found.code == WORD)?;
     let name = sources.text(at.source).get(at.range())?;
-    Some((at.source, name)).filter(|_| Kind::of_word(name).is_none())
+    Some((at.source, name)).filter(|_| Kind::of_word(name).is_none() || found.code == WORD)
 }
 
 /// The name that may be meant.

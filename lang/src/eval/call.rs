@@ -14,6 +14,14 @@ impl Evaluator<'_> {
     /// A call as an expression.
     pub(super) fn call(&mut self, callee: &Expr, args: &[Arg], span: Span, env: &Env) -> Value {
         let function = self.eval(callee, env);
+        let is_written_out =
+            matches!(callee.node, ExprNode::Items { .. } | ExprNode::Numbers { .. });
+        if is_written_out && !matches!(function, Value::Poison) {
+            let message = format!("{} cannot be called", function.describe());
+            let end = Span { start: callee.span.end, ..callee.span };
+            self.tell(Diagnostic::error("E0214", span, message).guess(end, ","));
+            return Value::Poison;
+        }
         let value = self.apply(&function, args, span, env);
         if let (Value::Color(..), Value::Builtin(_), ExprNode::Path(path)) =
             (&value, &function, &callee.node)

@@ -11,6 +11,7 @@ use super::habits::habit;
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
 use super::make::{BEFORE_NAMES, OF_A_NUMBER, OF_A_TEXT, RESERVED, STATEMENTS, nameless};
+use super::notation::{notation, remark};
 use super::peers::{BEGINS, is_pbrt};
 use super::unfinished::unfinished;
 
@@ -76,6 +77,7 @@ impl<'a> Around<'a> {
         self.number()
             .or_else(|| unfinished(self))
             .or_else(|| habit(self))
+            .or_else(|| notation(self))
             .or_else(|| head::head(self))
             .or_else(|| self.statement_head())
             .or_else(|| self.reserved())
@@ -91,6 +93,7 @@ impl<'a> Around<'a> {
             .or_else(|| self.missing_comma_and_equals())
             .or_else(|| self.missing_equals())
             .or_else(|| self.untyped())
+            .or_else(|| remark(self))
             .unwrap_or_else(|| self.unexpected())
     }
 

@@ -105,7 +105,8 @@ fn is_call(text: &str, inside: Range<usize>) -> bool {
     has_more || first == "[" || OF_A_NUMBER.contains(&name)
 }
 
-/// Where in brackets a comma stands before the first field that follows something else: it is no argument's name.
+/// Where in brackets a comma or a line ends before the first field that follows something else: it is no argument's
+/// name.
 fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
     if inside.len() > LOOKED_AT {
         return None;
@@ -116,11 +117,19 @@ fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
         of.is_some_and(|of| of[0].kind == TokenKind::Word && of[1].text == "=")
     };
     let mut depth = 0_usize;
-    (1..inner.len()).filter(|_| !is_named(1)).find_map(|i| {
+    (1..inner.len()).find_map(|i| {
         match inner[i].text {
             "(" | "[" | "{" => depth += 1,
             ")" | "]" | "}" => depth = depth.saturating_sub(1),
-            "," if depth == 0 && is_named(i + 1) => return Some(inner[i].start),
+            "," if depth == 0 && is_named(i + 1) && !is_named(1) => return Some(inner[i].start),
+            // Arguments have commas between them.
+            _ if depth == 0
+                && inner[i].first_on_line
+                && is_named(i)
+                && inner[i - 1].text != "," =>
+            {
+                return Some(inner[i - 1].end());
+            }
             _ => {}
         }
         None

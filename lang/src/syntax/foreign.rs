@@ -206,7 +206,14 @@ fn vector_with_commas(around: &Around<'_>) -> Option<Diagnostic> {
     let is_over = |t: &Token<'_>| t.first_on_line || matches!(t.text, "," | "}");
     let all = around.tokens[first].start..around.tokens[last].end();
     let texts = around.text[all.clone()].split(',').map(str::trim).collect::<Vec<_>>();
-    around.tokens.get(last + 1).is_none_or(is_over).then(|| a_vector(around, all, &texts))
+    // A unit stays behind the brackets; `3,500 W` may be one number.
+    let is_parted = around.text[all.clone()].contains(", ");
+    let has_unit = is_parted && Unit::named(around.word(last + 1)).is_some();
+    around
+        .tokens
+        .get(last + 1 + usize::from(has_unit))
+        .is_none_or(is_over)
+        .then(|| a_vector(around, all, &texts))
 }
 
 /// `center = 0 0 0`

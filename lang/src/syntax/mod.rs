@@ -25,6 +25,7 @@ mod lex;
 mod listed;
 mod loops;
 mod make;
+mod notation;
 mod number;
 mod operators;
 mod parse;

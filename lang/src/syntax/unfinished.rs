@@ -38,7 +38,7 @@ impl Around<'_> {
         let begins = is_object || STATEMENTS.contains(&self.word(i));
         let wants_more = match self.word(before) {
             "let" | "param" | "fn" | "place" | "include" | "import" | "set" => self.begins(before),
-            "as" | "in" => true,
+            "as" | "in" | "else" => true,
             _ => false,
         };
         begins && wants_more
@@ -59,6 +59,8 @@ fn keyword(around: &Around<'_>) -> Option<Diagnostic> {
         "include" | "import" => told(span, format!("a path is missing after `{}`", word.text))
             .help(format!("it is written `{} \"tools.scene\"`", word.text)),
         "in" => around.error("E0015", word, "a value is missing after `in`"),
+        "else" => told(span, "the `{` of this `else` is missing")
+            .help("a block stands between `{` and `}`"),
         text if BEFORE_NAMES.contains(&text) => nameless(text, span),
         text => told(span, format!("a name is missing after `{text}`")),
     })

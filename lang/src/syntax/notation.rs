@@ -1,0 +1,107 @@
+//! Names, operators and lines as other notations have them.
+
+use luxel_core::diag::{Diagnostic, Span};
+
+use super::around::{Around, Place, is_category, told};
+use super::lex::{Token, TokenKind};
+use super::make::{BEFORE_NAMES, RESERVED};
+
+/// Words in a row that nobody writes but to say something to people.
+const SAID: usize = 3;
+
+/// Why the place cannot be read, if something is written there as it is elsewhere.
+pub(super) fn notation(around: &Around<'_>) -> Option<Diagnostic> {
+    name(around)
+        .or_else(|| units(around))
+        .or_else(|| operator(around))
+        .or_else(|| comprehension(around))
+}
+
+/// `let 2nd = 1 m` and `let arm-length = 1 m`
+fn name(around: &Around<'_>) -> Option<Diagnostic> {
+    let (current, before) = (around.current()?, around.before(1)?);
+    let next = around.tokens.get(around.at + 1).filter(|t| t.kind == TokenKind::Word)?;
+    let touches = current.end() == next.start;
+    if current.kind == TokenKind::Number && touches && BEFORE_NAMES.contains(&before.text) {
+        let all = around.span(current).to(around.span(next));
+        let found = told(all, "a name begins with a letter");
+        return Some(found.guess(all, format!("{}{}", next.text, current.text.replace('.', "_"))));
+    }
+    let word = around.before(2).filter(|word| BEFORE_NAMES.contains(&word.text));
+    let is_name = word.is_some() && before.kind == TokenKind::Word;
+    if !is_name || current.text != "-" || !touches || before.end() != current.start {
+        return None;
+    }
+    // As many parts as there are.
+    let is_part = |i: &usize| around.word(*i) == "-" && around.is_word(i + 1);
+    let last = (around.at..).step_by(2).take_while(is_part).last()? + 1;
+    let all = around.span(before).to(around.span(&around.tokens[last]));
+    let name = around.text[all.range()].replace('-', "_");
+    Some(told(all, "a name has no `-`, which subtracts").guess(all, name))
+}
+
+/// `units length = mm`
+fn units(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.current().filter(|t| t.kind == TokenKind::Word && !t.first_on_line)?;
+    let word = around.before(1).filter(|t| t.text == "units" && around.begins(around.at - 1))?;
+    let ends = |t: &Token<'_>| t.first_on_line || t.text == ";";
+    let end = around.tokens[around.at + 1..].iter().position(ends);
+    let last = &around.tokens[end.map_or(around.tokens.len(), |n| around.at + 1 + n) - 1];
+    let all = around.span(first).to(around.span(last));
+    let found = told(all, format!("what `{}` says stands between `{{` and `}}`", word.text));
+    Some(found.guess(all, format!("{{ {} }}", &around.text[all.range()])))
+}
+
+/// `a <> b`, `i++` and `*/`
+fn operator(around: &Around<'_>) -> Option<Diagnostic> {
+    let pair = |i: usize| {
+        let (one, other) = (around.tokens.get(i)?, around.tokens.get(i + 1)?);
+        let ends = around.tokens.get(i + 2).is_none_or(|next| next.first_on_line);
+        (one.end() == other.start).then_some((one, other, ends))
+    };
+    (around.at.saturating_sub(2)..=around.at).filter_map(pair).find_map(|(one, other, ends)| {
+        let all = around.span(one).to(around.span(other));
+        match (one.text, other.text) {
+            ("<", ">") => Some(told(all, "this comparison is written `!=`").fix(all, "!=")),
+            ("+", "+") | ("-", "-") if ends => {
+                let message = format!("there is no `{0}{0}`", one.text);
+                Some(told(all, message).help("a name keeps its value; another one is computed"))
+            }
+            ("*", "/") => Some(told(all, "this `*/` closes no comment").guess(all, "")),
+            _ => None,
+        }
+    })
+}
+
+/// `[for x in 0..4 x * 2]`
+fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
+    let open = *around.open.last().filter(|open| around.word(**open) == "[")?;
+    let is_one = around.word(open + 1) == "for";
+    let has_arrow = (open..around.at).any(|i| around.word(i) == "=>");
+    let has_in = (open..around.at).any(|i| around.word(i) == "in");
+    if !is_one || has_arrow || !has_in {
+        return None;
+    }
+    let found =
+        told(around.span(around.current()?), "`=>` is missing before what a list is made of");
+    Some(found.help("it is written `[for i in 0..4 => i * 2]`"))
+}
+
+/// `a forgotten comment`: what says nothing to the language.
+pub(super) fn remark(around: &Around<'_>) -> Option<Diagnostic> {
+    let start = (0..=around.at.min(around.tokens.len().saturating_sub(1)))
+        .rev()
+        .find(|i| around.tokens[*i].first_on_line || *i == 0)?;
+    let is_said = |t: &&Token<'_>| t.kind == TokenKind::Word && !RESERVED.contains(&t.text);
+    let begun = around.tokens[start..].iter().enumerate();
+    let on_line = begun.take_while(|(i, t)| *i == 0 || !t.first_on_line).map(|(_, t)| t);
+    let line: Vec<&Token<'_>> = on_line.collect();
+    let n_said = line.iter().copied().take_while(is_said).count();
+    let gives = line.iter().any(|t| matches!(t.text, "=" | "{" | "}"));
+    if n_said < SAID || gives || is_category(line[0].text) || around.inner() == Place::Fields {
+        return None;
+    }
+    let all = around.span(line[0]).to(around.span(line[line.len() - 1]));
+    let gap = Span::new(around.source, line[0].start, line[0].start);
+    Some(told(all, "these words say nothing; a remark stands behind `//`").guess(gap, "// "))
+}

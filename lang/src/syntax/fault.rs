@@ -34,7 +34,9 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
     };
     match fault {
         Fault::Stray { at } => Some((*at..at + 1, "")),
-        Fault::Unclosed { open } => doubled(text, *open).map(|again| (again..again + 1, "")),
+        Fault::Unclosed { open } => doubled(text, *open)
+            .map(|again| (again..again + 1, ""))
+            .or_else(|| before_block(text, *open).map(|end| (end..end, closing(*open)))),
         Fault::Mismatch { open, at, left: 0 } if is_call(text, *open..*at) => {
             Some((*open..open + 1, "("))
         }
@@ -61,6 +63,29 @@ fn doubled(text: &str, open: usize) -> Option<usize> {
     let next = open + 1 + blanks(rest);
     let before = text[..open].trim_end_matches([' ', '\t']);
     if text[next..].starts_with('{') { Some(next) } else { before.ends_with('{').then_some(open) }
+}
+
+/// Where the head of a block ends on its line, in which a bracket opens that never closes.
+fn before_block(text: &str, open: usize) -> Option<usize> {
+    let start = text[..open].rfind('\n').map_or(0, |end| end + 1);
+    let end = text[open..].find('\n').map_or(text.len(), |length| open + length);
+    if text[open..].starts_with('{') || end - start > REST {
+        return None;
+    }
+    let first = tokens(text, start..open).find(|token| !matches!(token.text, "}" | "else"))?;
+    let mut depth = 0_usize;
+    let brace = tokens(text, open + 1..end).find(|token| {
+        match token.text {
+            "{" if depth == 0 => return true,
+            "(" | "[" | "{" => depth += 1,
+            ")" | "]" | "}" => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        false
+    })?;
+    let is_last = tokens(text, brace.end()..end).next().is_none();
+    let is_head = matches!(first.text, "fn" | "for" | "if") && is_last;
+    is_head.then(|| text[..brace.start].trim_end().len())
 }
 
 /// Whether what was closed at a byte by another bracket is closed further on in its line too.
@@ -146,6 +171,9 @@ fn unclosed(text: &str, source: SourceId, open: usize, closes: &[(usize, usize)]
     let bracket = &text[open..=open];
     let message = format!("this `{bracket}` is never closed");
     let found = Diagnostic::error("E0008", span(open..open + 1), message);
+    if let Some((place, with)) = mend(text, &Fault::Unclosed { open }) {
+        return found.guess(span(place), with);
+    }
     let Some(at) = closes.iter().find_map(|(one, at)| (*one == open).then_some(*at)) else {
         return found;
     };

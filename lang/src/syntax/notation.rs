@@ -15,6 +15,7 @@ pub(super) fn notation(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| units(around))
         .or_else(|| operator(around))
         .or_else(|| comprehension(around))
+        .or_else(|| block_of_call(around))
 }
 
 /// `let 2nd = 1 m` and `let arm-length = 1 m`
@@ -85,6 +86,24 @@ fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     let found =
         told(around.span(around.current()?), "`=>` is missing before what a list is made of");
     Some(found.help("it is written `[for i in 0..4 => i * 2]`"))
+}
+
+/// `rotate((0, 1, 0), 30 deg) { … }`
+fn block_of_call(around: &Around<'_>) -> Option<Diagnostic> {
+    let brace = around.current().filter(|brace| brace.text == "{")?;
+    let open = around.opening(around.at.checked_sub(1)?)?;
+    let start = open.checked_sub(1).filter(|i| around.is_word(*i) && around.begins(*i))?;
+    let word = around.word(start);
+    if RESERVED.contains(&word) || brace.first_on_line || around.inner() == Place::Fields {
+        return None;
+    }
+    let found = told(around.span(brace), "no block stands behind a call");
+    let moves = ["move", "rotate", "scale", "translate"].iter().any(|name| word.starts_with(name));
+    Some(found.help(if moves {
+        "what is moved is given where it is: `transform = rotate((0, 1, 0), 20 deg)`"
+    } else {
+        "it stands behind an object, a `for` or an `if`, or a head of `fn`"
+    }))
 }
 
 /// `a forgotten comment`: what says nothing to the language.

@@ -88,7 +88,9 @@ impl Builder<'_> {
             self.sink.push(diagnostic.help("a size is a vector").guess(all, size));
             return None;
         }
-        if let Some((unit, grade)) = suggest_unit(&bad) {
+        if let Some(powered) = with_power(&bad).filter(|_| bad == text) {
+            diagnostic = diagnostic.help("powers are written with `^`").fix(span, powered);
+        } else if let Some((unit, grade)) = suggest_unit(&bad) {
             diagnostic = diagnostic.help(format!("did you mean `{unit}`?"));
             if bad == text {
                 diagnostic = diagnostic.mend(span, unit, grade);
@@ -160,4 +162,12 @@ pub(crate) fn suggest_unit(text: &str) -> Option<(&'static str, Grade)> {
     let slip = || nearest(text, UNITS.iter().map(|(name, _)| *name)).filter(|_| text.len() > 2);
     let near = case.or_else(slip);
     full.map(|unit| (unit, Grade::Sure)).or(near.map(|unit| (unit, Grade::Guess)))
+}
+
+/// `mm2` as it is written here, if that is a power of a unit.
+fn with_power(unit: &str) -> Option<String> {
+    let name = unit.trim_end_matches(|c: char| c.is_ascii_digit());
+    let power = &unit[name.len()..];
+    let is_one = power.len() == 1 && Unit::named(name).is_some();
+    is_one.then(|| format!("{name}^{power}"))
 }

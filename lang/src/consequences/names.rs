@@ -148,7 +148,11 @@ fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
     let may_be = |i: &usize| {
         let token = &all[*i];
         let is_behind = (1..=2).any(|back| i.checked_sub(back).is_some_and(defines));
-        token.kind == TokenKind::Word && (*i == 0 || token.first_on_line || is_behind)
+        let is = |i: usize, sign| all.get(i).is_some_and(|token| token.text == sign);
+        // `let a = b { let` and `} c = d`
+        let is_given = *i > 0 && is(i - 1, "}") && is(i + 1, "=");
+        let begins = *i == 0 || token.first_on_line || is_given;
+        token.kind == TokenKind::Word && (begins || is_behind)
     };
     let words: Vec<usize> = (first..all.len()).filter(may_be).collect();
     words.into_iter().map(move |i| {

@@ -247,39 +247,6 @@ impl<'a> Around<'a> {
         Some(found.guess(all, format!("({})", &self.text[current.start..end])))
     }
 
-    fn missing_comma(&self) -> Option<Diagnostic> {
-        let open = self.open.last().map(|i| self.tokens[*i].text)?;
-        let (current, before) = (self.current()?, self.before(1)?);
-        if open == "{" || !before.ends_operand() || !current.begins_operand() {
-            return None;
-        }
-        let gap = Span::new(self.source, before.end(), before.end());
-        let is_value = before.kind == TokenKind::Number || matches!(before.text, ")" | "]");
-        if is_value && current.first_on_line && Unit::named(current.text).is_some() {
-            let found = self.error("E0023", current, "a unit stands on the line of its number");
-            return Some(found.guess(gap.to(self.span(current)), format!(" {}", current.text)));
-        }
-        // `scale 2` may be a call, and `x cos(a)` a product.
-        let calls = self.word(self.at + 1) == "(";
-        let may_call = before.kind == TokenKind::Word && (calls || current.kind != TokenKind::Word);
-        let touches = before.end() == current.start;
-        let grade = if may_call || touches { Grade::Guess } else { Grade::Sure };
-        let message = format!("a comma is missing before `{}`", short(current.text));
-        // `f(0.5 0.5)`
-        let is_call = self.open.last().is_some_and(|open| {
-            self.word(*open) == "(" && open.checked_sub(1).is_some_and(|i| self.is_word(i))
-        });
-        let may_be_twice = before.kind == TokenKind::Word || is_call;
-        if may_be_twice && before.text == current.text {
-            let found = self.error("E0014", current, format!("{message}, or it stands here twice"));
-            return Some(found.guess(gap.to(self.span(current)), ""));
-        }
-        // `b c: int`: a type may be missing too.
-        let is_typed = before.kind == TokenKind::Word && self.word(self.at + 1) == ":";
-        let found = self.error("E0014", current, message);
-        Some(if is_typed { found } else { found.mend(gap, ",", grade) })
-    }
-
     /// `max(1, 2) m`
     fn unit_behind_call(&self) -> Option<Diagnostic> {
         [self.at, self.at.wrapping_sub(1)].into_iter().find_map(|i| self.unit_at(i))
@@ -326,63 +293,6 @@ impl<'a> Around<'a> {
         let found = self.error("E0203", again, "a number has one unit");
         let gap = Span::new(self.source, unit.end(), again.end());
         (is_value && ends).then(|| found.guess(gap, ""))
-    }
-
-    /// `roughness = 0 metallic = 1`: the word was read as the unit of what stands before it.
-    fn missing_field_comma(&self) -> Option<Diagnostic> {
-        let (current, word, value) = (self.current()?, self.before(1)?, self.before(2)?);
-        let is_field = current.text == "=" && word.kind == TokenKind::Word && !word.first_on_line;
-        if !is_field || self.open.is_empty() || value.text == "}" || !value.ends_operand() {
-            return None;
-        }
-        if !matches!(value.kind, TokenKind::Number | TokenKind::Table | TokenKind::Mark) {
-            return None;
-        }
-        let gap = Span::new(self.source, value.end(), value.end());
-        let grade = if Unit::named(word.text).is_some() { Grade::Guess } else { Grade::Sure };
-        let message = format!("a comma is missing before `{}`", short(word.text));
-        Some(self.error("E0014", word, message).mend(gap, ",", grade))
-    }
-
-    /// `radius = 1 m material white`: another field without what stands before it and in it.
-    fn missing_comma_and_equals(&self) -> Option<Diagnostic> {
-        let first = self.at.saturating_sub(2).max(1);
-        let i = (first..=self.at).find(|i| self.is_bare_field(*i));
-        let i = i.filter(|_| self.inner() == Place::Fields)?;
-        let (value, word, given) = (&self.tokens[i - 1], &self.tokens[i], &self.tokens[i + 1]);
-        let message =
-            format!("a comma is missing before `{0}`, and `=` behind it", short(word.text));
-        let gap = Span::new(self.source, value.end(), given.start);
-        // Two words after one another may be meant otherwise.
-        let is_sure = is_category(word.text) || given.kind != TokenKind::Word;
-        let grade = if is_sure { Grade::Sure } else { Grade::Guess };
-        Some(self.error("E0014", word, message).mend(gap, format!(", {} = ", word.text), grade))
-    }
-
-    /// Whether token `i` is a word between two values, on their line.
-    fn is_bare_field(&self, i: usize) -> bool {
-        let (value, Some(word), Some(given)) =
-            (&self.tokens[i - 1], self.tokens.get(i), self.tokens.get(i + 1))
-        else {
-            return false;
-        };
-        let before = i.checked_sub(2).map_or("", |i| self.word(i));
-        let is_number = |i: Option<usize>| {
-            i.and_then(|i| self.tokens.get(i)).is_some_and(|t| t.kind == TokenKind::Number)
-        };
-        // A word alone may be the name of what comes.
-        let is_value = value.kind != TokenKind::Word
-            || matches!(before, "=" | ")")
-            || is_number(i.checked_sub(2));
-        let has_unit = is_number(Some(i - 1)) || matches!(value.text, ")" | "]");
-        let is_unit = has_unit && Unit::named(word.text).is_some();
-        let is_name = word.kind == TokenKind::Word
-            && !RESERVED.contains(&word.text)
-            && !is_unit
-            && !is_category(value.text);
-        let is_apart = value.end() < word.start && !word.first_on_line && !given.first_on_line;
-        let ends = value.ends_operand() && given.begins_operand() && given.text != "{";
-        is_name && is_value && is_apart && ends
     }
 
     /// `radius 5 cm`
@@ -481,7 +391,7 @@ impl<'a> Around<'a> {
 }
 
 /// The first characters of a token.
-fn short(text: &str) -> String {
+pub(super) fn short(text: &str) -> String {
     let mut out: String = text.chars().take(32).collect();
     if out.len() < text.len() {
         out.push('…');

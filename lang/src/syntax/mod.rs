@@ -7,6 +7,7 @@ mod build;
 #[cfg(any(test, feature = "fuzz"))]
 pub(crate) mod check;
 mod closing;
+mod commas;
 mod cut;
 mod defined;
 mod digits;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
+use memchr::memmem;
 
 use super::closing::indent;
 use super::lex::{TokenKind, tokens};
@@ -14,6 +15,9 @@ const SHOWN: usize = 8;
 
 /// Bytes in brackets that are looked at for what they were to be: of many that nest, each is.
 const LOOKED_AT: usize = 1 << 10;
+
+/// Bytes of a text in which a function is looked for.
+const SEARCHED: usize = 1 << 16;
 
 /// Bytes of a line behind a bracket that are looked at for another that closes the same.
 const REST: usize = 256;
@@ -127,7 +131,16 @@ fn is_call(text: &str, inside: Range<usize>) -> bool {
         }
         depth <= most && token.text == ","
     });
-    has_more || first == "[" || OF_A_NUMBER.contains(&name)
+    has_more || first == "[" || OF_A_NUMBER.contains(&name) || is_function(text, name)
+}
+
+/// Whether a text defines a function of this name.
+fn is_function(text: &str, name: &str) -> bool {
+    let text = &text.as_bytes()[..text.len().min(SEARCHED)];
+    memmem::find_iter(text, name.as_bytes()).any(|at| {
+        let behind = &text[at + name.len()..];
+        text[..at].ends_with(b"fn ") && behind.starts_with(b"(")
+    })
 }
 
 /// Where in brackets a comma or a line ends before the first field that follows something else: it is no argument's

@@ -67,7 +67,10 @@ impl Layout<'_> {
             }
         } else if self.pieces[first].newlines == 0 && first < close {
             let hang = self.out.column + usize::from(self.pieces[first].gap);
-            if items.iter().all(|item| self.fits(item.from, item.comma, hang, after + 1)) {
+            // The comma of a vector of one stands before the bracket.
+            let comma = items.last().is_some_and(|it| self.pieces[it.comma].kind == Kind::Comma);
+            let tail = after + 1 + usize::from(comma);
+            if items.iter().all(|item| self.fits(item.from, item.comma, hang, tail)) {
                 self.rows(&items, hang, after + 1, false);
                 if self.out.ends {
                     self.out.newline(hang);

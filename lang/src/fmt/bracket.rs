@@ -62,7 +62,8 @@ impl Layout<'_> {
         let items = self.list_items(first, close);
         if !self.pieces[open].broken {
             let single = matches!(&items[..], [item] if self.ends_in_bracket(item));
-            if self.is_hard(open + 1, close) || single {
+            let begins = items.first().is_none_or(|item| self.begins_here(item));
+            if begins && (self.is_hard(open + 1, close) || single) {
                 return self.inline(&items, close, after);
             }
         } else if self.pieces[first].newlines == 0 && first < close {
@@ -122,6 +123,12 @@ impl Layout<'_> {
             }
         }
         false
+    }
+
+    /// Whether an item has room here up to where its first line may end.
+    fn begins_here(&self, item: &Item) -> bool {
+        let opening = self.opening(item.from, item.comma, 0);
+        self.column(item.from) + opening <= super::WIDTH
     }
 
     /// Whether several items have room on a line.

@@ -64,12 +64,16 @@ impl<'a> Layout<'a> {
         if self.out.ends || from >= to {
             return from >= to;
         }
-        let column = if self.out.fresh {
+        self.fits(from, to, self.column(from), after)
+    }
+
+    /// The column at which a piece would begin on this line.
+    pub(super) fn column(&self, at: usize) -> usize {
+        if self.out.fresh {
             self.out.indent
         } else {
-            self.out.column + usize::from(self.pieces[from].gap)
-        };
-        self.fits(from, to, column, after)
+            self.out.column + usize::from(self.pieces[at].gap)
+        }
     }
 
     /// Puts pieces on one line.

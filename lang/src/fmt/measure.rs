@@ -96,7 +96,12 @@ fn breaks_line(pieces: &[Piece<'_>], i: usize, before: Option<usize>) -> bool {
     let Some(before) = before.map(|at| &pieces[at]) else { return false };
     let after = matches!(
         before.kind,
-        Kind::Binary(_) | Kind::Assign | Kind::Arrow | Kind::PlusMinus | Kind::Comma
+        Kind::Binary(_)
+            | Kind::Range(_)
+            | Kind::Assign
+            | Kind::Arrow
+            | Kind::PlusMinus
+            | Kind::Comma
     );
     after || ["else", "with", "where"].iter().any(|word| piece.is_keyword(word))
 }
@@ -115,10 +120,10 @@ fn width(piece: &Piece<'_>) -> u32 {
 fn gap(pieces: &[Piece<'_>], i: usize) -> u8 {
     let (before, piece) = (&pieces[i - 1], &pieces[i]);
     let tight = match (before.kind, piece.kind) {
-        (_, Kind::Comma | Kind::Separator | Kind::Colon) => true,
+        (_, Kind::Comma | Kind::Pair | Kind::Separator | Kind::Colon) => true,
         _ if before.is_comment() || piece.is_comment() => false,
         // `m^2..` would be a number that goes on.
-        (Kind::Unit, Kind::Range) => !before.text.ends_with(|c: char| c.is_ascii_digit()),
+        (Kind::Unit, Kind::Range(_)) => !before.text.ends_with(|c: char| c.is_ascii_digit()),
         (Kind::Open, Kind::Close) => true,
         (Kind::Open, _) => before.text != "{",
         (_, Kind::Close) => piece.text != "}",
@@ -126,9 +131,8 @@ fn gap(pieces: &[Piece<'_>], i: usize) -> u8 {
         (Kind::Prefix, Kind::Number) | (Kind::Word, Kind::Dot) => {
             piece.blanks == 0 && piece.newlines == 0
         }
-        (Kind::Dot | Kind::At | Kind::Range | Kind::Prefix, _) | (_, Kind::Dot | Kind::Range) => {
-            true
-        }
+        (Kind::Dot | Kind::At | Kind::Range(_) | Kind::Prefix, _)
+        | (_, Kind::Dot | Kind::Range(_)) => true,
         // A call or an index.
         (_, Kind::Open) => piece.text != "{" && before.ends_operand(),
         _ => false,

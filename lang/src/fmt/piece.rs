@@ -21,6 +21,8 @@ pub(super) enum Kind {
     Close,
     /// Between items.
     Comma,
+    /// The comma between the two names of a loop.
+    Pair,
     /// Between statements or fields; shown where they share a line.
     Separator,
     Assign,
@@ -29,8 +31,8 @@ pub(super) enum Kind {
     PlusMinus,
     /// Between operands; how strongly it binds.
     Binary(u8),
-    /// `..` and `..=`
-    Range,
+    /// `..` and `..=`; how strongly they bind.
+    Range(u8),
     /// A sign before an operand.
     Prefix,
     Dot,
@@ -263,6 +265,12 @@ impl<'a> Cutter<'a, '_> {
         false
     }
 
+    /// Whether the last piece is the first name of a loop.
+    fn follows_loop_name(&self) -> bool {
+        let mut before = self.out.iter().rev().filter(|it| !it.is_comment()).skip(1);
+        before.next().is_some_and(|it| it.is_keyword("for"))
+    }
+
     fn drop_last(&mut self) {
         if let Some(last) = self.last {
             self.out.remove(last);
@@ -288,6 +296,7 @@ impl<'a> Cutter<'a, '_> {
             TokenKind::Word if before.is_some_and(|it| it.starts && it.text == "expect") => {
                 Kind::Keyword
             }
+            TokenKind::Word if before.is_some_and(|it| it.kind == Kind::At) => Kind::Keyword,
             TokenKind::Word => {
                 let measured = |it: &Piece<'_>| {
                     matches!(it.kind, Kind::Number | Kind::Table)
@@ -328,6 +337,7 @@ impl<'a> Cutter<'a, '_> {
         match token.text {
             "(" | "[" | "{" => Kind::Open,
             ")" | "]" | "}" => Kind::Close,
+            "," if self.follows_loop_name() => Kind::Pair,
             "," | ";" => Kind::Comma,
             "=" => Kind::Assign,
             "=>" => Kind::Arrow,
@@ -335,7 +345,7 @@ impl<'a> Cutter<'a, '_> {
             ":" => Kind::Colon,
             "@" => Kind::At,
             "±" => Kind::PlusMinus,
-            ".." | "..=" => Kind::Range,
+            ".." | "..=" => Kind::Range(strength(token.text)),
             "+" if !binary => {
                 let end = token.end();
                 match rest.next_if(|it| it.start == end && it.text == "-") {
@@ -346,11 +356,12 @@ impl<'a> Cutter<'a, '_> {
                     None => Kind::Prefix,
                 }
             }
-            operator if binary => {
-                let strength = Op::of(operator).strength();
-                Kind::Binary(u8::try_from(strength).unwrap_or(u8::MAX))
-            }
+            operator if binary => Kind::Binary(strength(operator)),
             _ => Kind::Prefix,
         }
     }
+}
+
+fn strength(operator: &str) -> u8 {
+    u8::try_from(Op::of(operator).strength()).unwrap_or(u8::MAX)
 }

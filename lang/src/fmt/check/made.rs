@@ -143,7 +143,10 @@ fn expr() -> Words {
             2 => list("f (", arg, 0, ")"),
             1 => put("a [ % ] !. !x", vec![inner.clone()]),
             1 => put("[ for i in % => % ]", vec![inner.clone(), inner.clone()]),
-            1 => put("[ for i , x in a if % => % ]", vec![inner.clone(), inner.clone()]),
+            1 => put(
+                "[ for i , x in % if % => % ]",
+                vec![inner.clone(), inner.clone(), inner.clone()]
+            ),
             1 => put("if a { % } else { % }", vec![inner.clone(), inner.clone()]),
             1 => put("if a { % } else if b { % } else { % }", vec![inner.clone(), inner.clone(), inner.clone()]),
             1 => put("a with %", vec![record(inner.clone())]),
@@ -207,6 +210,7 @@ fn statement() -> Words {
         1 => put("units %", vec![record(expr())]),
         1 => put("expect mean = 1 ± 2 where %", vec![record(expr())]),
         1 => put("expect pixel ( % , 2 ) = a +- .5", vec![expr()]),
+        1 => put("expect mean = % ± %", vec![expr(), expr()]),
         2 => put("name = %", vec![value()]),
         2 => object(fields(value())),
         1 => put("f ( % )", vec![expr()]),
@@ -229,12 +233,13 @@ fn statement() -> Words {
             let block = put("{ % }", vec![statements(inner)]);
             documented(
                 prop_oneof![
-                    put("for i in 0..3 %", vec![block.clone()]),
+                    put("for i in % %", vec![expr(), block.clone()]),
+                    put("for i , x in a %", vec![block.clone()]),
                     put(
                         "if a < 1 % else if b % else %",
                         vec![block.clone(), block.clone(), block.clone()]
                     ),
-                    put("if a %", vec![block.clone()]),
+                    put("if % %", vec![expr(), block.clone()]),
                     put("fn g ( ) %", vec![block.clone()]),
                     put("place a %", vec![block.clone()]),
                     put("group _\"g\" %", vec![block]).prop_map(|mut words| {

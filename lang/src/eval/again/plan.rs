@@ -106,8 +106,13 @@ impl<'s> After<'s> {
         self.stmts.len() - self.gone.len() + self.fresh.len()
     }
 
-    /// Those from one on that use a name of these, by number.
-    fn users(&self, from: usize, is_named: &[bool]) -> Vec<usize> {
+    /// Those from one on that use a name of these, by number, and whether `hands` is true of each.
+    fn users(
+        &self,
+        from: usize,
+        is_named: &[bool],
+        hands: impl Fn(&Statement) -> bool + Sync,
+    ) -> Vec<(usize, bool)> {
         let end = self.gone.start + self.fresh.len();
         let pieces = [
             (0, &self.stmts[..self.gone.start]),
@@ -115,15 +120,16 @@ impl<'s> After<'s> {
             (end, &self.stmts[self.gone.end..]),
         ];
         let is_user = |stmt: &Statement| stmt.names.uses().any(|(name, _)| is_named[name as usize]);
-        let some = |part: &[Statement]| -> (usize, Vec<usize>) {
-            (part.len(), (0..part.len()).filter(|i| is_user(&part[*i])).collect())
+        let some = |part: &[Statement]| -> (usize, Vec<(usize, bool)>) {
+            let users = part.iter().enumerate().filter(|(_, stmt)| is_user(stmt));
+            (part.len(), users.map(|(i, stmt)| (i, hands(stmt))).collect())
         };
         let mut users = vec![];
         for (start, stmts) in pieces {
             let passed = from.saturating_sub(start).min(stmts.len());
             let mut at = start + passed;
             for (n, found) in shares::map(&stmts[passed..], |stmt| stmt.range.len(), some) {
-                users.extend(found.into_iter().map(|i| at + i));
+                users.extend(found.into_iter().map(|(i, hands)| (at + i, hands)));
                 at += n;
             }
         }
@@ -166,16 +172,11 @@ impl<'s> Concerned<'s> {
         stmt.names.uses().any(|(name, _)| self.is_changed[name as usize])
     }
 
-    /// Sees a statement that is new or uses a name that has another value; whether by it more names have.
-    /// `None` if there are too many.
-    fn see(
-        &mut self,
-        state: &State,
-        (i, stmt): (usize, &'s Statement),
-        is_new: bool,
-    ) -> Option<bool> {
+    /// Sees a statement that is new or uses a name that has another value, and may only hand that on; whether
+    /// by it more names have one. `None` if there are too many.
+    fn see(&mut self, (i, stmt): (usize, &'s Statement), hands: bool) -> Option<bool> {
         let is_changed = &mut self.is_changed;
-        if !is_new && state.may_hand_on(stmt) {
+        if hands {
             self.handing.push((i, stmt));
             return Some(false);
         }
@@ -319,16 +320,16 @@ impl State {
             return Some((fresh.collect(), Handed::default()));
         }
         let first = those.first().map_or(fresh.start, |first| fresh.start.min(*first));
-        let mut candidates = after.users(first, &is_changed);
-        candidates.extend(fresh.clone().chain(those.iter().copied()));
+        let is_new = |i: usize| fresh.contains(&i) || those.contains(&i);
+        let mut candidates = after.users(first, &is_changed, |stmt| self.may_hand_on(stmt));
+        candidates.extend(fresh.clone().chain(those.iter().copied()).map(|i| (i, false)));
         candidates.sort_unstable();
-        candidates.dedup();
+        candidates.dedup_by_key(|(i, _)| *i);
         let most = (self.stmts.len() / SHARE).max(1) + fresh.len();
         let mut found = Concerned { is_changed, new: vec![], handing: vec![], most };
-        let is_new = |i: usize| fresh.contains(&i) || those.contains(&i);
         let mut grown = None;
-        for i in candidates {
-            if found.see(self, (i, after.at(i)), is_new(i))? {
+        for (i, hands) in candidates {
+            if found.see((i, after.at(i)), hands && !is_new(i))? {
                 grown = Some(i);
                 break;
             }
@@ -337,7 +338,7 @@ impl State {
         for i in grown.map_or(0..0, |i| i + 1..after.len()) {
             let stmt = after.at(i);
             if is_new(i) || found.is_user(stmt) {
-                found.see(self, (i, stmt), is_new(i))?;
+                found.see((i, stmt), !is_new(i) && self.may_hand_on(stmt))?;
             }
         }
         let Concerned { is_changed, mut new, handing, most } = found;

@@ -86,6 +86,8 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
             n == 0 && is_unsure
         }
         ("E0401", "E0023") => found.sure().is_none(),
+        // `f[3)`
+        ("E0214", "E0009") => is_unsure && touches(found, cause),
         // Vectors in which several numbers have a unit already.
         ("E0203", "E0203") => found.message == cause.message && found.sure().is_none(),
         (code, "E0012" | "E0013" | "E0014" | "E0015" | "E0016" | "E0017" | "E0023") => {
@@ -93,6 +95,12 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         }
         _ => false,
     }
+}
+
+/// Whether a bracket that another one closes opens right behind something that is told.
+fn touches(found: &Diagnostic, cause: &Diagnostic) -> bool {
+    let end = found.span().map(|span| (span.source, span.end));
+    cause.labels.iter().any(|label| Some((label.span.source, label.span.start)) == end)
 }
 
 /// Whether a mistake tells by itself what a bracket behind it closes: of a name, only where its bracket is.

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
-use memchr::memmem;
 
 use super::closing::indent;
 use super::lex::{TokenKind, tokens};
@@ -15,9 +14,6 @@ const SHOWN: usize = 8;
 
 /// Bytes in brackets that are looked at for what they were to be: of many that nest, each is.
 const LOOKED_AT: usize = 1 << 10;
-
-/// Bytes of a text in which a function is looked for.
-const SEARCHED: usize = 1 << 16;
 
 /// Bytes of a line behind a bracket that are looked at for another that closes the same.
 const REST: usize = 256;
@@ -71,9 +67,12 @@ fn doubled(text: &str, open: usize) -> Option<usize> {
 
 /// Where the head of a block ends on its line, in which a bracket opens that never closes.
 fn before_block(text: &str, open: usize) -> Option<usize> {
-    let start = text[..open].rfind('\n').map_or(0, |end| end + 1);
-    let end = text[open..].find('\n').map_or(text.len(), |length| open + length);
-    if text[open..].starts_with('{') || end - start > REST {
+    let near = open.saturating_sub(REST);
+    let line = text.as_bytes()[near..open].iter().rposition(|byte| *byte == b'\n');
+    let start = line.map(|end| near + end + 1).or((near == 0).then_some(0))?;
+    let rest = text.as_bytes()[open..].iter().take(REST);
+    let end = open + rest.take_while(|byte| **byte != b'\n').count();
+    if text[open..].starts_with('{') || !text.is_char_boundary(end) {
         return None;
     }
     let first = tokens(text, start..open).find(|token| !matches!(token.text, "}" | "else"))?;
@@ -131,16 +130,7 @@ fn is_call(text: &str, inside: Range<usize>) -> bool {
         }
         depth <= most && token.text == ","
     });
-    has_more || first == "[" || OF_A_NUMBER.contains(&name) || is_function(text, name)
-}
-
-/// Whether a text defines a function of this name.
-fn is_function(text: &str, name: &str) -> bool {
-    let text = &text.as_bytes()[..text.len().min(SEARCHED)];
-    memmem::find_iter(text, name.as_bytes()).any(|at| {
-        let behind = &text[at + name.len()..];
-        text[..at].ends_with(b"fn ") && behind.starts_with(b"(")
-    })
+    has_more || first == "[" || OF_A_NUMBER.contains(&name)
 }
 
 /// Where in brackets a comma or a line ends before the first field that follows something else: it is no argument's

@@ -24,6 +24,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         found.span().into_iter().chain(mended).collect::<Vec<Span>>()
     };
     let doubts: Vec<Span> = causes.clone().filter_map(|found| in_doubt(found, sources)).collect();
+    let bodies: Vec<Span> = causes.clone().filter_map(|found| body(found, sources)).collect();
     let is_unended = causes.clone().any(|found| found.code == "E0005");
     let is_nameless = causes.clone().any(|found| lacks_name(found, sources));
     let mut causes: Vec<Span> = causes.flat_map(of).collect();
@@ -60,6 +61,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         !span.is_some_and(|span| {
             is_of_value && holds_one(span, &causes)
                 || is_doubtful && doubts.iter().any(|doubt| lies_in(span, doubt))
+                || found.code == "E0113" && bodies.iter().any(|body| lies_in(span, body))
         })
     });
     names::sift(diagnostics, sources);
@@ -80,6 +82,22 @@ fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
         }
         _ => None,
     }
+}
+
+/// The lines before a brace that closes nothing that are indented further than it: an object whose own brace is
+/// missing, so that its fields stand in none.
+fn body(found: &Diagnostic, sources: &Sources) -> Option<Span> {
+    let at = found.span().filter(|_| found.code == "E0010")?;
+    let end = at.range().start;
+    let near = end.saturating_sub(LOOKED_AT);
+    let before = sources.text(at.source).as_bytes().get(near..end)?;
+    let mut lines = before.rsplit(|byte| *byte == b'\n');
+    let indent = |line: &[u8]| line.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+    let own = lines.next().filter(|line| indent(line) == line.len())?;
+    let inner = lines.take_while(|line| indent(line) > own.len());
+    let n: usize = inner.map(|line| line.len() + 1).sum();
+    let is_brace = sources.text(at.source)[end..].starts_with('}');
+    (n > 0 && is_brace).then(|| Span::new(at.source, end - own.len() - n, end))
 }
 
 /// Whether a definition lacks its name: what it was to be may be any that nothing stands for.
@@ -172,6 +190,20 @@ mod tests {
         assert_eq!(codes("half(1 2)"), ["E0014", "E0409"]);
         assert_eq!(codes("half([1 2], 3)"), ["E0014", "E0402", "E0409"]);
         assert_eq!(codes("half(1, 2)"), ["E0402", "E0409"]);
+    }
+
+    #[test]
+    fn fields_of_an_object_without_its_brace_are_not_told_of_one_by_one() {
+        let fields = "  radius = 1 m\n  material = nope";
+        assert_eq!(codes(&format!("{fields}\n}}")), ["E0010", "E0101", "E0409"]);
+        assert_eq!(codes("  radius = 1 m\nlet a = 2\n}"), ["E0010", "E0113", "E0409"]);
+    }
+
+    #[test]
+    fn a_callee_is_not_said_to_have_no_elements_where_a_bracket_is_of_another_kind() {
+        let codes = |value: &str| codes(&format!("fn half(x: float) = x / 2\nlet c = {value}"));
+        assert_eq!(codes("half[2)"), ["E0009", "E0409"]);
+        assert_eq!(codes("half[2]"), ["E0214", "E0409"]);
     }
 
     #[test]

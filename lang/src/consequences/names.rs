@@ -150,7 +150,8 @@ fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
         let is_behind = (1..=2).any(|back| i.checked_sub(back).is_some_and(defines));
         let is = |i: usize, sign| all.get(i).is_some_and(|token| token.text == sign);
         // `let a = b { let` and `} c = d`
-        let is_given = *i > 0 && is(i - 1, "}") && is(i + 1, "=");
+        let is_closed = *i > 0 && matches!(all[i - 1].text, "}" | ")" | "]");
+        let is_given = is_closed && is(i + 1, "=");
         let begins = *i == 0 || token.first_on_line || is_given;
         token.kind == TokenKind::Word && (begins || is_behind)
     };

@@ -85,7 +85,7 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         ("E0101", "E0012" | "E0013" | "E0014" | "E0015" | "E0016" | "E0017" | "E0023") => {
             n == 0 && is_unsure
         }
-        ("E0401", "E0023") => found.sure().is_none(),
+        ("E0401", "E0019" | "E0023") => found.sure().is_none(),
         // `f[3)`
         ("E0214", "E0009") => is_unsure && touches(found, cause),
         // Vectors in which several numbers have a unit already.

@@ -12,6 +12,7 @@ const SAID: usize = 3;
 /// Why the place cannot be read, if something is written there as it is elsewhere.
 pub(super) fn notation(around: &Around<'_>) -> Option<Diagnostic> {
     name(around)
+        .or_else(|| function(around))
         .or_else(|| units(around))
         .or_else(|| operator(around))
         .or_else(|| comprehension(around))
@@ -39,6 +40,21 @@ fn name(around: &Around<'_>) -> Option<Diagnostic> {
     let all = around.span(before).to(around.span(&around.tokens[last]));
     let name = around.text[all.range()].replace('-', "_");
     Some(told(all, "a name has no `-`, which subtracts").guess(all, name))
+}
+
+/// `double(x: length) = x * 2`
+fn function(around: &Around<'_>) -> Option<Diagnostic> {
+    let start = around.tokens.iter().position(|t| t.kind != TokenKind::Doc)?;
+    let (name, open) = (around.tokens.get(start)?, start + 1);
+    let close = around.closing(open).filter(|_| around.word(open) == "(")?;
+    let is_typed = around.is_word(open + 1) && around.word(open + 2) == ":";
+    let is_name = name.kind == TokenKind::Word && !RESERVED.contains(&name.text);
+    if !is_name || !is_typed || around.word(close + 1) != "=" || around.at > close + 1 {
+        return None;
+    }
+    let message = format!("`fn` is missing before `{}`", name.text);
+    let gap = Span::new(around.source, name.start, name.start);
+    Some(told(around.span(name), message).fix(gap, "fn "))
 }
 
 /// `units length = mm`

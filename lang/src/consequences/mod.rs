@@ -190,6 +190,10 @@ mod tests {
         assert_eq!(codes("half(1 2)"), ["E0014", "E0409"]);
         assert_eq!(codes("half([1 2], 3)"), ["E0014", "E0402", "E0409"]);
         assert_eq!(codes("half(1, 2)"), ["E0402", "E0409"]);
+        let codes =
+            |call: &str| self::codes(&format!("fn two(a: vec3, b: vec3) = a\nlet c = {call}"));
+        assert_eq!(codes("two((1, 0, 0) (0, 0, 1))"), ["E0214", "E0409"]);
+        assert_eq!(codes("two((1, 0, 0))"), ["E0403", "E0409"]);
     }
 
     #[test]
@@ -210,6 +214,9 @@ mod tests {
     fn a_name_is_not_told_of_that_an_unreadable_line_may_define() {
         let uses = "let a = tall * 2\nlet b = tall * 3";
         assert_eq!(codes(uses), ["E0101", "E0409"]);
+        let called = "let a = tall(1)\nlet b = tall(2)";
+        assert_eq!(codes(&format!("fn talli: int) = i\n{called}")), ["E0010", "E0409"]);
+        assert_eq!(codes(&format!("fn talle(i: int) = i\n{called}")), ["E0101", "E0409"]);
         for head in ["let = tall 3", "tall let = 3", "fn tall x = 3"] {
             assert_eq!(codes(&format!("{head}\n{uses}")), ["E0023", "E0409"], "{head}");
         }

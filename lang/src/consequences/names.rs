@@ -44,8 +44,7 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         if found.code == WORD {
             return told_once(found, name, &places[&name], sources);
         }
-        let long = if found.sure().is_some() { usize::MAX } else { LONG };
-        if is_defined_by_one(name, found.span(), &unread, long) {
+        if is_defined_by_one(name, found, &unread) {
             return false;
         }
         told_once(found, name, &places[&name], sources)
@@ -53,19 +52,19 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
 }
 
 /// Whether a word that stands elsewhere may be what defines a name: the same, or one that begins with the name
-/// if that is `long` enough.
+/// if that is long enough, and surely meant if any is.
 fn is_defined_by_one(
     name: (SourceId, &str),
-    at: Option<Span>,
+    found: &Diagnostic,
     words: &BTreeSet<Word<'_>>,
-    long: usize,
 ) -> bool {
-    let (source, name) = name;
+    let ((source, name), at) = (name, found.span());
+    let is_meant = |word: &str| found.sure().is_none_or(|fix| fix.replacement == word);
     let from = words.range((source, name, 0)..);
     let mut alike = from.take_while(|word| word.0 == source && word.1.starts_with(name));
     alike.any(|word| {
         let is_elsewhere = at.is_none_or(|at| at.start != word.2);
-        is_elsewhere && (word.1 == name || name.len() >= long)
+        is_elsewhere && (word.1 == name || name.len() >= LONG && is_meant(word.1))
     })
 }
 

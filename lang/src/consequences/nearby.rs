@@ -77,6 +77,8 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         ("E0402", "E0101") | ("E0023", "E0001") => n == 0 && found.sure().is_none(),
         // `material diffuse { { reflectance = 1 }`
         ("E0403", "E0008") => n <= 1,
+        // `wall((1, 0, 0) (0, 0, 1), c)`
+        ("E0403", "E0214") => cause.fixes.iter().any(|fix| fix.replacement == ","),
         // `chance(3 b)`, and `shape: sphere { radius = 1 m }` in a file
         ("E0403", "E0204") | ("E0017", "E0113") => true,
         // `[for for i in 0..3 => i]`, `(2 *q a, 3)`, `[0, 1. 2]`, `f(1. i)`, `rgb.srgb rgb.srgb(1, 1, 1)`

@@ -73,7 +73,18 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
 fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
     let at = found.span()?;
     match found.code {
-        "E0009" => found.labels.get(1).map(|open| open.span.to(at)),
+        "E0009" => {
+            let text = sources.text(at.source).as_bytes();
+            // What closes where a line ends is followed by what is known.
+            let ends_line = |gap: &Span| {
+                let rest = text.get(gap.range().end..at.range().start).unwrap_or_default();
+                let line = rest.split(|byte| *byte == b'\n').next().unwrap_or_default();
+                let is_blank = line.trim_ascii().is_empty() || line.trim_ascii().starts_with(b"//");
+                gap.start == gap.end && is_blank && line.len() < rest.len()
+            };
+            let end = found.fixes.iter().map(|fix| fix.span).find(ends_line).unwrap_or(at);
+            found.labels.get(1).map(|open| open.span.to(end))
+        }
         "E0010" => {
             let before = sources.text(at.source).as_bytes().get(..at.range().start)?;
             let first = before.len().saturating_sub(LOOKED_AT);

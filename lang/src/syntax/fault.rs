@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
 
+use super::around::is_category;
 use super::closing::indent;
 use super::lex::{TokenKind, tokens};
 use super::make::OF_A_NUMBER;
@@ -144,6 +145,9 @@ fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
         let of = inner.get(i..i + 2);
         of.is_some_and(|of| of[0].kind == TokenKind::Word && of[1].text == "=")
     };
+    let is_object = |i: usize| {
+        is_category(inner[i].text) && inner.get(i + 1).is_some_and(|t| t.kind == TokenKind::Word)
+    };
     let mut depth = 0_usize;
     (1..inner.len()).find_map(|i| {
         match inner[i].text {
@@ -153,7 +157,7 @@ fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
             // Arguments have commas between them.
             _ if depth == 0
                 && inner[i].first_on_line
-                && is_named(i)
+                && (is_named(i) || is_object(i))
                 && inner[i - 1].text != "," =>
             {
                 return Some(inner[i - 1].end());

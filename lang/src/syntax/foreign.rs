@@ -155,6 +155,8 @@ fn named_object(around: &Around<'_>) -> Option<Diagnostic> {
 fn set(around: &Around<'_>) -> Option<Diagnostic> {
     let start = around.at.checked_sub(3).filter(|start| around.begins(*start))?;
     let words = around.is_word(start) && around.is_word(start + 2);
+    // A category is no label.
+    let words = words && !is_category(around.word(start));
     let is_member = around.word(start + 1) == "." && around.word(around.at) == "=";
     if !words || !is_member || around.inner() == Place::Fields {
         return None;

@@ -94,6 +94,20 @@ fn directive(around: &Around<'_>, mark: &Token<'_>) -> Option<Diagnostic> {
     Some(found.help("did you mean `let`?").guess(span, "let"))
 }
 
+/// `a | b`, and `|x| x * 2`
+fn half_joined(around: &Around<'_>, i: usize) -> Option<Diagnostic> {
+    let sign = around.tokens.get(i).filter(|sign| matches!(sign.text, "&" | "|"))?;
+    let (span, op) = (around.span(sign), sign.text);
+    let joins = i.checked_sub(1).is_some_and(|i| around.tokens[i].ends_operand());
+    if op == "|" && !joins {
+        let found = told(span, "a function is defined with `fn`");
+        return Some(found.help("it is written `fn f(x: float) = x + 1`"));
+    }
+    Some(
+        told(span, format!("conditions are joined with `{op}{op}`")).fix(span, format!("{op}{op}")),
+    )
+}
+
 /// `x := 3`, `2 ** 3`, `x += 1`, `a ? b : c`, `fn f() -> float`, `(x) => x`
 fn operator(around: &Around<'_>) -> Option<Diagnostic> {
     let current = around.current()?;
@@ -108,12 +122,8 @@ fn operator(around: &Around<'_>) -> Option<Diagnostic> {
         if let Some(span) = joined(around, first, &["==", "="]) {
             return Some(told(span, "values are compared with `==`").fix(span, "=="));
         }
-        for op in ["&", "|"] {
-            let mark = around.tokens.get(first).filter(|t| t.text == op);
-            if let Some(span) = mark.map(|mark| around.span(mark)) {
-                let message = format!("conditions are joined with `{op}{op}`");
-                return Some(told(span, message).fix(span, format!("{op}{op}")));
-            }
+        if let Some(found) = half_joined(around, first) {
+            return Some(found);
         }
         if let Some(span) = joined(around, first, &["*", "*"]) {
             return Some(told(span, "a power is written with `^`").fix(span, "^"));

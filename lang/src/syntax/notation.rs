@@ -13,6 +13,9 @@ const SAID: usize = 3;
 pub(super) fn notation(around: &Around<'_>) -> Option<Diagnostic> {
     name(around)
         .or_else(|| function(around))
+        .or_else(|| condition(around))
+        .or_else(|| path(around))
+        .or_else(|| setting(around))
         .or_else(|| units(around))
         .or_else(|| operator(around))
         .or_else(|| comprehension(around))
@@ -49,12 +52,52 @@ fn function(around: &Around<'_>) -> Option<Diagnostic> {
     let close = around.closing(open).filter(|_| around.word(open) == "(")?;
     let is_typed = around.is_word(open + 1) && around.word(open + 2) == ":";
     let is_name = name.kind == TokenKind::Word && !RESERVED.contains(&name.text);
-    if !is_name || !is_typed || around.word(close + 1) != "=" || around.at > close + 1 {
+    let goes_on = matches!(around.word(close + 1), "=" | "{");
+    if !is_name || !is_typed || !goes_on || around.at > close + 1 {
         return None;
     }
     let message = format!("`fn` is missing before `{}`", name.text);
     let gap = Span::new(around.source, name.start, name.start);
     Some(told(around.span(name), message).fix(gap, "fn "))
+}
+
+/// `else x == 4 { … }`
+fn condition(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(3);
+    let word = (first..around.at).rev().find(|i| around.word(*i) == "else")?;
+    let (word, next) = (&around.tokens[word], around.tokens.get(word + 1)?);
+    let compares = (first..=around.at + 1)
+        .any(|i| matches!(around.word(i), "==" | "!=" | "<" | ">" | "<=" | ">="));
+    let is_one = compares && !next.first_on_line && !matches!(next.text, "{" | "if");
+    let gap = Span::new(around.source, word.end(), word.end());
+    let found = told(around.span(word), "behind `else` stands a block, or an `if`");
+    is_one.then(|| found.guess(gap, " if"))
+}
+
+/// `Material::Diffuse`
+fn path(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(1);
+    let at = (first..=around.at).find(|i| [*i, i + 1].iter().all(|i| around.word(*i) == ":"))?;
+    let (one, other) = (&around.tokens[at], &around.tokens[at + 1]);
+    let found = told(around.span(one).to(around.span(other)), "names are joined with `.`");
+    let touches = one.end() == other.start;
+    touches.then(|| found.help("kinds of objects have none: `material diffuse { … }`"))
+}
+
+/// `set camera fov = 30 deg` and `camera.fov = 30 deg`
+fn setting(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(3);
+    let start = (first..=around.at).rev().find(|i| around.begins(*i) && around.is_word(*i))?;
+    let is_set = around.word(start) == "set";
+    let at = start + usize::from(is_set);
+    let category = around.tokens.get(at).filter(|token| is_category(token.text))?;
+    let is_member = around.word(at + 1) == "." && around.is_word(at + 2);
+    if !(is_set || is_member) || around.inner() == Place::Fields {
+        return None;
+    }
+    let found = told(around.span(category), "what is set is named by its label");
+    let word = category.text;
+    Some(found.help(format!("of `{word} KIND \"a\" {{ … }}` something is set by `set a.NAME = …`")))
 }
 
 /// `units length = mm`
@@ -90,18 +133,25 @@ fn operator(around: &Around<'_>) -> Option<Diagnostic> {
     })
 }
 
-/// `[for x in 0..4 x * 2]`
+/// `[for x in 0..4 x * 2]`, `[for x in 0..4 => x if x > 2]`
 fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     let open = *around.open.last().filter(|open| around.word(**open) == "[")?;
-    let is_one = around.word(open + 1) == "for";
-    let has_arrow = (open..around.at).any(|i| around.word(i) == "=>");
+    let current = around.current().filter(|_| around.word(open + 1) == "for")?;
+    let close = around.closing(open).unwrap_or(around.tokens.len());
+    let arrow = (open..close).find(|i| around.word(*i) == "=>");
     let has_in = (open..around.at).any(|i| around.word(i) == "in");
-    if !is_one || has_arrow || !has_in {
-        return None;
-    }
-    let found =
-        told(around.span(around.current()?), "`=>` is missing before what a list is made of");
-    Some(found.help("it is written `[for i in 0..4 => i * 2]`"))
+    let message = match arrow {
+        None if has_in => "`=>` is missing before what a list is made of",
+        Some(arrow) if arrow < around.at && matches!(current.text, "if" | "unless" | "where") => {
+            "what a list is chosen by stands before `=>`"
+        }
+        Some(arrow) if arrow > around.at && has_in => {
+            "between `in` and `=>` stand one range or list, and one `if`"
+        }
+        _ => return None,
+    };
+    let found = told(around.span(current), message);
+    Some(found.help("it is written `[for i in 0..4 if i > 1 => i * 2]`"))
 }
 
 /// `rotate((0, 1, 0), 30 deg) { … }`

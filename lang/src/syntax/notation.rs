@@ -91,7 +91,7 @@ fn setting(around: &Around<'_>) -> Option<Diagnostic> {
     let is_set = around.word(start) == "set";
     let at = start + usize::from(is_set);
     let category = around.tokens.get(at).filter(|token| is_category(token.text))?;
-    let is_member = around.word(at + 1) == "." && around.is_word(at + 2);
+    let is_member = around.word(at + 1) == "." && around.word(at + 3) == "=";
     if !(is_set || is_member) || around.inner() == Place::Fields {
         return None;
     }
@@ -133,6 +133,11 @@ fn operator(around: &Around<'_>) -> Option<Diagnostic> {
     })
 }
 
+/// Words that elsewhere stand between what lists are made of and chosen by.
+fn joins(word: &str) -> bool {
+    matches!(word, "," | "for" | "unless" | "when" | "where")
+}
+
 /// `[for x in 0..4 x * 2]`, `[for x in 0..4 => x if x > 2]`
 fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     let open = *around.open.last().filter(|open| around.word(**open) == "[")?;
@@ -142,10 +147,12 @@ fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     let has_in = (open..around.at).any(|i| around.word(i) == "in");
     let message = match arrow {
         None if has_in => "`=>` is missing before what a list is made of",
-        Some(arrow) if arrow < around.at && matches!(current.text, "if" | "unless" | "where") => {
+        Some(arrow)
+            if arrow < around.at && matches!(current.text, "if" | "unless" | "when" | "where") =>
+        {
             "what a list is chosen by stands before `=>`"
         }
-        Some(arrow) if arrow > around.at && has_in => {
+        Some(arrow) if arrow > around.at && has_in && joins(current.text) => {
             "between `in` and `=>` stand one range or list, and one `if`"
         }
         _ => return None,

@@ -228,6 +228,15 @@ fn bare_vector(around: &Around<'_>) -> Option<Diagnostic> {
     }
     let texts: Vec<&str> = numbers.iter().map(|t| t.text).collect();
     let last = first + numbers.len() - 1;
+    // `1 000`
+    let is_digits = |text: &&str| text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_grouped = texts.iter().all(is_digits)
+        && texts[1..].iter().all(|text| text.len() == 3)
+        && (1..=3).contains(&texts[0].len());
+    if is_grouped {
+        let all = around.span(numbers[0]).to(around.span(&around.tokens[last]));
+        return Some(told(all, "no blank stands in a number").guess(all, texts.concat()));
+    }
     // `0.2 1/m`
     let unit = around.tokens.get(last + 2).filter(|unit| Unit::named(unit.text).is_some());
     if let ([_, "1"], "/", Some(unit)) = (&texts[..], around.word(last + 1), unit) {

@@ -38,8 +38,8 @@ impl Hashing {
         *hasher.finalize().as_bytes()
     }
 
-    /// The hash of what came, as it is added up: of little it is that of XXH3 with two seeds, sooner found by
-    /// far. Two differ by chance alone as surely.
+    /// The hash of what came as a term of a sum: of at most `PIECE` bytes that of XXH3, 128 bits with each of
+    /// two seeds, which takes a fraction of the time and may be forged; of more, BLAKE3 as `finish`.
     pub(super) fn finish_soon(&mut self) -> Hash {
         if self.hasher.is_some() {
             return self.finish();

@@ -17,9 +17,9 @@ impl Evaluator<'_> {
         let is_written_out =
             matches!(callee.node, ExprNode::Items { .. } | ExprNode::Numbers { .. });
         if is_written_out && !matches!(function, Value::Poison) {
-            let message = format!("{} cannot be called", function.describe());
+            // A comma may be missing between two vectors.
             let end = Span { start: callee.span.end, ..callee.span };
-            self.tell(Diagnostic::error("E0214", span, message).guess(end, ","));
+            self.tell(uncallable(&function, span).guess(end, ","));
             return Value::Poison;
         }
         let value = self.apply(&function, args, span, env);
@@ -65,8 +65,8 @@ impl Evaluator<'_> {
                 Value::Poison
             }
             other => {
-                let message = format!("{} cannot be called", other.describe());
-                self.poison("E0214", span, message)
+                self.tell(uncallable(other, span));
+                Value::Poison
             }
         }
     }
@@ -148,4 +148,9 @@ impl Evaluator<'_> {
 pub(super) fn takes_only(function: &str, n: usize) -> String {
     let s = if n == 1 { "" } else { "s" };
     format!("`{function}` takes {n} argument{s}, and no more")
+}
+
+/// What is said of a value that is no function.
+fn uncallable(value: &Value, span: Span) -> Diagnostic {
+    Diagnostic::error("E0214", span, format!("{} cannot be called", value.describe()))
 }

@@ -140,6 +140,12 @@ pub(super) fn is_category(word: &str) -> bool {
     Kind::of_word(word).is_some()
 }
 
+/// Whether objects of a category are of use only where they are given: by themselves they stand nowhere.
+pub(super) fn stands_nowhere(category: &str) -> bool {
+    use Kind::{Material, Medium, Phase, Texture};
+    matches!(Kind::of_word(category), Some(Material | Medium | Phase | Texture))
+}
+
 /// Something that is not expected there.
 pub(super) fn told(span: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::error("E0023", span, message)

@@ -6,7 +6,7 @@ use std::ops::Range;
 use luxel_core::diag::{Diagnostic, Grade, Span};
 use luxel_sdk::params::Unit;
 
-use super::around::{Around, Place, is_category, told};
+use super::around::{Around, Place, is_category, stands_nowhere, told};
 use super::lex::{Token, TokenKind};
 use super::loops::loops;
 use super::type_names;
@@ -144,7 +144,7 @@ fn named_object(around: &Around<'_>) -> Option<Diagnostic> {
     let found = told(all, "an object is given a name by `let`");
     let named = format!("let {name} = {category} {kind}");
     // One that stands somewhere may be meant to stand there.
-    Some(if matches!(category, "material" | "texture" | "phase" | "medium") {
+    Some(if stands_nowhere(category) {
         found.fix(all, named)
     } else {
         found.guess(all, named).guess(all, format!("{category} {kind} \"{name}\""))
@@ -154,11 +154,10 @@ fn named_object(around: &Around<'_>) -> Option<Diagnostic> {
 /// `ball.radius = 3 m`
 fn set(around: &Around<'_>) -> Option<Diagnostic> {
     let start = around.at.checked_sub(3).filter(|start| around.begins(*start))?;
-    let words = around.is_word(start) && around.is_word(start + 2);
-    // A category is no label.
-    let words = words && !is_category(around.word(start));
     let is_member = around.word(start + 1) == "." && around.word(around.at) == "=";
-    if !words || !is_member || around.inner() == Place::Fields {
+    let words = around.is_word(start) && around.is_word(start + 2);
+    let is_label = words && !is_category(around.word(start));
+    if !is_label || !is_member || around.inner() == Place::Fields {
         return None;
     }
     let (first, last) = (&around.tokens[start], &around.tokens[start + 2]);
@@ -228,12 +227,11 @@ fn bare_vector(around: &Around<'_>) -> Option<Diagnostic> {
     }
     let texts: Vec<&str> = numbers.iter().map(|t| t.text).collect();
     let last = first + numbers.len() - 1;
-    // `1 000`
-    let is_digits = |text: &&str| text.bytes().all(|byte| byte.is_ascii_digit());
-    let is_grouped = texts.iter().all(is_digits)
-        && texts[1..].iter().all(|text| text.len() == 3)
-        && (1..=3).contains(&texts[0].len());
-    if is_grouped {
+    // `1 000`, but `640 480` are two.
+    let is_thousands = (1..=3).contains(&texts[0].len())
+        && texts[0].bytes().all(|byte| matches!(byte, b'1'..=b'9'))
+        && texts[1..].iter().all(|text| *text == "000");
+    if is_thousands {
         let all = around.span(numbers[0]).to(around.span(&around.tokens[last]));
         return Some(told(all, "no blank stands in a number").guess(all, texts.concat()));
     }

@@ -1,12 +1,10 @@
 //! What people write who think of another language, or whose editor sets type for them.
 
 use luxel_core::diag::{Diagnostic, Span};
-use luxel_sdk::kind::Kind;
 
-use super::around::{Around, Place, is_category, told};
+use super::around::{Around, Place, is_category, stands_nowhere, told};
 use super::defined::stem;
 use super::foreign::{TYPES, foreign};
-use super::headless::is_value;
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
 use super::paths::{imported_from, unquoted};
@@ -94,18 +92,20 @@ fn directive(around: &Around<'_>, mark: &Token<'_>) -> Option<Diagnostic> {
     Some(found.help("did you mean `let`?").guess(span, "let"))
 }
 
-/// `a | b`, and `|x| x * 2`
+/// `a | b`, `|x| x * 2` and `&a`
 fn half_joined(around: &Around<'_>, i: usize) -> Option<Diagnostic> {
     let sign = around.tokens.get(i).filter(|sign| matches!(sign.text, "&" | "|"))?;
     let (span, op) = (around.span(sign), sign.text);
     let joins = i.checked_sub(1).is_some_and(|i| around.tokens[i].ends_operand());
-    if op == "|" && !joins {
+    Some(if joins {
+        let twice = op.repeat(2);
+        told(span, format!("conditions are joined with `{twice}`")).fix(span, twice)
+    } else if op == "|" {
         let found = told(span, "a function is defined with `fn`");
-        return Some(found.help("it is written `fn f(x: float) = x + 1`"));
-    }
-    Some(
-        told(span, format!("conditions are joined with `{op}{op}`")).fix(span, format!("{op}{op}")),
-    )
+        found.help("it is written `fn f(x: float) = x + 1`")
+    } else {
+        told(span, "no `&` stands before a value").guess(span, "")
+    })
 }
 
 /// `x := 3`, `2 ** 3`, `x += 1`, `a ? b : c`, `fn f() -> float`, `(x) => x`
@@ -400,7 +400,7 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
             let both = around.span(kind).to(around.span(label));
             let category = &around.tokens[start];
             let (kind, label) = (kind.text, label.text);
-            if Kind::of_word(category.text).is_some_and(is_value) {
+            if stands_nowhere(category.text) {
                 let (word, all) = (category.text, around.span(category).to(both));
                 let found = told(both, format!("a {word} gets its name by `let`"));
                 let help = format!("or `let {kind} = {word} {label}`, if `{label}` is the kind");

@@ -2,9 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_sdk::kind::Kind;
-
-use super::around::is_category;
+use super::around::{is_category, stands_nowhere};
 use super::closing::rewritten;
 use super::edits::Mended;
 use super::head::opens_block;
@@ -52,25 +50,23 @@ pub(super) fn headed(piece: &str, base: usize, at: usize) -> Option<Headed> {
 
 /// Whether a name stands where that of a loop does, and behind each comma: what uses it in the block is right.
 fn is_named(head: &[Token<'_>]) -> bool {
-    let end = head.iter().position(|token| token.text == "in").unwrap_or(head.len());
-    let names = head[..end].iter().filter(|token| !matches!(token.text, "for" | "foreach" | "("));
-    let names: Vec<_> = names.map(|t| t.kind == TokenKind::Word && t.text != "in").collect();
-    head[0].text != "for" && head[0].text != "foreach"
-        || names.first() == Some(&true) && (end == head.len() || names.last() == Some(&true))
-}
-
-/// Whether an object of this kind is of use only where it is given.
-pub(super) fn is_value(kind: Kind) -> bool {
-    matches!(kind, Kind::Material | Kind::Texture | Kind::Phase | Kind::Medium)
+    let [first, rest @ ..] = head else { return false };
+    if !matches!(first.text, "for" | "foreach") {
+        return true;
+    }
+    let end = rest.iter().position(|token| token.text == "in");
+    let mut names = rest[..end.unwrap_or(rest.len())].iter().filter(|token| token.text != "(");
+    let is_name = |token: &Token<'_>| token.kind == TokenKind::Word;
+    let begins = names.clone().next().is_some_and(is_name);
+    begins && (end.is_none() || names.next_back().is_some_and(is_name))
 }
 
 /// What makes a head one of an object that goes on to a brace: its label has quotes, or names it where it
 /// stands nowhere.
 fn object(head: &[Token<'_>], brace: usize) -> Option<Vec<(Range<usize>, String)>> {
     let [category, kind, rest @ ..] = head else { return None };
-    let of = Kind::of_word(category.text)?;
     let gives = head.iter().any(|token| matches!(token.text, "=" | ":"));
-    if kind.kind != TokenKind::Word || gives {
+    if !is_category(category.text) || kind.kind != TokenKind::Word || gives {
         return None;
     }
     let behind = kind.end()..brace;
@@ -78,7 +74,7 @@ fn object(head: &[Token<'_>], brace: usize) -> Option<Vec<(Range<usize>, String)
     let is_named = label.kind == TokenKind::Word;
     Some(if !is_named {
         vec![(behind, " ".to_owned())]
-    } else if is_value(of) {
+    } else if stands_nowhere(category.text) {
         let before = category.start..category.start;
         vec![(before, format!("let {} = ", label.text)), (behind, " ".to_owned())]
     } else {
@@ -121,6 +117,7 @@ mod tests {
             ("for i in shape sphere { a }", 9, None),
             ("for in 0..n { a }", 4, None),
             ("for i, in 0..n { a }", 7, None),
+            ("for (, i in 0..n) { a }", 5, None),
             ("for i j in 0..n { a }", 6, Some("if true { a }")),
         ] {
             assert_eq!(headed(piece, at).as_deref(), wanted, "{piece}");

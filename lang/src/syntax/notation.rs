@@ -181,9 +181,8 @@ fn block_of_call(around: &Around<'_>) -> Option<Diagnostic> {
 
 /// `a forgotten comment`: what says nothing to the language.
 pub(super) fn remark(around: &Around<'_>) -> Option<Diagnostic> {
-    let start = (0..=around.at.min(around.tokens.len().saturating_sub(1)))
-        .rev()
-        .find(|i| around.tokens[*i].first_on_line || *i == 0)?;
+    let last = around.at.min(around.tokens.len().checked_sub(1)?);
+    let start = (1..=last).rev().find(|i| around.tokens[*i].first_on_line).unwrap_or(0);
     let is_said = |t: &&Token<'_>| t.kind == TokenKind::Word && !RESERVED.contains(&t.text);
     let begun = around.tokens[start..].iter().enumerate();
     let on_line = begun.take_while(|(i, t)| *i == 0 || !t.first_on_line).map(|(_, t)| t);

@@ -389,7 +389,7 @@ impl Reader<'_> {
                 self.recover(at, chunk.clone(), place);
                 if let Some(after) = after {
                     let later = self.out.stmts.split_off(after);
-                    self.left(&chunk, at);
+                    self.salvage(&chunk, at);
                     self.out.stmts.extend(later);
                 }
             }

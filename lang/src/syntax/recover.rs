@@ -49,7 +49,7 @@ pub(super) fn whole_before(text: &str, at: usize, chunk: &Range<usize>) -> Optio
 
 impl Reader<'_> {
     /// Reads what is left of a statement of the file that cannot be read near byte `at`, which has been told.
-    pub(super) fn left(&mut self, chunk: &Range<usize>, at: usize) {
+    pub(super) fn salvage(&mut self, chunk: &Range<usize>, at: usize) {
         let is_worth = self.edits.is_empty() && chunk.len() <= REPAIRED && !self.sink.is_full();
         let piece = Some(&self.text[chunk.clone()]).filter(|_| is_worth);
         let headed = piece.and_then(|piece| headed(piece, chunk.start, at - chunk.start));

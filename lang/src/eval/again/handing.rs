@@ -10,7 +10,7 @@ use luxel_core::registry::Registry;
 use luxel_core::scene::{self, Argument, IsOver, Node, NodeId};
 use luxel_sdk::kind::Kind;
 
-use super::formula::{Formula, Formulas, MOST_ITEMS};
+use super::formula::{Formula, Formulas, MOST_ITEMS, narrow};
 use super::vector;
 use super::{Statement, source_of};
 use crate::Budgets;
@@ -350,8 +350,4 @@ impl Handing {
         self.wanted.push(wanted);
         i
     }
-}
-
-fn narrow(n: usize) -> u32 {
-    u32::try_from(n).unwrap_or(u32::MAX)
 }

@@ -10,8 +10,9 @@ type Judge = fn(&[u8]) -> bool;
 #[test]
 fn what_a_fuzzer_found_of_texts_stays_mended() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fuzz/regressions");
-    let targets: [(&str, Judge); 4] =
-        [("chunks", chunks), ("format", format_keeps), ("made", made_keeps), ("edits", edits)];
+    // What was found of made scenes is held by texts: a seed means what the generator makes of it.
+    let targets: [(&str, Judge); 3] =
+        [("chunks", chunks), ("format", format_keeps), ("edits", edits)];
     for (name, judge) in targets {
         let found: Vec<_> = std::fs::read_dir(folder.join(name)).unwrap().collect();
         assert!(!found.is_empty(), "{name} has found something");

@@ -100,6 +100,21 @@ fn long_sequences_take_time_in_proportion_to_them() {
 }
 
 #[test]
+fn what_a_bracket_holds_behind_a_comment_passes_no_margin() {
+    // Up to the longest that has room with its comment and a comma on a line of its own.
+    for n in 60..90 {
+        let word = "x".repeat(n);
+        for (open, close) in [("[", "]"), ("f(", ")"), ("(b, ", ")")] {
+            for held in [format!("{word}\n"), format!("{word},\nb"), format!("b,\n{word}")] {
+                let text = format!("scene 1\nlet a = {open}/* c */ {held}{close}\n");
+                let text = formatted(&text).unwrap();
+                assert!(text.lines().all(|line| line.len() <= super::WIDTH), "{text}");
+            }
+        }
+    }
+}
+
+#[test]
 fn brackets_as_deep_as_they_may_be_need_little_stack() {
     let lists = format!("scene 1\nlet a = {}1{}\n", "[".repeat(128), "]".repeat(128));
     let calls = format!("scene 1\nlet a = {}1{}\n", "f(b + [".repeat(64), "])".repeat(64));

@@ -39,13 +39,13 @@ impl Hashing {
     }
 
     /// The hash of what came as a term of a sum: of at most `PIECE` bytes that of XXH3, 128 bits with each of
-    /// two seeds, which takes a fraction of the time and may be forged; of more, BLAKE3 as `finish`.
-    pub(super) fn finish_soon(&mut self) -> Hash {
+    /// two seeds, which takes a fraction of the time and may be forged; of more, BLAKE3, and of the seeds.
+    pub(super) fn finish_soon(&mut self, seeds: [u64; 2]) -> Hash {
         if self.hasher.is_some() {
-            return self.finish();
+            return self.update(seeds.map(u64::to_le_bytes).as_flattened()).finish();
         }
         let mut hash = Hash::default();
-        for (half, seed) in hash.as_chunks_mut().0.iter_mut().zip(0..) {
+        for (half, seed) in hash.as_chunks_mut().0.iter_mut().zip(seeds) {
             *half = xxh3_128_with_seed(&self.bytes, seed).to_le_bytes();
         }
         hash
@@ -219,11 +219,12 @@ mod tests {
     fn what_is_hashed_soon_is_too_however_many_bytes_come_at_a_time() {
         let all: Vec<u8> = (0..=255).cycle().take(2 * PIECE).collect();
         let mut met = vec![];
-        for n in [0, 1, 2, 240, 241, PIECE - 1, PIECE, PIECE + 1, 2 * PIECE] {
+        let lengths = [0, 1, 2, 240, 241, PIECE - 1, PIECE, PIECE + 1, 2 * PIECE];
+        for (n, seeds) in lengths.into_iter().flat_map(|n| [(n, [0, 1]), (n, [2, 3])]) {
             let hash = |piece: usize| {
                 let mut hashing = Hashing::default();
                 all[..n].chunks(piece).for_each(|bytes| _ = hashing.update(bytes));
-                hashing.finish_soon()
+                hashing.finish_soon(seeds)
             };
             assert!([1, 7, PIECE].map(hash).windows(2).all(|two| two[0] == two[1]), "{n}");
             met.extend(hash(1).as_chunks::<16>().0.to_vec());

@@ -9,6 +9,9 @@ use super::hash::{Hashing, hash_value, text};
 use super::{Argument, Hash, Node, NodeId, Value};
 use crate::registry::common_params;
 
+/// Seeds of what is hashed by itself.
+const PLAIN: [u64; 2] = [0, 1];
+
 /// A sum of hashes: four numbers of 64 bits, each for itself, which wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Sum([u64; 4]);
@@ -43,7 +46,16 @@ impl Sum {
 pub(super) struct Terms {
     class: Option<(Kind, Arc<str>, Sum)>,
     /// By the place among a node's parameters.
-    params: Vec<Option<(&'static str, Value, Sum)>>,
+    params: Vec<Param>,
+}
+
+/// What was said last of a parameter.
+#[derive(Clone, Default)]
+struct Param {
+    name: &'static str,
+    /// Seeds of what its values are hashed by: parts of the hash of its name.
+    seeds: [u64; 2],
+    said: Option<(Value, Sum)>,
 }
 
 impl Terms {
@@ -61,7 +73,7 @@ impl Terms {
             hashing.update(b"override");
             text(&mut hashing, name);
             hashing.update(&child(*material));
-            own = own.plus(Sum::of(&hashing.finish_soon()));
+            own = own.plus(Sum::of(&hashing.finish_soon(PLAIN)));
         }
         [own.plus(host).hash(), own.hash()]
     }
@@ -74,7 +86,7 @@ impl Terms {
                 hashing.update(b"class");
                 text(&mut hashing, node.kind.word());
                 text(&mut hashing, &node.class);
-                let term = Sum::of(&hashing.finish_soon());
+                let term = Sum::of(&hashing.finish_soon(PLAIN));
                 self.class = Some((node.kind, node.class.clone(), term));
                 term
             }
@@ -89,13 +101,17 @@ impl Terms {
         child: impl Fn(NodeId) -> Hash,
     ) -> Sum {
         if self.params.len() <= k {
-            self.params.resize(k + 1, None);
+            self.params.resize(k + 1, Param::default());
         }
-        match &self.params[k] {
-            Some((last, said, term)) if *last == name && is_same(said, value) => *term,
+        let param = &mut self.params[k];
+        if param.name != name {
+            *param = Param { name, seeds: seeds(name), said: None };
+        }
+        match &param.said {
+            Some((said, term)) if is_same(said, value) => *term,
             _ => {
-                let term = param(name, value, child);
-                self.params[k] = Some((name, value.clone(), term));
+                let term = term(value, param.seeds, child);
+                param.said = Some((value.clone(), term));
                 term
             }
         }
@@ -105,16 +121,24 @@ impl Terms {
 /// What the parameters of these names, if they were given, add to a node's hash.
 pub(super) fn of_params(node: &Node, names: &[&str], child: impl Fn(NodeId) -> Hash) -> Sum {
     let those = node.params.iter().filter(|argument| names.contains(&argument.name));
-    let terms = those.map(|Argument { name, value, .. }| param(name, value, &child));
+    let terms = those.map(|Argument { name, value, .. }| term(value, seeds(name), &child));
     terms.fold(Sum::default(), Sum::plus)
 }
 
-fn param(name: &str, value: &Value, child: impl Fn(NodeId) -> Hash) -> Sum {
+/// Seeds of what values of the parameter of a name are hashed by.
+fn seeds(name: &str) -> [u64; 2] {
     let mut hashing = Hashing::default();
     hashing.update(b"param");
     text(&mut hashing, name);
+    let Sum([one, other, ..]) = Sum::of(&hashing.finish_soon(PLAIN));
+    [one, other]
+}
+
+/// What the value of a parameter adds.
+fn term(value: &Value, seeds: [u64; 2], child: impl Fn(NodeId) -> Hash) -> Sum {
+    let mut hashing = Hashing::default();
     hash_value(&mut hashing, value, &child);
-    Sum::of(&hashing.finish_soon())
+    Sum::of(&hashing.finish_soon(seeds))
 }
 
 /// Whether a parameter is the class's own, not one that the host adds to its kind.

@@ -156,6 +156,15 @@ impl<'k> Firsts<'k> {
         place_of(&self.tables.defines, name)
     }
 
+    /// The statements that first define a name, in order.
+    pub(super) fn definers(&self) -> Vec<usize> {
+        let places = self.tables.defines.iter().filter(|place| **place != NONE);
+        let mut places: Vec<usize> = places.map(|place| *place as usize).collect();
+        places.sort_unstable();
+        places.dedup();
+        places
+    }
+
     /// The statement that first bears a label.
     pub(super) fn labeller(&self, label: &str) -> Option<usize> {
         self.place(&self.tables.labels, label)

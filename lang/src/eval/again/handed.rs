@@ -17,7 +17,6 @@ use crate::eval::Evaluator;
 use crate::eval::env::Env;
 use crate::eval::note::shown_vector;
 use crate::eval::value::{FieldValue, ObjectValue, Value};
-use crate::shares;
 use crate::syntax::Name;
 use crate::values::{Shown, Unsaid};
 
@@ -82,32 +81,38 @@ impl Handed {
     }
 }
 
-impl Handing {
-    /// What statements hand on of what has `changed`, by its number, and the numbers of those that do more.
-    fn handed(
-        &self,
-        stmts: &[(usize, &Statement)],
-        is_changed: &[bool],
-        changed: &[bool],
-    ) -> (Handed, Vec<usize>) {
-        let (mut out, mut others) = (Handed::default(), vec![]);
-        for (i, stmt) in stmts {
-            let mut uses = stmt.names.uses().enumerate();
-            if !uses.all(|(k, (name, _))| !is_changed[name as usize] || stmt.hands.only_hands_on(k))
-            {
-                others.push(*i);
-                continue;
-            }
-            let places = self.places_of(&stmt.hands).iter();
-            let places = places.filter(|place| changed[place.wanted as usize]);
-            out.places.extend(places.map(|place| (source_of(stmt.id), *place)));
-            let nodes = &stmt.made.nodes;
-            out.most_nodes = out.most_nodes.max(nodes.len());
-            if nodes.len() > 1 {
-                out.runs.push(nodes.clone());
+/// What statements do that use a name whose value has changed.
+#[derive(Debug, Default)]
+pub(super) struct Users {
+    /// What those do that only hand it on.
+    pub(super) handed: Handed,
+    /// The numbers of the others, in order.
+    pub(super) others: Vec<usize>,
+}
+
+impl Handed {
+    /// Adds what a statement hands on of names that have changed. What is wanted and what is named may stand
+    /// here more than once.
+    fn add(&mut self, stmt: &Statement, handing: &Handing, is_changed: &[bool]) {
+        let nodes = &stmt.made.nodes;
+        self.most_nodes = self.most_nodes.max(nodes.len());
+        if nodes.len() > 1 {
+            self.runs.push(nodes.clone());
+        }
+        for place in handing.places_of(&stmt.hands) {
+            let names = || handing.formula(place.wanted).names();
+            if names().any(|name| is_changed[name as usize]) {
+                self.places.push((source_of(stmt.id), *place));
+                names().for_each(|name| add_unless_last(&mut self.names, name));
             }
         }
-        (out, others)
+    }
+}
+
+/// Adds a number to a list, unless it is the last one.
+fn add_unless_last(list: &mut Vec<u32>, number: u32) {
+    if list.last() != Some(&number) {
+        list.push(number);
     }
 }
 
@@ -118,35 +123,47 @@ impl State {
         stmt.is_plain && (self.set_labels.is_empty() || !stmt.names.labels().iter().any(is_set))
     }
 
-    /// Which of statements that may only hand on do so, and the numbers of those that do not.
-    pub(super) fn handed(
+    /// What those of a few statements do that use a name which has changed; of those that are `new`, none only
+    /// hands it on.
+    pub(super) fn users(
         &self,
-        stmts: &[(usize, &Statement)],
+        stmts: &[Statement],
         is_changed: &[bool],
-    ) -> (Handed, Vec<usize>) {
-        let handing = &self.handing;
-        let numbers = || 0..u32::try_from(handing.n_wanted()).unwrap_or(u32::MAX);
-        let is_name_changed = |name: u32| is_changed[name as usize];
-        let changed: Vec<bool> =
-            numbers().map(|i| handing.formula(i).names().any(is_name_changed)).collect();
-        let some = |stmts: &[(usize, &Statement)]| handing.handed(stmts, is_changed, &changed);
-        let parts = shares::map(stmts, |(_, stmt)| stmt.range.len(), some);
-        let (mut out, mut others) = (Handed::default(), vec![]);
-        let mut is_met = vec![false; handing.n_wanted()];
-        let mut is_named = vec![false; is_changed.len()];
-        for (part, left) in parts {
+        is_new: impl Fn(&Statement) -> bool,
+    ) -> Users {
+        let mut out = Users::default();
+        for (i, stmt) in stmts.iter().enumerate() {
+            let uses = stmt.names.uses().zip(0..);
+            let mut changed = uses.filter(|((name, _), _)| is_changed[*name as usize]).peekable();
+            if changed.peek().is_none() {
+                continue;
+            }
+            let only_hands_on = changed.all(|(_, k)| stmt.hands.only_hands_on(k));
+            if only_hands_on && self.may_hand_on(stmt) && !is_new(stmt) {
+                out.handed.add(stmt, &self.handing, is_changed);
+            } else {
+                out.others.push(i);
+            }
+        }
+        out
+    }
+
+    /// What the parts of a file hand on, each name and what is wanted once.
+    pub(super) fn handed(&self, parts: impl IntoIterator<Item = Handed>) -> Handed {
+        let mut out = Handed::default();
+        let mut is_met = vec![false; self.handing.n_wanted()];
+        let mut is_named = vec![false; self.names.len()];
+        for part in parts {
             part.places.iter().for_each(|(_, place)| is_met[place.wanted as usize] = true);
+            part.names.iter().for_each(|name| is_named[*name as usize] = true);
             out.places.extend(part.places);
             out.runs.extend(part.runs);
             out.most_nodes = out.most_nodes.max(part.most_nodes);
-            others.extend(left);
         }
-        out.wanted = numbers().filter(|i| is_met[*i as usize]).collect();
-        for i in &out.wanted {
-            handing.formula(*i).names().for_each(|name| is_named[name as usize] = true);
-        }
-        out.names = (0..).zip(is_named).filter_map(|(i, is_named)| is_named.then_some(i)).collect();
-        (out, others)
+        let met = |(i, is_met): (u32, bool)| is_met.then_some(i);
+        out.wanted = (0..).zip(is_met).filter_map(met).collect();
+        out.names = (0..).zip(is_named).filter_map(met).collect();
+        out
     }
 
     /// What the values that are handed on have become; `None` if one of them is not that simple, or wrong.

@@ -102,38 +102,29 @@ impl<'s> After<'s> {
         before.chain(self.fresh).chain(&self.stmts[self.gone.end..])
     }
 
-    fn len(&self) -> usize {
-        self.stmts.len() - self.gone.len() + self.fresh.len()
-    }
-
-    /// Those from one on that use a name of these, by number, and whether `hands` is true of each.
-    fn users(
+    /// What `f` makes of a few of those from one on at a time, with the number of the first.
+    fn shared<R: Send>(
         &self,
         from: usize,
-        is_named: &[bool],
-        hands: impl Fn(&Statement) -> bool + Sync,
-    ) -> Vec<(usize, bool)> {
+        f: impl Fn(&[Statement]) -> R + Sync,
+    ) -> Vec<(usize, R)> {
         let end = self.gone.start + self.fresh.len();
         let pieces = [
             (0, &self.stmts[..self.gone.start]),
             (self.gone.start, self.fresh),
             (end, &self.stmts[self.gone.end..]),
         ];
-        let is_user = |stmt: &Statement| stmt.names.uses().any(|(name, _)| is_named[name as usize]);
-        let some = |part: &[Statement]| -> (usize, Vec<(usize, bool)>) {
-            let users = part.iter().enumerate().filter(|(_, stmt)| is_user(stmt));
-            (part.len(), users.map(|(i, stmt)| (i, hands(stmt))).collect())
-        };
-        let mut users = vec![];
+        let mut out = vec![];
         for (start, stmts) in pieces {
             let passed = from.saturating_sub(start).min(stmts.len());
             let mut at = start + passed;
-            for (n, found) in shares::map(&stmts[passed..], |stmt| stmt.range.len(), some) {
-                users.extend(found.into_iter().map(|(i, hands)| (at + i, hands)));
+            let some = |part: &[Statement]| (part.len(), f(part));
+            for (n, made) in shares::map(&stmts[passed..], |stmt| stmt.range.len(), some) {
+                out.push((at, made));
                 at += n;
             }
         }
-        users
+        out
     }
 
     /// One of them.
@@ -153,39 +144,6 @@ impl<'s> After<'s> {
             return (stmt, stmt.range.clone());
         }
         (stmt, edit.shifted(stmt.range.start)..edit.shifted(stmt.range.end))
-    }
-}
-
-/// Statements that come to something else, as far as they have been seen, in order.
-struct Concerned<'s> {
-    /// Which names have another value, by number.
-    is_changed: Vec<bool>,
-    new: Vec<usize>,
-    /// Those that may only hand a value on.
-    handing: Vec<(usize, &'s Statement)>,
-    /// New ones, at most.
-    most: usize,
-}
-
-impl<'s> Concerned<'s> {
-    fn is_user(&self, stmt: &Statement) -> bool {
-        stmt.names.uses().any(|(name, _)| self.is_changed[name as usize])
-    }
-
-    /// Sees a statement that is new or uses a name that has another value, and may only hand that on; whether
-    /// by it more names have one. `None` if there are too many.
-    fn see(&mut self, (i, stmt): (usize, &'s Statement), hands: bool) -> Option<bool> {
-        let is_changed = &mut self.is_changed;
-        if hands {
-            self.handing.push((i, stmt));
-            return Some(false);
-        }
-        if stmt.is_wide() || self.new.len() >= self.most {
-            return None;
-        }
-        self.new.push(i);
-        let change = |name: &u32| !std::mem::replace(&mut is_changed[*name as usize], true);
-        Some(stmt.names.defines().iter().map(change).fold(false, |any, is_more| any | is_more))
     }
 }
 
@@ -287,7 +245,7 @@ impl State {
     ) -> Option<(Vec<usize>, Handed, Sets)> {
         let mut bearers = BTreeSet::new();
         for _ in 0..ROUNDS {
-            let (new, handed) = self.concerned(gone, after, &bearers)?;
+            let (new, handed) = self.concerned(gone, (after, firsts), &bearers)?;
             let sets = self.sets(gone, after, firsts, &new)?;
             if sets.bearers.iter().all(|i| new.binary_search(i).is_ok()) {
                 return Some((new, handed, sets));
@@ -299,53 +257,57 @@ impl State {
 
     /// The statements that are new, one of `those`, or use a name that a statement with another value defines;
     /// apart from them those that only hand that value on.
-    fn concerned<'s>(
-        &'s self,
+    fn concerned(
+        &self,
         gone: &Range<usize>,
-        after: &After<'s>,
+        (after, firsts): (&After<'_>, &Firsts<'_>),
         those: &BTreeSet<usize>,
     ) -> Option<(Vec<usize>, Handed)> {
-        let mut is_changed = vec![false; self.names.len()];
-        let mut changes = !those.is_empty();
-        for stmt in self.stmts[gone.clone()].iter().chain(after.fresh) {
-            if stmt.is_wide() {
-                return None;
-            }
-            for name in stmt.names.defines() {
-                (is_changed[*name as usize], changes) = (true, true);
-            }
-        }
         let fresh = gone.start..gone.start + after.fresh.len();
-        if !changes {
-            return Some((fresh.collect(), Handed::default()));
+        let new: BTreeSet<usize> = fresh.chain(those.iter().copied()).collect();
+        let gone_or_new = self.stmts[gone.clone()].iter().chain(new.iter().map(|i| after.at(*i)));
+        if gone_or_new.clone().any(Statement::is_wide) {
+            return None;
         }
-        let first = those.first().map_or(fresh.start, |first| fresh.start.min(*first));
-        let is_new = |i: usize| fresh.contains(&i) || those.contains(&i);
-        let mut candidates = after.users(first, &is_changed, |stmt| self.may_hand_on(stmt));
-        candidates.extend(fresh.clone().chain(those.iter().copied()).map(|i| (i, false)));
-        candidates.sort_unstable();
-        candidates.dedup_by_key(|(i, _)| *i);
-        let most = (self.stmts.len() / SHARE).max(1) + fresh.len();
-        let mut found = Concerned { is_changed, new: vec![], handing: vec![], most };
-        let mut grown = None;
-        for (i, hands) in candidates {
-            if found.see((i, after.at(i)), hands && !is_new(i))? {
-                grown = Some(i);
-                break;
+        let is_changed = self.changed_names(gone_or_new, (after, firsts));
+        if !is_changed.contains(&true) {
+            return Some((new.into_iter().collect(), Handed::default()));
+        }
+        let first = new.first().map_or(gone.start, |first| gone.start.min(*first));
+        let ids: BTreeSet<u32> = those.iter().map(|i| after.at(*i).id).collect();
+        let is_new = |stmt: &Statement| stmt.id as usize >= self.n_ids || ids.contains(&stmt.id);
+        let parts = after.shared(first, |stmts| self.users(stmts, &is_changed, is_new));
+        let (mut concerned, mut handed) = (Vec::from_iter(new.clone()), vec![]);
+        for (start, users) in parts {
+            concerned.extend(users.others.into_iter().map(|i| start + i));
+            handed.push(users.handed);
+        }
+        concerned.sort_unstable();
+        concerned.dedup();
+        let is_small = concerned.len() <= self.stmts.len() / SHARE + new.len();
+        let is_one_wide = concerned.iter().any(|i| after.at(*i).is_wide());
+        (is_small && !is_one_wide).then(|| (concerned, self.handed(handed)))
+    }
+
+    /// Which names have another value, by number, where statements are gone or new.
+    fn changed_names<'s>(
+        &self,
+        gone_or_new: impl Iterator<Item = &'s Statement>,
+        (after, firsts): (&After<'s>, &Firsts<'_>),
+    ) -> Vec<bool> {
+        let mut is_changed = vec![false; self.names.len()];
+        let change = |stmt: &Statement, is_changed: &mut [bool]| {
+            stmt.names.defines().iter().for_each(|name| is_changed[*name as usize] = true);
+        };
+        gone_or_new.for_each(|stmt| change(stmt, &mut is_changed));
+        if is_changed.contains(&true) {
+            for stmt in firsts.definers().into_iter().map(|i| after.at(i)) {
+                if stmt.names.uses().any(|(name, _)| is_changed[name as usize]) {
+                    change(stmt, &mut is_changed);
+                }
             }
         }
-        // Of what follows, more may be concerned than uses the names that had changed at first.
-        for i in grown.map_or(0..0, |i| i + 1..after.len()) {
-            let stmt = after.at(i);
-            if is_new(i) || found.is_user(stmt) {
-                found.see((i, stmt), !is_new(i) && self.may_hand_on(stmt))?;
-            }
-        }
-        let Concerned { is_changed, mut new, handing, most } = found;
-        let (handed, others) = self.handed(&handing, &is_changed);
-        new.extend(others);
-        new.sort_unstable();
-        (new.len() <= most).then_some((new, handed))
+        is_changed
     }
 
     /// The statements that are wanted, some of which are new, and those that define what they use.

@@ -14,7 +14,7 @@ const STEP: usize = 17;
 
 /// Slips of a hundred that may have more than one message: what has been reached, rounded up. The table in the
 /// documents is held to the last slip.
-const CASCADES: usize = 2;
+const CASCADES: usize = 1;
 
 /// What is written instead of a token, a gap and the next token.
 type Slip = fn(&str, &str, &str) -> String;

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_sdk::kind::Kind;
 
-use crate::syntax::BEFORE_NAMES;
+use crate::syntax::{BEFORE_NAMES, EARLY};
 
 /// Bytes before a place that are looked at: of a line before a bracket that closes nothing, and of a call.
 const LOOKED_AT: usize = 1 << 10;
@@ -46,6 +46,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
             "E0402" => found.fixes.is_empty() && stands_behind(found, &parted, sources),
+            "E0403" => doubts.iter().any(|doubt| is_given_in(found, *doubt, sources)),
             "E0026" | "E0401" => follows_category(found, &unknown, sources),
             _ => false,
         };
@@ -68,8 +69,8 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     nearby::sift(diagnostics, sources);
 }
 
-/// Where it is not known which values stand in which brackets: between one and another that closes it, and on
-/// the line before one that closes nothing.
+/// Where it is not known which values stand in which brackets: between one and another that closes it, on the
+/// line before one that closes nothing, and below one that ends what goes on.
 fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
     let at = found.span()?;
     match found.code {
@@ -85,6 +86,7 @@ fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
             let end = found.fixes.iter().map(|fix| fix.span).find(ends_line).unwrap_or(at);
             found.labels.get(1).map(|open| open.span.to(end))
         }
+        "E0010" if found.message == EARLY => Some(going_on(at, sources)),
         "E0010" => {
             let before = sources.text(at.source).as_bytes().get(..at.range().start)?;
             let first = before.len().saturating_sub(LOOKED_AT);
@@ -93,6 +95,42 @@ fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
         }
         _ => None,
     }
+}
+
+/// What goes on below a brace, up to a line that begins with another and is not indented as far.
+fn going_on(brace: Span, sources: &Sources) -> Span {
+    let (text, start) = (sources.text(brace.source).as_bytes(), brace.range().start);
+    let indent = |line: &[u8]| line.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+    let near = start.saturating_sub(LOOKED_AT);
+    let line = memchr::memrchr(b'\n', &text[near..start]).map_or(near, |end| near + end + 1);
+    let own = indent(&text[line..]);
+    let below = &text[start..(start + LOOKED_AT).min(text.len())];
+    let is_within = |line: &&[u8]| indent(line) >= own || !line.trim_ascii().starts_with(b"}");
+    let mut lines = below.split_inclusive(|byte| *byte == b'\n');
+    let n = lines.next().map_or(0, <[u8]>::len);
+    let n = lines.take_while(is_within).fold(n, |n, line| n + line.len());
+    Span::new(brace.source, start, start + n)
+}
+
+/// Whether an object is said to lack what stands in brackets in it that another one closes, or that nothing opens.
+fn is_given_in(found: &Diagnostic, doubt: Span, sources: &Sources) -> bool {
+    let Some(at) = found.span().filter(|at| at.source == doubt.source) else { return false };
+    let text = sources.text(at.source);
+    let (head, within) = (text.get(at.range().end..doubt.range().start), text.get(doubt.range()));
+    let (Some(head), Some(within)) = (head.filter(|head| head.len() <= LOOKED_AT), within) else {
+        return false;
+    };
+    let mut depth = 0_i32;
+    let is_inside = head.bytes().skip_while(|byte| *byte != b'{').all(|byte| {
+        depth += i32::from(byte == b'{') - i32::from(byte == b'}');
+        depth > 0
+    });
+    let mut names = found.message.split('`').skip(1).step_by(2);
+    let is_given = |name: &str| {
+        memchr::memmem::find_iter(within.as_bytes(), name)
+            .any(|i| within[i + name.len()..].trim_start().starts_with('='))
+    };
+    is_inside && depth > 0 && names.any(is_given)
 }
 
 /// The lines before a brace that closes nothing that are indented further than it: an object whose own brace is
@@ -260,6 +298,17 @@ mod tests {
             let wide = format!("let a = max(1, min2, {gap}\"{}\"))", "é".repeat(40_000));
             assert_eq!(codes(&wide), ["E0010", "E0101", "E0409"]);
         }
+    }
+
+    #[test]
+    fn a_value_is_not_judged_whose_brackets_are_only_likely() {
+        let uses = "let a = ends(2) - (1, 1, 1) m\nlet b = tall - (1, 1, 1) m";
+        let defined = |close: &str| {
+            let list = format!("[1 m, 0 m, 2 m{close}");
+            format!("fn ends(i: int) = {list}\nlet tall = {list}\n{uses}")
+        };
+        assert_eq!(codes(&defined("]")), ["E0214", "E0214", "E0409"]);
+        assert_eq!(codes(&defined(")")), ["E0009", "E0009", "E0409"]);
     }
 
     #[test]

@@ -31,6 +31,11 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     for pair in all.windows(2) {
         let [(before, i), (span, j)] = pair else { continue };
         if closes_what(&diagnostics[*i], &diagnostics[*j], sources) {
+            if let Some(call) = call(&diagnostics[*i], sources) {
+                for fix in &mut diagnostics[*i].fixes {
+                    (fix.replacement, fix.grade) = (call.clone(), Grade::Guess);
+                }
+            }
             let out = if opens(&diagnostics[*i]) { *j } else { *i };
             is_out[out] = true;
             continue;
@@ -107,7 +112,16 @@ fn touches(found: &Diagnostic, cause: &Diagnostic) -> bool {
 
 /// Whether a mistake tells by itself what a bracket behind it closes: of a name, only where its bracket is.
 fn opens(cause: &Diagnostic) -> bool {
-    cause.code != "E0101" || cause.fixes.iter().any(|fix| fix.replacement == "(")
+    cause.code != "E0101" || cause.fixes.iter().any(|fix| fix.replacement.contains('('))
+}
+
+/// The call that a name may be which begins as one that is surely meant and has no bracket: `lean(b` for `leanb`.
+fn call(found: &Diagnostic, sources: &Sources) -> Option<String> {
+    let at = found.span().filter(|_| found.code == "E0101")?;
+    let (name, meant) = (sources.text(at.source).get(at.range())?, &found.sure()?.replacement);
+    let argument = name.strip_prefix(meant.as_str())?;
+    let begins = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    argument.starts_with(begins).then(|| format!("{meant}({argument}"))
 }
 
 /// Whether a bracket that closes nothing closes what a mistake before it has left open.
@@ -120,11 +134,16 @@ fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> boo
         return false;
     }
     let is_line = || {
-        let between = text.get(before.range().end..at.range().start);
+        // The place of a name reaches to what follows where a bracket that was left out stands.
+        let end = before.range().end.min(at.range().start);
+        let between = text.get(end..at.range().start);
         between.is_some_and(|it| it.len() <= LINE && !it.contains('\n'))
     };
     match cause.code {
-        "E0101" => cause.sure().is_none() && !bracket.starts_with('}') && is_line(),
+        "E0101" => {
+            let is_open = cause.sure().is_none() || call(cause, sources).is_some();
+            is_open && !bracket.starts_with('}') && is_line()
+        }
         "E0009" => is_line(),
         "E0023" => cause.sure().is_none() && (bracket.starts_with('}') || is_line()),
         _ => false,

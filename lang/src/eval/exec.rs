@@ -85,6 +85,9 @@ impl Evaluator<'_> {
                 if let Some(ty) = ty {
                     found = self.fit(ty, found, value.span, env);
                 }
+                if stmt.is_likely {
+                    found = Value::Poison;
+                }
                 self.note(name, &found);
                 self.define(name, found, env);
             }
@@ -95,7 +98,8 @@ impl Evaluator<'_> {
             }
             StmtNode::Fn(def) => {
                 let function = Function { def: def.clone(), env: env.frozen() };
-                self.define(&def.name, Value::Function(Rc::new(function)), env);
+                let function = Value::Function(Rc::new(function));
+                self.define(&def.name, if stmt.is_likely { Value::Poison } else { function }, env);
             }
             StmtNode::For { index, item, over, body: block } => {
                 self.for_loop((index.as_ref(), item), over, block, env, body);

@@ -79,9 +79,12 @@ impl Evaluator<'_> {
             let name = category.text.to_lowercase();
             let param = within.and_then(|class| takers(class, *kind).next());
             let given = param.map_or(String::new(), |param| format!("{} = ", param.name));
-            // `sphere ball { … }`
+            // `sphere ball { … }` and `sphere shape { … }`
             if let Some(label) = &object.kind {
                 let all = category.span.to(label.span);
+                if *label.text == **word {
+                    return found.guess(all, format!("{given}{word} {name}"));
+                }
                 return found.guess(all, format!("{given}{word} {name} \"{}\"", label.text));
             }
             if name == *category.text {

@@ -116,6 +116,8 @@ impl Resolver<'_> {
             found = found.help("an f-number is written without `f/`").guess(number, "");
         } else if Unit::named(shown).is_some() {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
+        } else if shown == "group" {
+            found = found.help("a group is written `group { … }`");
         } else if Kind::of_word(shown).is_some() {
             found = found.help(format!("an object is written `{shown} NAME {{ … }}`"));
         } else if shown == "rgba" {

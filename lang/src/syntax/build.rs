@@ -148,12 +148,18 @@ impl Builder<'_> {
                     }
                     span.end = place.end;
                     let node = self.node(part, &docs);
-                    return Stmt { span, docs: docs.into(), attrs: attrs.into(), node };
+                    return Stmt {
+                        span,
+                        docs: docs.into(),
+                        attrs: attrs.into(),
+                        node,
+                        is_likely: false,
+                    };
                 }
             }
         }
         let node = StmtNode::Broken { defines: Box::default() };
-        Stmt { span, docs: docs.into(), attrs: attrs.into(), node }
+        Stmt { span, docs: docs.into(), attrs: attrs.into(), node, is_likely: false }
     }
 
     fn attribute(&mut self, name: Name) -> Name {

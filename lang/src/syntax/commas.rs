@@ -32,15 +32,26 @@ impl Around<'_> {
         let is_call = self.open.last().is_some_and(|open| {
             self.word(*open) == "(" && open.checked_sub(1).is_some_and(|i| self.is_word(i))
         });
-        let may_be_twice = before.kind == TokenKind::Word || is_call || self.is_wide();
-        if may_be_twice && before.text == current.text {
+        // `[3 mm, 4 4 mm]`
+        let is_bare = Unit::named(self.word(self.at + 1)).is_some();
+        let may_be_twice = before.kind == TokenKind::Word || is_call || is_bare || self.is_wide();
+        if let Some(last) = self.again().filter(|_| may_be_twice) {
             let found = self.error("E0014", current, format!("{message}, or it stands here twice"));
-            return Some(found.guess(gap.to(self.span(current)), ""));
+            return Some(found.guess(gap.to(self.span(&self.tokens[last])), ""));
         }
         // `b c: int`: a type may be missing too.
         let is_typed = before.kind == TokenKind::Word && self.word(self.at + 1) == ":";
         let found = self.error("E0014", current, message);
         Some(if is_typed { found } else { found.mend(gap, ",", grade) })
+    }
+
+    /// The last token of a number, a word or words joined by dots that stands at the place as it does before it.
+    fn again(&self) -> Option<usize> {
+        let n_before = (1..=self.at).step_by(2).find(|n| self.word(self.at - n - 1) != ".")?;
+        let (before, here) = (&self.tokens[self.at - n_before..self.at], &self.tokens[self.at..]);
+        let is_same =
+            here.len() >= n_before && before.iter().zip(here).all(|(a, b)| a.text == b.text);
+        (is_same && before[0].kind != TokenKind::Mark).then_some(self.at + n_before - 1)
     }
 
     /// Whether with commas where they are missing more than three numbers would stand in the innermost bracket:
@@ -85,6 +96,11 @@ impl Around<'_> {
         let i = (first..=self.at).find(|i| self.is_bare_field(*i));
         let i = i.filter(|_| self.inner() == Place::Fields)?;
         let (value, word, given) = (&self.tokens[i - 1], &self.tokens[i], &self.tokens[i + 1]);
+        // `radius = widths widths[i]`
+        if value.text == word.text {
+            let found = self.error("E0023", word, format!("`{}` is written twice", word.text));
+            return Some(found.guess(Span::new(self.source, value.end(), word.end()), ""));
+        }
         let message =
             format!("a comma is missing before `{0}`, and `=` behind it", short(word.text));
         let gap = Span::new(self.source, value.end(), given.start);

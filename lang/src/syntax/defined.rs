@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use luxel_core::diag::{SourceId, Span, nearest};
 
-use super::around::is_category;
+use super::around::{is_category, stands_nowhere};
 use super::lex::{Token, TokenKind, tokens};
 use super::make::{RESERVED, STATEMENTS};
 use super::tree::Name;
@@ -15,7 +15,7 @@ use super::type_names;
 const DEFINING: [&str; 3] = ["let", "param", "fn"];
 
 /// Tokens that are looked at.
-const LOOKED_AT: usize = 6;
+const LOOKED_AT: usize = 12;
 
 /// Names that `text[piece]` may define.
 pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId) -> Box<[Name]> {
@@ -36,27 +36,25 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     if first.text == "import" {
         return imported(&words).map(|(text, token)| name(text, token, token)).collect();
     }
-    // `for i, ball in balls` without its block, `for (int i = 0;`, `for i ball in balls`
     if matches!(first.text, "for" | "foreach") {
-        let end = words.iter().position(|t| t.text == "in");
-        let end =
-            end.unwrap_or(if mark(2) == "," { 4 } else { 2 + usize::from(mark(1) == "(") * 2 });
-        let names = words.iter().take(end).filter(|t| t.kind == TokenKind::Word);
-        let names = names.filter(|name| !RESERVED.contains(&name.text) && !is_type(name.text));
-        return names.filter(|t| t.text != "foreach").map(|t| name(t.text, t, t)).collect();
+        return of_loop(&words).map(|t| name(t.text, t, t)).collect();
     }
     // `x := 3`, `letx: float = 3`
     if gives(1) && mark(1) != "(" {
         return glued(first.text).map(|text| name(text, first, first)).collect();
     }
-    // `material gold = conductor { … }`
-    if let Some(second) = word(1).filter(|_| is_category(first.text) && mark(2) == "=") {
-        return Box::new([name(second.text, second, second)]);
+    // `f(x) = x * 2`
+    let close = words.iter().position(|t| t.text == ")");
+    if close.is_some_and(|close| mark(1) == "(" && mark(close + 1) == "=") {
+        return Box::new([name(first.text, first, first)]);
     }
-    let begins = DEFINING.contains(&first.text);
+    if is_category(first.text) {
+        return of_object(&words).map(|t| name(t.text, t, t)).collect();
+    }
+    // `#define R 2 m`
+    let begins = DEFINING.contains(&first.text) || first.text == "define";
     // `lte x = 5`, `var x = 5` were to define something too.
-    let is_other = STATEMENTS.contains(&first.text) || is_category(first.text);
-    let may_begin = nearest(first.text, DEFINING).is_some() || !is_other;
+    let may_begin = nearest(first.text, DEFINING).is_some() || !STATEMENTS.contains(&first.text);
     let Some(second) = word(1).filter(|_| begins || may_begin) else { return Box::default() };
     // `let höhe = 3`
     let rest = &text[second.start..];
@@ -81,6 +79,31 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
         _ if begins || gives(2) => Box::new([name(second.text, second, second)]),
         _ => Box::default(),
     }
+}
+
+/// The names of `for i, ball in balls` without its block, `for (int i = 0;`, `for i ball in balls`.
+fn of_loop<'t, 'a>(words: &'t [Token<'a>]) -> impl Iterator<Item = &'t Token<'a>> {
+    let mark = |i: usize| words.get(i).map_or("", |t| t.text);
+    let end = words.iter().position(|t| t.text == "in");
+    let end = end.unwrap_or(if mark(2) == "," { 4 } else { 2 + usize::from(mark(1) == "(") * 2 });
+    let names = words.iter().take(end).filter(|t| t.kind == TokenKind::Word);
+    names.filter(|t| !RESERVED.contains(&t.text) && !is_type(t.text) && t.text != "foreach")
+}
+
+/// The names of `material gold = conductor { … }` and `material red diffuse { … }`: of the latter the second as
+/// well, where the block is not read under that name.
+fn of_object<'t, 'a>(words: &'t [Token<'a>]) -> impl Iterator<Item = &'t Token<'a>> {
+    let mark = |i: usize| words.get(i).map_or("", |t| t.text);
+    let named = words.get(1..).unwrap_or_default();
+    let are_words = named.iter().take(2).filter(|t| t.kind == TokenKind::Word).count() == 2;
+    let is_two = are_words && stands_nowhere(mark(0));
+    let n = match (mark(2), mark(3)) {
+        ("=", _) => 1,
+        (_, "{") if is_two => 2,
+        (_, "") if is_two => 1,
+        _ => 0,
+    };
+    named.iter().take(n).filter(|t| t.kind == TokenKind::Word)
 }
 
 fn is_type(word: &str) -> bool {

@@ -14,6 +14,7 @@ use super::make::{BEFORE_NAMES, OF_A_NUMBER, OF_A_TEXT, RESERVED, STATEMENTS, na
 use super::notation::{notation, remark};
 use super::peers::{BEGINS, is_pbrt};
 use super::unfinished::unfinished;
+use super::wrapped::{choice, valued_body, wrapped};
 
 /// A mistake with what is needed to go on after it.
 pub(super) struct Explained {
@@ -53,12 +54,13 @@ pub(super) fn explain(
     }
     let around = Around { text, tokens, at: index, open, source, end: chunk.end, place };
     let diagnostic = around.diagnose();
-    // Of steps where a value is wanted, none is looked at for itself.
-    let has_steps = body_of_steps(&around).is_some();
+    // Of steps where a value is wanted, or of a choice, none is looked at for itself.
+    let body = body_of_steps(&around).or_else(|| valued_body(&around));
+    let is_skipped = body.is_some() || choice(&around).is_some();
     let blocks = around
         .open
         .iter()
-        .filter(|_| !has_steps)
+        .filter(|_| !is_skipped)
         .filter(|i| around.tokens[**i].text == "{")
         .map(|i| (around.tokens[*i].start, around.within(*i)));
     let swallowed = around.swallowed().map(|back| around.at - back);
@@ -68,7 +70,7 @@ pub(super) fn explain(
         diagnostic,
         at: around.current().map_or(chunk.end, |t| t.start),
         blocks: blocks.collect(),
-        resume: resume.filter(|_| around.open.is_empty()).map(|t| t.start),
+        resume: resume.filter(|_| around.open.is_empty() && !is_skipped).map(|t| t.start),
     }
 }
 
@@ -76,6 +78,7 @@ impl<'a> Around<'a> {
     fn diagnose(&self) -> Diagnostic {
         self.number()
             .or_else(|| unfinished(self))
+            .or_else(|| wrapped(self))
             .or_else(|| habit(self))
             .or_else(|| notation(self))
             .or_else(|| head::head(self))

@@ -10,6 +10,9 @@ use super::lex::{TokenKind, tokens};
 use super::make::OF_A_NUMBER;
 use crate::prescan::{Fault, opens_object};
 
+/// The function whose arguments are mostly named, and their names.
+const LOOK_AT: (&str, [&str; 3]) = ("look_at", ["from", "to", "up"]);
+
 /// Brackets that a message shows.
 const SHOWN: usize = 8;
 
@@ -140,11 +143,16 @@ fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
     if inside.len() > LOOKED_AT {
         return None;
     }
+    let before = &text[..inside.start];
     let inner: Vec<_> = tokens(text, inside).collect();
     let is_named = |i: usize| {
         let of = inner.get(i..i + 2);
         of.is_some_and(|of| of[0].kind == TokenKind::Word && of[1].text == "=")
     };
+    // Arguments of `look_at` have names too.
+    let is_look = before.trim_end().ends_with(LOOK_AT.0);
+    let is_own = |i: usize| is_look && LOOK_AT.1.contains(&inner[i].text);
+    let has_names = is_named(1) && !is_look;
     let is_object = |i: usize| {
         is_category(inner[i].text) && inner.get(i + 1).is_some_and(|t| t.kind == TokenKind::Word)
     };
@@ -153,7 +161,9 @@ fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
         match inner[i].text {
             "(" | "[" | "{" => depth += 1,
             ")" | "]" | "}" => depth = depth.saturating_sub(1),
-            "," if depth == 0 && is_named(i + 1) && !is_named(1) => return Some(inner[i].start),
+            "," if depth == 0 && is_named(i + 1) && !has_names && !is_own(i + 1) => {
+                return Some(inner[i].start);
+            }
             // Arguments have commas between them.
             _ if depth == 0
                 && inner[i].first_on_line

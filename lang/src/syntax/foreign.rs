@@ -71,6 +71,8 @@ fn steps(around: &Around<'_>) -> Option<Diagnostic> {
 
 /// What is said of a type that stands behind a name.
 pub(super) const TYPES: &str = "a type stands behind `:`";
+/// What is said of one that stands before a name.
+pub(super) const TYPE_BEHIND: &str = "a type stands behind the name, and `:`";
 
 /// `fn f(int x) = x` and `fn f(x int) = x`
 fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
@@ -98,7 +100,7 @@ fn typed_before(around: &Around<'_>) -> Option<Diagnostic> {
         return Some(around.error("E0014", name, message).fix(gap, ","));
     }
     let both = around.span(ty).to(around.span(name));
-    let found = told(both, "a type stands behind the name, and `:`");
+    let found = told(both, TYPE_BEHIND);
     Some(found.fix(both, format!("{}: {}", name.text, ty.text)))
 }
 

@@ -4,7 +4,7 @@ use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, is_category, stands_nowhere, told};
 use super::defined::stem;
-use super::foreign::{TYPES, foreign};
+use super::foreign::{TYPE_BEHIND, TYPES, foreign};
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
 use super::paths::{imported_from, unquoted};
@@ -14,6 +14,9 @@ use super::type_names;
 
 /// What is said of `#` where a comment is meant.
 pub(super) const COMMENTS: &str = "a comment begins with `//`";
+
+/// Bytes that are looked at for a use of a name.
+const LOOKED_AT: usize = 1 << 12;
 
 /// What is said of two words that stand for one name.
 const ONE_WORD: &str = "a name is one word";
@@ -84,12 +87,19 @@ fn directive(around: &Around<'_>, mark: &Token<'_>) -> Option<Diagnostic> {
         let found = told(around.span(mark), "another file is read by `include`, without `#`");
         return Some(found.fix(around.span(mark), ""));
     }
-    if !around.is_word(around.at + 2) || around.word(around.at + 3) != "=" {
+    let (name, value) = (next?, around.tokens.get(around.at + 3)?);
+    let is_given = word.text == "define" && value.begins_operand() && !value.first_on_line;
+    if name.kind != TokenKind::Word || !is_given && value.text != "=" {
         return None;
     }
     let span = around.span(mark).to(around.span(word));
     let found = told(span, format!("`#{}` begins no statement", word.text));
-    Some(found.help("did you mean `let`?").guess(span, "let"))
+    let found = found.help("did you mean `let`?");
+    if value.text == "=" {
+        return Some(found.guess(span, "let"));
+    }
+    let head = Span::new(around.source, mark.start, value.start);
+    Some(found.guess(head, format!("let {} = ", name.text)))
 }
 
 /// `a | b`, `|x| x * 2` and `&a`
@@ -159,6 +169,10 @@ fn operator(around: &Around<'_>) -> Option<Diagnostic> {
         "=>" if around.inner() == Place::Fields && around.begins(back) => {
             let span = around.span(current);
             Some(told(span, "a value is given with `=`").fix(span, "="))
+        }
+        "=>" if around.before(1)?.text == ")" && around.word(0) == "fn" => {
+            let span = around.span(current);
+            Some(told(span, "what a function gives stands behind `=`").fix(span, "="))
         }
         "=>" => Some(nameless(around.span(current))),
         _ => None,
@@ -332,11 +346,17 @@ fn definition(around: &Around<'_>) -> Option<Diagnostic> {
                 let message = format!("`=` is missing between `{}` and its value", last.text);
                 return Some(around.error("E0012", second, message).fix(gap, " = "));
             }
-            if type_names::names().any(|known| known == second.text) {
+            let is_type = |word: &Token<'_>| type_names::names().any(|known| known == word.text);
+            if is_type(second) {
                 let found = told(around.span(second), TYPES);
                 return Some(found.fix(gap, ": "));
             }
-            Some(told(around.span(last).to(around.span(second)), ONE_WORD).guess(gap, "_"))
+            let both = around.span(last).to(around.span(second));
+            if is_type(last) && around.word(around.at + 1) == "=" {
+                let found = told(both, TYPE_BEHIND);
+                return Some(found.fix(both, format!("{}: {}", second.text, last.text)));
+            }
+            Some(told(both, ONE_WORD).guess(gap, "_"))
         }
         ("param", Some(equals)) if is_word && equals.text == "=" => {
             let message = format!("the parameter `{}` needs a type", last.text);
@@ -402,6 +422,8 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
             let (kind, label) = (kind.text, label.text);
             if stands_nowhere(category.text) {
                 let (word, all) = (category.text, around.span(category).to(both));
+                let (kind, label) =
+                    if is_given(around, kind) { (label, kind) } else { (kind, label) };
                 let found = told(both, format!("a {word} gets its name by `let`"));
                 let help = format!("or `let {kind} = {word} {label}`, if `{label}` is the kind");
                 let mend = format!("let {label} = {word} {kind}");
@@ -418,6 +440,18 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
         }
         _ => None,
     }
+}
+
+/// Whether a word is the value of something not far below, as a name is and a kind of object is not.
+fn is_given(around: &Around<'_>, word: &str) -> bool {
+    let (start, end) = (around.end, (around.end + LOOKED_AT).min(around.text.len()));
+    let below = &around.text.as_bytes()[start.min(end)..end];
+    memchr::memmem::find_iter(below, word).any(|at| {
+        let before = below[..at].trim_ascii_end();
+        let ends =
+            below.get(at + word.len()).is_none_or(|b| !b.is_ascii_alphanumeric() && *b != b'_');
+        before.ends_with(b"=") && ends
+    })
 }
 
 /// `expect mean = 1, where { … }`, what is expected on one line

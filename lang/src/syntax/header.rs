@@ -80,7 +80,13 @@ impl Reader<'_> {
         if version.text != "1" {
             let span = self.span(version.start..version.end());
             let message = format!("version {} is not known; the newest is 1", version.text);
-            self.sink.push(Diagnostic::error("E0002", span, message).guess(span, "1"));
+            let found = Diagnostic::error("E0002", span, message);
+            // `scene 1.0`
+            if version.text.starts_with("1.") {
+                self.sink.push(found.fix(span, "1"));
+                return Some(version.end());
+            }
+            self.sink.push(found.guess(span, "1"));
             return None;
         }
         Some(version.end())

@@ -9,8 +9,8 @@ use super::head::opens_block;
 use super::lex::{Token, TokenKind, tokens};
 use super::make::STATEMENTS;
 
-/// Words with which other languages begin what has a block.
-const FOREIGN: [&str; 6] = ["foreach", "loop", "repeat", "unless", "until", "while"];
+/// Words of other languages, and one of ours, with which nothing begins that has a block.
+const FOREIGN: [&str; 7] = ["else", "foreach", "loop", "repeat", "unless", "until", "while"];
 
 /// Tokens of such a head, at most.
 const MOST: usize = 24;

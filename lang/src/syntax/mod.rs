@@ -44,6 +44,7 @@ mod strays;
 mod unit;
 mod walk;
 mod weigh;
+mod wrapped;
 
 pub use agree::{Agreement, agree};
 pub(crate) use cut::{Cut, Cuts, resume_limit};
@@ -57,6 +58,7 @@ pub(crate) use parse::{
     read_at, read_head, read_piece,
 };
 pub(crate) use paths::path_around;
+pub(crate) use strays::EARLY;
 pub(crate) use strays::{STRAYS_LOOKED_AT, looked_at_again};
 pub(crate) use tree::{
     Arg, Block, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Form, ListTy, Name,

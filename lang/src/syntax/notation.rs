@@ -45,33 +45,39 @@ fn name(around: &Around<'_>) -> Option<Diagnostic> {
     Some(told(all, "a name has no `-`, which subtracts").guess(all, name))
 }
 
-/// `double(x: length) = x * 2`
+/// `double(x: length) = x * 2`, and `double(x) = x * 2`
 fn function(around: &Around<'_>) -> Option<Diagnostic> {
     let start = around.tokens.iter().position(|t| t.kind != TokenKind::Doc)?;
     let (name, open) = (around.tokens.get(start)?, start + 1);
     let close = around.closing(open).filter(|_| around.word(open) == "(")?;
     let is_typed = around.is_word(open + 1) && around.word(open + 2) == ":";
     let is_name = name.kind == TokenKind::Word && !RESERVED.contains(&name.text);
-    let goes_on = matches!(around.word(close + 1), "=" | "{");
-    if !is_name || !is_typed || !goes_on || around.at > close + 1 {
+    let next = around.word(close + 1);
+    let is_head = next == "=" || is_typed && next == "{";
+    if !is_name || !is_head || around.at > close + 1 {
         return None;
     }
-    let message = format!("`fn` is missing before `{}`", name.text);
+    let found = told(around.span(name), format!("`fn` is missing before `{}`", name.text));
     let gap = Span::new(around.source, name.start, name.start);
-    Some(told(around.span(name), message).fix(gap, "fn "))
+    let example = format!("it is written `fn {}(x: float) = x + 1`", name.text);
+    Some(if is_typed { found.fix(gap, "fn ") } else { found.help(example) })
 }
 
-/// `else x == 4 { … }`
+/// `else x == 4 { … }` and `else shape box { … }`
 fn condition(around: &Around<'_>) -> Option<Diagnostic> {
     let first = around.at.saturating_sub(3);
     let word = (first..around.at).rev().find(|i| around.word(*i) == "else")?;
     let (word, next) = (&around.tokens[word], around.tokens.get(word + 1)?);
     let compares = (first..=around.at + 1)
         .any(|i| matches!(around.word(i), "==" | "!=" | "<" | ">" | "<=" | ">="));
-    let is_one = compares && !next.first_on_line && !matches!(next.text, "{" | "if");
+    let is_one = !next.first_on_line && !matches!(next.text, "{" | "if");
     let gap = Span::new(around.source, word.end(), word.end());
     let found = told(around.span(word), "behind `else` stands a block, or an `if`");
-    is_one.then(|| found.guess(gap, " if"))
+    match is_one {
+        true if compares => Some(found.guess(gap, " if")),
+        true if is_category(next.text) => Some(found.help("it is written `else { … }`")),
+        _ => None,
+    }
 }
 
 /// `Material::Diffuse`

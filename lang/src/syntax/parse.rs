@@ -375,7 +375,9 @@ impl Reader<'_> {
                 self.out.stmts.extend(stmts);
             }
             Err(error) => {
-                let at = chunk.start + stopped(&error);
+                // Whatever stands behind an `else` that begins a statement.
+                let is_else = tokens(text, 0..text.len()).next().is_some_and(|t| t.text == "else");
+                let at = chunk.start + if is_else { 0 } else { stopped(&error) };
                 if let Some(line) = whole_before(self.text, at, &chunk) {
                     self.chunk(chunk.start..line, place);
                     self.chunk(line..chunk.end, place);

@@ -153,8 +153,14 @@ impl Reader<'_> {
     pub(super) fn with_mend(&mut self, chunk: Range<usize>, (at, with): &Mend) {
         let own = at.start - chunk.start..at.end - chunk.start;
         let mended = rewritten(&self.text[chunk.clone()], chunk.start, &[(own, *with)]);
-        let whole = 0..mended.text.len();
+        self.read_likely(mended);
+    }
+
+    /// Reads what most likely is meant by a statement.
+    fn read_likely(&mut self, mended: Mended) {
+        let (whole, first) = (0..mended.text.len(), self.out.stmts.len());
         self.read_mended(mended, whole, Place::File);
+        self.out.stmts[first..].iter_mut().for_each(|stmt| stmt.is_likely = true);
     }
 
     /// Reads a statement with whose brackets something is wrong, which has been told: closed where it most
@@ -163,10 +169,7 @@ impl Reader<'_> {
         let is_worth = chunk.len() <= REPAIRED && !self.sink.is_full();
         let piece = Some(&self.text[chunk.clone()]).filter(|_| is_worth);
         match piece.and_then(|piece| closed(piece, chunk.start, self.budgets.brackets)) {
-            Some(mended) => {
-                let whole = 0..mended.text.len();
-                self.read_mended(mended, whole, Place::File);
-            }
+            Some(mended) => self.read_likely(mended),
             None => self.broken(chunk),
         }
     }
@@ -241,6 +244,6 @@ impl Reader<'_> {
         let mut defines = perhaps_defined(self.text, chunk, self.source);
         defines.iter_mut().for_each(|name| name.span = self.edits.span(name.span));
         let node = StmtNode::Broken { defines };
-        Stmt { span, docs: Box::default(), attrs: Box::default(), node }
+        Stmt { span, docs: Box::default(), attrs: Box::default(), node, is_likely: false }
     }
 }

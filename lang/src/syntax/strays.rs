@@ -55,7 +55,7 @@ impl Slip {
         let (code, message) = match self.what {
             What::Unopened(word) => ("E0023", format!("the `{{` of this `{word}` is missing")),
             What::Bare => ("E0023", BRACES.to_owned()),
-            What::Early => ("E0010", "this `}` ends what goes on below it".to_owned()),
+            What::Early => ("E0010", EARLY.to_owned()),
         };
         let found = Diagnostic::error(code, span(&self.at), message);
         let found = match self.what {
@@ -97,6 +97,9 @@ pub(super) fn join(text: &str, found: &mut Region, limit: usize, again: &mut usi
     found.faults = faults;
 }
 
+/// What is said of a brace that ends what goes on.
+pub(crate) const EARLY: &str = "this `}` ends what goes on below it";
+
 /// The statements up to a brace that closes nothing.
 struct Search<'a> {
     text: &'a str,
@@ -107,18 +110,22 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// What most likely is wrong before the brace at `stray`, nearest first, and in which statement it
+    /// What most likely is wrong before the brace at `stray`, heads first, nearest first, and in which statement it
     /// begins.
     fn slip(&mut self, stray: usize) -> Option<(usize, Slip)> {
         let start = self.pieces.first()?.range.start;
         *self.again = self.again.checked_sub(stray - start)?;
         let tokens: Vec<Token<'_>> = tokens(self.text, start..stray).collect();
         let lines: Vec<&[Token<'_>]> = tokens.chunk_by(|_, next| !next.first_on_line).collect();
-        (0..lines.len()).rev().find_map(|i| {
-            let next = lines.get(i + 1).map(|line| line[0].start);
-            let slip = self.slip_of(lines[i], next)?;
-            Some((self.begin(&slip.mend)?, slip))
-        })
+        let mut nearest = |slip: fn(&Self, &[Token<'_>], Option<usize>) -> Option<Slip>| {
+            (0..lines.len()).rev().find_map(|i| {
+                let next = lines.get(i + 1).map(|line| line[0].start);
+                let slip = slip(self, lines[i], next)?;
+                Some((self.begin(&slip.mend)?, slip))
+            })
+        };
+        // A head without its brace is wrong in any case.
+        nearest(Self::bare).or_else(|| nearest(Self::early))
     }
 
     /// A bracket of another kind that ends what goes on, of which that is told.
@@ -140,31 +147,40 @@ impl Search<'_> {
         let begin = self.pieces.partition_point(|piece| piece.range.start <= at.start);
         let begin = begin.checked_sub(1)?;
         let range = self.pieces[begin].range.start..self.pieces.last()?.range.end;
+        // What begins as a field is the rest of something further up.
+        if is_field(&self.text[range.start..]) {
+            return None;
+        }
         *self.again = self.again.checked_sub(range.len())?;
         let own = at.start - range.start..at.end - range.start;
         let mended = rewritten(&self.text[range], 0, &[(own, *with)]).text;
         is_one(&mended, self.limit).then_some(begin)
     }
 
-    /// What may be wrong with a line, if the next begins at that byte.
-    fn slip_of(&self, line: &[Token<'_>], next: Option<usize>) -> Option<Slip> {
-        let depth = |at: usize| {
-            let begin = self.text[..at].rfind('\n').map_or(0, |end| end + 1);
-            indent(&self.text[begin..])
-        };
-        if let Some((end, what)) = unopened(line) {
-            let goes_on = next.is_some_and(|next| depth(next) > depth(line[0].start));
-            let (at, behind) = (line[end].start..line[end].end(), line[end].end());
-            let slip = Slip { at, what, mend: (behind..behind, " {") };
-            return (end + 1 < line.len() || goes_on).then_some(slip);
-        }
-        // What follows begins a statement, and is none or stands within.
+    /// How far the line of a byte is indented.
+    fn depth(&self, at: usize) -> usize {
+        let begin = self.text[..at].rfind('\n').map_or(0, |end| end + 1);
+        indent(&self.text[begin..])
+    }
+
+    /// The brace that a line lacks, if the next begins at that byte.
+    fn bare(&self, line: &[Token<'_>], next: Option<usize>) -> Option<Slip> {
+        let (end, what) = unopened(line)?;
+        let goes_on = next.is_some_and(|next| self.depth(next) > self.depth(line[0].start));
+        let (at, behind) = (line[end].start..line[end].end(), line[end].end());
+        let slip = Slip { at, what, mend: (behind..behind, " {") };
+        (end + 1 < line.len() || goes_on).then_some(slip)
+    }
+
+    /// The brace that ends a line and what goes on below it: that begins a statement, and is none or stands
+    /// within.
+    fn early(&self, line: &[Token<'_>], next: Option<usize>) -> Option<Slip> {
         let (last, next) = (line.last().filter(|last| last.text == "}")?, next?);
         let i = self.pieces.binary_search_by_key(&next, |piece| piece.range.start).ok()?;
-        let begun = depth(self.pieces[i.checked_sub(1)?].range.start);
+        let begun = self.depth(self.pieces[i.checked_sub(1)?].range.start);
         let at = last.start..last.end();
         let slip = Slip { at: at.clone(), what: What::Early, mend: (at, "") };
-        (is_field(&self.text[next..]) || depth(next) > begun).then_some(slip)
+        (is_field(&self.text[next..]) || self.depth(next) > begun).then_some(slip)
     }
 }
 
@@ -174,9 +190,14 @@ fn unopened(line: &[Token<'_>]) -> Option<(usize, What)> {
     let is = |i: usize, kind: TokenKind| line.get(i).is_some_and(|token| token.kind == kind);
     // Behind `} else` a head may stand, and behind `let x =` an object's.
     let last_else = line.iter().rposition(|token| token.text == "else");
+    let of_function = || line.iter().position(|token| token.text == "=").unwrap_or_default();
     let from = match (last_else, word(0), word(2)) {
         (Some(i), ..) => i + 1,
         (None, "let", "=") => 3,
+        (None, ..) if word(1) == "=" && is(0, TokenKind::Word) => 2,
+        (None, "fn", "(") if line.last().is_some_and(|last| last.text == "group") => {
+            of_function() + 1
+        }
         _ => 0,
     };
     if let Some(block) = BLOCKS.into_iter().find(|known| *known == word(from)) {
@@ -190,7 +211,7 @@ fn unopened(line: &[Token<'_>]) -> Option<(usize, What)> {
     if last_else.is_some_and(|i| i + 1 == line.len()) {
         return Some((line.len() - 1, What::Unopened("else")));
     }
-    if word(0) == "fn" && is(1, TokenKind::Word) {
+    if word(from) == "fn" && is(1, TokenKind::Word) {
         // The brackets of its parameters end the line.
         let mut depth = 0_usize;
         let end = (2..line.len()).find(|i| {

@@ -37,6 +37,8 @@ pub(crate) struct Stmt {
     /// Attributes, without the `@`; the span includes it.
     pub(crate) attrs: Box<[Name]>,
     pub(crate) node: StmtNode,
+    /// It was read with a bracket where one is only likely to be meant: its value may be another.
+    pub(crate) is_likely: bool,
 }
 
 impl Stmt {

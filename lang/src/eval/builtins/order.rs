@@ -11,6 +11,8 @@ impl Evaluator<'_> {
     pub(super) fn misarranged(&self, function: &str, given: &[Given]) -> Option<Diagnostic> {
         let is_number = |given: &Given| matches!(given.value, Value::Number(..));
         let is_vector = |given: &Given| matches!(given.value, Value::Numbers(_) | Value::Items(_));
+        // No number of an axis that anybody writes.
+        let is_large = |given: &Given| matches!(given.value, Value::Number(x, _) if x.abs() > 1.0);
         if given.iter().any(|given| given.name.is_some()) {
             return None;
         }
@@ -22,6 +24,19 @@ impl Evaluator<'_> {
                 let written = [axis, angle].map(|given| self.written(given.span));
                 let found = Diagnostic::error("E0402", all, "the axis stands first");
                 Some(found.guess(all, written.join(", ")))
+            }
+            // `rotate(30, 0, 1, 0)`
+            [angle, x, y, z]
+                if turns
+                    && [angle, x, y, z].into_iter().all(is_number)
+                    && is_large(angle)
+                    && ![x, y, z].into_iter().any(is_large) =>
+            {
+                let bare = matches!(angle.value, Value::Number(_, measure) if measure.is_none());
+                let unit = if bare { " deg" } else { "" };
+                let [angle, axis] = [angle.span, x.span.to(z.span)].map(|span| self.written(span));
+                let found = Diagnostic::error("E0402", all, "the axis stands first, as a vector");
+                Some(found.guess(all, format!("({axis}), {angle}{unit}")))
             }
             // `move(1, 2, 3)`, `rotate(0, 1, 0, 30 deg)`
             [x, y, z, rest @ ..] if [x, y, z].into_iter().all(is_number) => {

@@ -20,7 +20,7 @@ impl Reader<'_> {
         let span = self.span(start);
         self.cursor.skip();
         let _parted = self.cursor.takes(b',') || self.cursor.takes(b';');
-        Some(Stmt { span, docs, attrs, node })
+        Some(Stmt { span, docs, attrs, node, is_likely: false })
     }
 
     /// Statements between braces.

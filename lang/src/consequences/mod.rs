@@ -27,6 +27,8 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let bodies: Vec<Span> = causes.clone().filter_map(|found| body(found, sources)).collect();
     let is_unended = causes.clone().any(|found| found.code == "E0005");
     let is_nameless = causes.clone().any(|found| lacks_name(found, sources));
+    let is_unincluded = causes.clone().any(|found| includes(found, sources));
+    let is_one_name = is_nameless && n_unknown(diagnostics, sources) == 1;
     let mut causes: Vec<Span> = causes.flat_map(of).collect();
     causes.sort_unstable();
     // Of a word without quotes it is said what it may be, which says more than that it is no name; and of a
@@ -39,9 +41,9 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         let has_cause =
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
         let says_less = match found.code {
-            "E0101" => has_cause(&words) || is_nameless && found.sure().is_none(),
-            // A text that does not end may be a label.
-            "E0109" => is_unended,
+            "E0101" => has_cause(&words) || is_one_name || is_nameless && found.sure().is_none(),
+            // A text that does not end may be a label, and a file that is not read may bear it.
+            "E0109" => is_unended || is_unincluded,
             "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
@@ -153,6 +155,25 @@ fn body(found: &Diagnostic, sources: &Sources) -> Option<Span> {
 fn lacks_name(found: &Diagnostic, sources: &Sources) -> bool {
     let word = found.span().and_then(|at| sources.text(at.source).get(at.range()));
     found.code == "E0019" && word.is_some_and(|word| BEFORE_NAMES.contains(&word))
+}
+
+/// Whether a mistake stands on a line that reads another file.
+fn includes(found: &Diagnostic, sources: &Sources) -> bool {
+    let Some(at) = found.span() else { return false };
+    let before = &sources.text(at.source).as_bytes()[..at.range().start];
+    let first = before.len().saturating_sub(LOOKED_AT);
+    let line = memchr::memrchr(b'\n', &before[first..]).map_or(first, |end| first + end + 1);
+    sources.text(at.source).as_bytes()[line..].trim_ascii_start().starts_with(b"include")
+}
+
+/// How many names are told of that nothing stands for.
+fn n_unknown(diagnostics: &[Diagnostic], sources: &Sources) -> usize {
+    let unknown = diagnostics.iter().filter(|found| found.code == "E0101");
+    let names = unknown.filter_map(|found| {
+        let at = found.span()?;
+        sources.text(at.source).get(at.range())
+    });
+    names.collect::<BTreeSet<_>>().len()
 }
 
 /// Whether something is said of an object that stands behind one of some words, `shape shape sphere { }`: it is

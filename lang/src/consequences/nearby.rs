@@ -40,7 +40,10 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             is_out[out] = true;
             continue;
         }
-        let Some(n) = tokens_between(*before, *span, sources) else { continue };
+        let n = tokens_between(*before, *span, sources);
+        let Some(n) = n.or_else(|| is_cut(*before, *span, sources).then_some(TOKENS)) else {
+            continue;
+        };
         let (first, second) = (&diagnostics[*i], &diagnostics[*j]);
         if is_unread(first) && is_unread(second) && (first.code, second.code) != ("E0016", "E0014")
         {
@@ -124,6 +127,22 @@ fn call(found: &Diagnostic, sources: &Sources) -> Option<String> {
     argument.starts_with(begins).then(|| format!("{meant}({argument}"))
 }
 
+/// The bracket that another one closes.
+fn opened(cause: &Diagnostic, sources: &Sources) -> Option<u8> {
+    let at = cause.labels.get(1)?.span;
+    sources.text(at.source).as_bytes().get(at.range().start).copied()
+}
+
+/// Whether some brackets hold the one that closes this.
+fn closes_one(brackets: &str, open: u8) -> bool {
+    let close = match open {
+        b'(' => ')',
+        b'[' => ']',
+        _ => '}',
+    };
+    brackets.contains(close)
+}
+
 /// Whether a bracket that closes nothing closes what a mistake before it has left open.
 fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> bool {
     let (Some(before), Some(at)) = (cause.span(), found.span()) else { return false };
@@ -144,10 +163,20 @@ fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> boo
             let is_open = cause.sure().is_none() || call(cause, sources).is_some();
             is_open && !bracket.starts_with('}') && is_line()
         }
-        "E0009" => is_line(),
+        "E0009" => {
+            is_line() || opened(cause, sources).is_some_and(|open| closes_one(bracket, open))
+        }
         "E0023" => cause.sure().is_none() && (bracket.starts_with('}') || is_line()),
         _ => false,
     }
+}
+
+/// Whether the first of two places is a `;`, behind which on its line the other stands: what it cuts apart is one.
+fn is_cut(a: Span, b: Span, sources: &Sources) -> bool {
+    let text = sources.text(a.source);
+    let between = text.get(a.range().end..b.range().start).filter(|_| a.source == b.source);
+    text.get(a.range()) == Some(";")
+        && between.is_some_and(|it| it.len() <= LINE && !it.contains('\n'))
 }
 
 /// How many tokens stand between two places, of which the first begins first; `None` if more than a few, or

@@ -39,6 +39,11 @@ impl Around<'_> {
             let found = self.error("E0014", current, format!("{message}, or it stands here twice"));
             return Some(found.guess(gap.to(self.span(&self.tokens[last])), ""));
         }
+        if self.is_reckoned() {
+            let message =
+                format!("an operator or a comma is missing before `{}`", short(current.text));
+            return Some(self.error("E0014", current, message));
+        }
         // `b c: int`: a type may be missing too.
         let is_typed = before.kind == TokenKind::Word && self.word(self.at + 1) == ":";
         let found = self.error("E0014", current, message);
@@ -52,6 +57,26 @@ impl Around<'_> {
         let is_same =
             here.len() >= n_before && before.iter().zip(here).all(|(a, b)| a.text == b.text);
         (is_same && before[0].kind != TokenKind::Mark).then_some(self.at + n_before - 1)
+    }
+
+    /// Whether the innermost bracket holds one value, that is reckoned: `(12 9 * x) * 1 cm`.
+    fn is_reckoned(&self) -> bool {
+        let Some(open) = self.open.last().copied().filter(|open| self.word(*open) == "(") else {
+            return false;
+        };
+        let is_call = open > 0 && self.is_word(open - 1);
+        let close = self.closing(open).unwrap_or(self.tokens.len());
+        let (mut depth, mut reckons) = (0_usize, false);
+        let is_one = self.tokens[open + 1..close].iter().all(|token| {
+            match token.text {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.saturating_sub(1),
+                "+" | "-" | "*" | "/" | "^" | "%" => reckons = true,
+                _ => {}
+            }
+            depth > 0 || token.text != ","
+        });
+        !is_call && is_one && reckons
     }
 
     /// Whether with commas where they are missing more than three numbers would stand in the innermost bracket:

@@ -154,10 +154,15 @@ impl Layout<'_> {
     /// Puts pieces that are divided at every joint of one sort.
     fn divided(&mut self, joint: Joint, from: usize, to: usize, cont: usize, after: usize) {
         let free = !self.is_hard(from, to);
+        // Where an `else` stands below its `if` behind a remark.
+        let base = (joint == Joint::Else && self.out.fresh).then_some(self.out.indent);
         let (mut start, mut one_line) = (from, true);
         while start < to {
             let end = self.part(joint, start, to, start == from);
             let tail = if end == to { after } else { 0 };
+            if let Some(base) = base.filter(|_| start > from && self.out.ends) {
+                self.out.newline(base);
+            }
             // `else` follows the brace that has a line of its own.
             let may = start > from && (joint != Joint::Else || one_line);
             let mut cont = cont;

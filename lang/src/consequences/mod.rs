@@ -89,12 +89,7 @@ fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
             found.labels.get(1).map(|open| open.span.to(end))
         }
         "E0010" if found.message == EARLY => Some(going_on(at, sources)),
-        "E0010" => {
-            let before = sources.text(at.source).as_bytes().get(..at.range().start)?;
-            let first = before.len().saturating_sub(LOOKED_AT);
-            let line = memchr::memrchr(b'\n', &before[first..]).map_or(first, |end| first + end);
-            Some(Span::new(at.source, line, at.range().end))
-        }
+        "E0010" => Some(Span::new(at.source, line_of(at, sources), at.range().end)),
         _ => None,
     }
 }
@@ -103,10 +98,9 @@ fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
 fn going_on(brace: Span, sources: &Sources) -> Span {
     let (text, start) = (sources.text(brace.source).as_bytes(), brace.range().start);
     let indent = |line: &[u8]| line.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
-    let near = start.saturating_sub(LOOKED_AT);
-    let line = memchr::memrchr(b'\n', &text[near..start]).map_or(near, |end| near + end + 1);
-    let own = indent(&text[line..]);
-    let below = &text[start..(start + LOOKED_AT).min(text.len())];
+    let own = indent(text.get(line_of(brace, sources)..).unwrap_or_default());
+    let below = text.get(start..).unwrap_or_default();
+    let below = &below[..below.len().min(LOOKED_AT)];
     let is_within = |line: &&[u8]| indent(line) >= own || !line.trim_ascii().starts_with(b"}");
     let mut lines = below.split_inclusive(|byte| *byte == b'\n');
     let n = lines.next().map_or(0, <[u8]>::len);
@@ -129,8 +123,9 @@ fn is_given_in(found: &Diagnostic, doubt: Span, sources: &Sources) -> bool {
     });
     let mut names = found.message.split('`').skip(1).step_by(2);
     let is_given = |name: &str| {
-        memchr::memmem::find_iter(within.as_bytes(), name)
-            .any(|i| within[i + name.len()..].trim_start().starts_with('='))
+        let mut places = memchr::memmem::find_iter(within.as_bytes(), name);
+        let is_set = |rest: &str| rest.trim_start().starts_with('=');
+        places.any(|i| within.get(i + name.len()..).is_some_and(is_set))
     };
     is_inside && depth > 0 && names.any(is_given)
 }
@@ -160,10 +155,15 @@ fn lacks_name(found: &Diagnostic, sources: &Sources) -> bool {
 /// Whether a mistake stands on a line that reads another file.
 fn includes(found: &Diagnostic, sources: &Sources) -> bool {
     let Some(at) = found.span() else { return false };
-    let before = &sources.text(at.source).as_bytes()[..at.range().start];
-    let first = before.len().saturating_sub(LOOKED_AT);
-    let line = memchr::memrchr(b'\n', &before[first..]).map_or(first, |end| first + end + 1);
-    sources.text(at.source).as_bytes()[line..].trim_ascii_start().starts_with(b"include")
+    let line = sources.text(at.source).get(line_of(at, sources)..).unwrap_or_default();
+    line.trim_ascii_start().starts_with("include")
+}
+
+/// Where the line of a place begins, or as far before it as is looked at.
+fn line_of(at: Span, sources: &Sources) -> usize {
+    let before = sources.text(at.source).as_bytes().get(..at.range().start).unwrap_or_default();
+    let near = before.len().saturating_sub(LOOKED_AT);
+    memchr::memrchr(b'\n', &before[near..]).map_or(near, |end| near + end + 1)
 }
 
 /// How many names are told of that nothing stands for.

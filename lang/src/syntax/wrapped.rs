@@ -54,10 +54,10 @@ fn chosen(around: &Around<'_>) -> Option<Diagnostic> {
 
 /// `material.diffuse { … }`
 fn dotted(around: &Around<'_>) -> Option<Diagnostic> {
-    let brace = around.at.checked_sub(3).filter(|_| around.word(around.at) == "{")?;
-    let [category, dot, kind] = around.tokens.get(brace..around.at)? else { return None };
+    let start = around.at.checked_sub(3).filter(|_| around.word(around.at) == "{")?;
+    let [category, dot, kind] = around.tokens.get(start..around.at)? else { return None };
     let is_one = is_category(category.text) && dot.text == "." && kind.kind == TokenKind::Word;
-    let begins = around.begins(brace) || around.word(brace - 1) == "=";
+    let begins = around.begins(start) || around.word(start - 1) == "=";
     let gap = Span::new(around.source, category.end(), kind.start);
     let message = format!("no `.` stands between `{}` and its kind", category.text);
     (is_one && begins).then(|| told(around.span(dot), message).fix(gap, " "))

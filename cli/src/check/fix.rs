@@ -73,7 +73,8 @@ fn is_file(files: &DiskFiles, name: &str, text: &str) -> bool {
 /// Whether a text begins as a scene does: another kind of file is not for us to change.
 fn is_scene(diagnostics: &[Diagnostic], id: SourceId) -> bool {
     let of_file = |found: &&Diagnostic| found.span().is_some_and(|span| span.source == id);
-    !diagnostics.iter().filter(of_file).any(|found| found.code == "E0001")
+    let is_other = |found: &Diagnostic| found.code == "E0001" && found.sure().is_none();
+    !diagnostics.iter().filter(of_file).any(is_other)
 }
 
 /// The mends of a text that make it better: all of them, or else those that do so by themselves. Mends of

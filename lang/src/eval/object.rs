@@ -220,7 +220,10 @@ impl Evaluator<'_> {
             is_placed: true,
             lacks_own: false,
         };
-        self.given_twice(fields.iter().map(|field| &field.name));
+        // What stands there twice may have been meant for any.
+        if self.given_twice(fields.iter().map(|field| &field.name)) {
+            out.meant.push(None);
+        }
         for field in fields {
             let Some(param) = Registry::params(class).find(|p| p.name == &*field.name.text) else {
                 match &*field.name.text {
@@ -326,8 +329,9 @@ impl Evaluator<'_> {
         Argument { name: param.name, value, span: field.span }
     }
 
-    /// Tells of fields that have the name of one before.
-    pub(super) fn given_twice<'n>(&mut self, names: impl Iterator<Item = &'n Name>) {
+    /// Tells of fields that have the name of one before; whether there are any.
+    pub(super) fn given_twice<'n>(&mut self, names: impl Iterator<Item = &'n Name>) -> bool {
+        let mut any = false;
         let mut firsts: BTreeMap<&str, Span> = BTreeMap::new();
         for name in names {
             let first = *firsts.entry(&name.text).or_insert(name.span);
@@ -335,8 +339,10 @@ impl Evaluator<'_> {
                 let message = format!("`{}` is given twice", name.text);
                 let diagnostic = Diagnostic::error("E0404", name.span, message);
                 self.tell(diagnostic.label(first, "first given here"));
+                any = true;
             }
         }
+        any
     }
 
     fn deprecated(&mut self, param: &Param, field: &FieldValue, all: &[FieldValue]) {

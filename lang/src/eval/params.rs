@@ -35,9 +35,13 @@ impl Evaluator<'_> {
         let range = def.range.as_ref().map(|range| limits(self, range));
         let own = self.eval(&def.value, env);
         let own = self.fit(&def.ty, own, def.value.span, env);
+        let n_before = self.mistakes();
         self.in_range(def, &own, range.as_ref(), def.value.span, "E0405");
+        let is_outside = self.mistakes() > n_before;
         let place = env.file.is_root.then(|| self.declare(def, range.as_ref(), &own));
-        let Some(given) = env.file.overrides.get(&def.name.text).cloned() else { return own };
+        let Some(given) = env.file.overrides.get(&def.name.text).cloned() else {
+            return if is_outside { Value::Poison } else { own };
+        };
         let before = self.mistakes();
         let code = if env.file.is_root { Some("E0112") } else { None };
         let value = self.fit_setting(def, &own, &given, env, code);

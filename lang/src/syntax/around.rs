@@ -95,6 +95,11 @@ impl<'a> Around<'a> {
             || self.tokens.get(i).is_some_and(|t| t.first_on_line)
     }
 
+    /// The first token of the statement or field of the place.
+    pub(super) fn statement(&self) -> usize {
+        (0..=self.at).rev().find(|i| self.begins(*i)).unwrap_or(0)
+    }
+
     /// Whether token `i` is the first of its argument.
     pub(super) fn begins_argument(&self, i: usize) -> bool {
         i > 0 && matches!(self.word(i - 1), "(" | ",")

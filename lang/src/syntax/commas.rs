@@ -126,6 +126,14 @@ impl Around<'_> {
             let found = self.error("E0023", word, format!("`{}` is written twice", word.text));
             return Some(found.guess(Span::new(self.source, value.end(), word.end()), ""));
         }
+        // `size = 120 x 5 x 35 cm`
+        let are_numbers = [i.wrapping_sub(2), i - 1]
+            .iter()
+            .any(|i| self.tokens.get(*i).is_some_and(|token| token.kind == TokenKind::Number));
+        if word.text == "x" && are_numbers && given.kind == TokenKind::Number {
+            let found = self.error("E0023", word, "a size is a vector");
+            return Some(found.help("it is written `(1.2, 0.5, 3) m`"));
+        }
         let message =
             format!("a comma is missing before `{0}`, and `=` behind it", short(word.text));
         let gap = Span::new(self.source, value.end(), given.start);

@@ -36,7 +36,7 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     if first.text == "import" {
         return imported(&words).map(|(text, token)| name(text, token, token)).collect();
     }
-    if matches!(first.text, "for" | "foreach") {
+    if matches!(first.text, "for" | "foreach" | "until" | "while") {
         return of_loop(&words).map(|t| name(t.text, t, t)).collect();
     }
     // `x := 3`, `letx: float = 3`
@@ -47,6 +47,10 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     let close = words.iter().position(|t| t.text == ")");
     if close.is_some_and(|close| mark(1) == "(" && mark(close + 1) == "=") {
         return Box::new([name(first.text, first, first)]);
+    }
+    // `include "a.scene" as lib`
+    if let Some(third) = word(3).filter(|_| mark(2) == "as" && mark(0) != "import") {
+        return Box::new([name(third.text, third, third)]);
     }
     if is_category(first.text) {
         return of_object(&words).map(|t| name(t.text, t, t)).collect();
@@ -81,13 +85,15 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     }
 }
 
-/// The names of `for i, ball in balls` without its block, `for (int i = 0;`, `for i ball in balls`.
+/// The names of `for i, ball in balls` without its block, `for (int i = 0;`, `for i ball in balls`, `while i < n`.
 fn of_loop<'t, 'a>(words: &'t [Token<'a>]) -> impl Iterator<Item = &'t Token<'a>> {
     let mark = |i: usize| words.get(i).map_or("", |t| t.text);
-    let end = words.iter().position(|t| t.text == "in");
+    // What a `while` compares is of the loop too.
+    let all = matches!(mark(0), "until" | "while").then_some(words.len());
+    let end = words.iter().position(|t| t.text == "in").or(all);
     let end = end.unwrap_or(if mark(2) == "," { 4 } else { 2 + usize::from(mark(1) == "(") * 2 });
     let names = words.iter().take(end).filter(|t| t.kind == TokenKind::Word);
-    names.filter(|t| !RESERVED.contains(&t.text) && !is_type(t.text) && t.text != "foreach")
+    names.filter(|t| !RESERVED.contains(&t.text) && !is_type(t.text) && t.start > words[0].start)
 }
 
 /// The names of `material gold = conductor { … }` and `material red diffuse { … }`: of the latter the second as

@@ -189,9 +189,18 @@ impl<'a> Around<'a> {
             let span = self.span(current);
             return Some(self.error("E0013", current, message).fix(span, ""));
         }
-        let doubled = [Some(current), Some(before), self.tokens.get(self.at + 1)];
-        let doubled = doubled.into_iter().flatten().find(|t| t.text == "==")?;
+        let near = [self.at, self.at - 1, self.at + 1];
+        let doubled = near.into_iter().find(|i| self.word(*i) == "==" && self.is_given(*i))?;
+        let doubled = &self.tokens[doubled];
         Some(self.error("E0013", doubled, COMPARES.to_owned()).fix(self.span(doubled), "="))
+    }
+
+    /// Whether a value is given to what stands before token `sign`: not in `elif i == 1`.
+    fn is_given(&self, sign: usize) -> bool {
+        let Some(name) = sign.checked_sub(1).filter(|i| self.is_word(*i)) else { return false };
+        let Some(word) = name.checked_sub(1).filter(|_| !self.begins(name)) else { return true };
+        let defines = BEFORE_NAMES.contains(&self.word(word));
+        !self.is_word(word) || defines || self.word(word) == "set"
     }
 
     /// The next word of the language that begins a line outside brackets, or of an object that no `=`

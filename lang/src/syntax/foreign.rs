@@ -274,7 +274,8 @@ fn called_parameter(around: &Around<'_>) -> Option<Diagnostic> {
         (0..unit).rev().find(|i| around.word(*i) == "(" && around.closing(*i) == Some(unit - 1))?;
     let at = open.checked_sub(1).filter(|i| around.is_word(*i))?;
     let name = &around.tokens[at];
-    if around.inner() != Place::Fields || is_category(name.text) {
+    let is_listed = around.open.last().is_some_and(|open| around.word(*open) != "{");
+    if around.inner() != Place::Fields || is_listed || is_category(name.text) {
         return None;
     }
     let before = &around.tokens[at.checked_sub(1)?];

@@ -5,6 +5,7 @@ use luxel_core::diag::{Diagnostic, Span};
 use super::around::{Around, Place, is_category, stands_nowhere, told};
 use super::defined::stem;
 use super::foreign::{TYPE_BEHIND, TYPES, foreign};
+use super::joins::{nameless, operator, word_operator};
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
 use super::paths::{imported_from, unquoted};
@@ -40,14 +41,6 @@ pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| two_words(around))
         .or_else(|| object(around))
         .or_else(|| given(around))
-}
-
-/// Tokens that stand side by side from `first` on, as one place, if their texts are these.
-fn joined(around: &Around<'_>, first: usize, texts: &[&str]) -> Option<Span> {
-    let tokens = around.tokens.get(first..first + texts.len())?;
-    let touch = tokens.windows(2).all(|pair| pair[0].end() == pair[1].start);
-    let same = tokens.iter().zip(texts).all(|(token, text)| token.text == *text);
-    (touch && same).then(|| around.span(&tokens[0]).to(around.span(&tokens[texts.len() - 1])))
 }
 
 /// `# comment` and `#ff8000`
@@ -102,161 +95,17 @@ fn directive(around: &Around<'_>, mark: &Token<'_>) -> Option<Diagnostic> {
     Some(found.guess(head, format!("let {} = ", name.text)))
 }
 
-/// `a | b`, `|x| x * 2` and `&a`
-fn half_joined(around: &Around<'_>, i: usize) -> Option<Diagnostic> {
-    let sign = around.tokens.get(i).filter(|sign| matches!(sign.text, "&" | "|"))?;
-    let (span, op) = (around.span(sign), sign.text);
-    let joins = i.checked_sub(1).is_some_and(|i| around.tokens[i].ends_operand());
-    Some(if joins {
-        let twice = op.repeat(2);
-        told(span, format!("conditions are joined with `{twice}`")).fix(span, twice)
-    } else if op == "|" {
-        let found = told(span, "a function is defined with `fn`");
-        found.help("it is written `fn f(x: float) = x + 1`")
-    } else {
-        told(span, "no `&` stands before a value").guess(span, "")
-    })
-}
-
-/// `x := 3`, `2 ** 3`, `x += 1`, `a ? b : c`, `fn f() -> float`, `(x) => x`
-fn operator(around: &Around<'_>) -> Option<Diagnostic> {
-    let current = around.current()?;
-    let (at, back) = (around.at, around.at.saturating_sub(1));
-    for first in [back, at] {
-        if let Some(span) = joined(around, first, &[":", "="]) {
-            return Some(told(span, "a value is given with `=`").fix(span, "="));
-        }
-        if let Some(span) = joined(around, first, &["=", "<"]) {
-            return Some(told(span, "this comparison is written `<=`").fix(span, "<="));
-        }
-        if let Some(span) = joined(around, first, &["==", "="]) {
-            return Some(told(span, "values are compared with `==`").fix(span, "=="));
-        }
-        if let Some(found) = half_joined(around, first) {
-            return Some(found);
-        }
-        if let Some(span) = joined(around, first, &["*", "*"]) {
-            return Some(told(span, "a power is written with `^`").fix(span, "^"));
-        }
-        if let Some(span) = joined(around, first, &["-", ">"]) {
-            if around.inner() == Place::Fields && around.is_word(first.wrapping_sub(1)) {
-                return Some(told(span, "a value is given with `=`, not with `->`").fix(span, "="));
-            }
-            let open = around.open.last().filter(|open| around.word(**open) == "[");
-            if open.is_some_and(|open| around.word(open + 1) == "for") {
-                let message = "what a list is made of stands behind `=>`";
-                return Some(told(span, message).fix(span, "=>"));
-            }
-            let found = told(span, "what a function gives is not declared");
-            let ty = around.tokens.get(first + 2).filter(|ty| ty.kind == TokenKind::Word);
-            let before =
-                around.tokens.get(first.wrapping_sub(1)).map_or(span.range().start, Token::end);
-            let end = ty.map_or(span.range().end, Token::end);
-            return Some(found.guess(Span::new(around.source, before, end), ""));
-        }
-        for op in ["+", "-", "*", "/"] {
-            if let Some(span) = joined(around, first, &[op, "="]) {
-                let message = format!("a name keeps its value: `{op}=` cannot change it");
-                return Some(told(span, message).help("give the new value a name with `let`"));
-            }
-        }
-    }
-    match current.text {
-        "?" => Some(
-            told(around.span(current), "a choice is no operator")
-                .help("it is written `if x > 1 { a } else { b }`"),
-        ),
-        "=>" if around.inner() == Place::Fields && around.begins(back) => {
-            let span = around.span(current);
-            Some(told(span, "a value is given with `=`").fix(span, "="))
-        }
-        "=>" if around.before(1)?.text == ")" && around.word(0) == "fn" => {
-            let span = around.span(current);
-            Some(told(span, "what a function gives stands behind `=`").fix(span, "="))
-        }
-        "=>" => Some(nameless(around.span(current))),
-        _ => None,
-    }
-}
-
-fn nameless(span: Span) -> Diagnostic {
-    told(span, "a function has a name").help("it is written `fn f(x: float) = x + 1`")
-}
-
-/// `a and b`, `a or b`, `not a`
-fn word_operator(around: &Around<'_>) -> Option<Diagnostic> {
-    let back = around.at.saturating_sub(1);
-    [back, around.at].into_iter().find_map(|i| {
-        let word = around.tokens.get(i)?;
-        let next = around.tokens.get(i + 1).filter(|next| !next.first_on_line)?;
-        let before = i.checked_sub(1).and_then(|i| around.tokens.get(i))?;
-        if !next.begins_operand() || around.begins(i) {
-            return None;
-        }
-        let span = around.span(word);
-        match word.text {
-            "and" | "or" if before.ends_operand() => condition(span, word.text),
-            "not" if !before.ends_operand() || before.text == "if" => {
-                let all = Span::new(around.source, word.start, next.start);
-                let found = told(span, "`not` is written `!`");
-                let (first, end) = (operand(around, i + 1), negated(around, i + 1));
-                if first == end {
-                    return Some(found.fix(all, "!"));
-                }
-                let what = &around.text[next.start..around.tokens[end - 1].end()];
-                let all = Span::new(around.source, word.start, around.tokens[end - 1].end());
-                Some(found.guess(all, format!("!({what})")))
-            }
-            _ => None,
-        }
-    })
-}
-
-/// What is said of a word that joins conditions elsewhere, if it is one.
-pub(super) fn condition(span: Span, word: &str) -> Option<Diagnostic> {
-    let (_, sign) = [("and", "&&"), ("or", "||")].into_iter().find(|(known, _)| *known == word)?;
-    Some(told(span, format!("`{word}` is written `{sign}`")).fix(span, sign))
-}
-
-/// The token behind the name, number, call or brackets that begin with token `at`.
-fn operand(around: &Around<'_>, at: usize) -> usize {
-    let mut next = match around.word(at) {
-        "(" | "[" => around.closing(at).map_or(at, |end| end + 1),
-        _ => at + 1,
-    };
-    loop {
-        let touches =
-            around.tokens.get(next).is_some_and(|t| t.start == around.tokens[next - 1].end());
-        next = match around.word(next) {
-            "." => next + 2,
-            "(" | "[" if touches => around.closing(next).map_or(next + 1, |end| end + 1),
-            _ => return next.min(around.tokens.len()),
-        };
-    }
-}
-
-/// The token behind all that a `not` before token `at` is about: up to another condition, or where the
-/// whole one ends.
-fn negated(around: &Around<'_>, at: usize) -> usize {
-    let mut next = operand(around, at);
-    while let Some(token) = around.tokens.get(next).filter(|t| t.is_operator() && !t.first_on_line)
-    {
-        let is_over = matches!(token.text, "&&" | "||" | "?" | "=>");
-        let follows = around.tokens.get(next + 1).is_some_and(Token::begins_operand);
-        if is_over || !follows {
-            break;
-        }
-        next = operand(around, next + 1);
-    }
-    next
-}
-
 /// `elif`, `return`, `lambda`, `mut`
 fn word(around: &Around<'_>) -> Option<Diagnostic> {
     let current = around.current()?;
     let before = around.before(1)?;
-    let span = around.span(current);
-    if matches!(current.text, "elif" | "elsif" | "elseif") && before.text == "}" {
+    let first = around.at.saturating_sub(2).max(1);
+    let is_branch = |i: &usize| {
+        let is_one = matches!(around.word(*i), "elif" | "elsif" | "elseif");
+        is_one && around.word(i - 1) == "}"
+    };
+    if let Some(i) = (first..=around.at).find(is_branch) {
+        let span = around.span(&around.tokens[i]);
         return Some(told(span, "a further branch is written `else if`").fix(span, "else if"));
     }
     match before.text {
@@ -297,6 +146,10 @@ fn share(around: &Around<'_>) -> Option<Diagnostic> {
     let value: f64 = number.text.parse().ok().filter(|_| is_share && !follows)?;
     let span = around.span(number).to(around.span(sign));
     let found = told(span, "a share is written as a number: 1 is all");
+    // Of a tolerance it is a share of what is expected.
+    if around.word(around.statement()) == "expect" {
+        return Some(found.help("a tolerance is measured as what is expected: `0.5 ± 0.05`"));
+    }
     Some(found.guess(span, format!("{}", value / 100.0)))
 }
 

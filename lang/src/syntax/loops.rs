@@ -57,15 +57,23 @@ fn bracketed(around: &Around<'_>, start: usize) -> Option<Diagnostic> {
     ))
 }
 
-/// `for i 0..9 { … }`
+/// `for i 0..9 { … }` and `for i of 0..9 { … }`
 fn over_nothing(around: &Around<'_>, start: usize) -> Option<Diagnostic> {
     let (name, next) = (around.tokens.get(start + 1)?, around.tokens.get(start + 2)?);
     let is_loop = around.word(start) == "for" && name.kind == TokenKind::Word;
     let goes_on = next.begins_operand() && !next.first_on_line && name.end() < next.start;
     let end = (start + 2..around.tokens.len()).find(|i| around.word(*i) == "{")?;
-    let is_whole = around.tokens[start..end].iter().all(|t| !matches!(t.text, "in" | "=" | ","));
+    let is_whole = around.tokens[start..end].iter().all(|t| !matches!(t.text, "in" | "="));
+    let is_whole = is_whole && next.text != ",";
     if !is_loop || !goes_on || next.text == "{" || !is_whole {
         return None;
+    }
+    // `for i of 0..9`
+    let value = around.tokens.get(start + 3)?;
+    let is_word = next.kind == TokenKind::Word && next.end() < value.start;
+    if is_word && value.begins_operand() && value.text != "{" {
+        let message = format!("`in` stands between `{}` and what it runs over", name.text);
+        return Some(told(around.span(next), message).fix(around.span(next), "in"));
     }
     let message = format!("`in` is missing between `{}` and what it runs over", name.text);
     let gap = Span::new(around.source, name.end(), name.end());

@@ -22,6 +22,7 @@ mod habits;
 mod head;
 mod header;
 mod headless;
+mod joins;
 mod lex;
 mod listed;
 mod loops;

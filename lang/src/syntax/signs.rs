@@ -48,6 +48,9 @@ fn typed(around: &Around<'_>) -> Option<Diagnostic> {
         return Some(found);
     }
     let (_, here, message) = SIGNS.iter().find(|(sign, ..)| *sign == mark.text)?;
+    // `2π`
+    let is_factor = c == 'π' && around.before(1).is_some_and(|t| t.kind == TokenKind::Number);
+    let here = if is_factor { &" * pi" } else { here };
     Some(told(around.span(mark), *message).fix(around.span(mark), *here))
 }
 

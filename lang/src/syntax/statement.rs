@@ -8,6 +8,9 @@ use super::lex::{Token, TokenKind};
 use super::make::RESERVED;
 use super::peers::is_pbrt;
 
+/// Words with which other languages end something.
+const ENDING: [&str; 8] = ["break", "continue", "done", "end", "endif", "fi", "pass", "return"];
+
 /// Why the place cannot be read, if such a statement stands there.
 pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
     placed_call(around)
@@ -86,6 +89,9 @@ fn lone_name(around: &Around<'_>) -> Option<Diagnostic> {
         return None;
     }
     let all = around.span(name).to(around.span(last));
+    if ENDING.contains(&name.text) {
+        return Some(told(all, format!("`{}` begins no statement", name.text)));
+    }
     let start = Span::new(around.source, name.start, name.start);
     let found = told(all, "a name by itself says nothing");
     Some(found.help("`place` puts what it names into the scene").guess(start, "place "))

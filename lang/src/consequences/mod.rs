@@ -28,6 +28,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let is_unended = causes.clone().any(|found| found.code == "E0005");
     let is_nameless = causes.clone().any(|found| lacks_name(found, sources));
     let is_unincluded = causes.clone().any(|found| includes(found, sources));
+    let has_others = diagnostics.iter().any(|found| found.is_error() && found.code != "E0109");
     let is_one_name = is_nameless && n_unknown(diagnostics, sources) == 1;
     let mut causes: Vec<Span> = causes.flat_map(of).collect();
     causes.sort_unstable();
@@ -43,7 +44,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         let says_less = match found.code {
             "E0101" => has_cause(&words) || is_one_name || is_nameless && found.sure().is_none(),
             // A text that does not end may be a label, and a file that is not read may bear it.
-            "E0109" => is_unended || is_unincluded,
+            "E0109" => is_unended || is_unincluded || has_others && is_label(found, sources),
             "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
@@ -150,6 +151,17 @@ fn body(found: &Diagnostic, sources: &Sources) -> Option<Span> {
 fn lacks_name(found: &Diagnostic, sources: &Sources) -> bool {
     let word = found.span().and_then(|at| sources.text(at.source).get(at.range()));
     found.code == "E0019" && word.is_some_and(|word| BEFORE_NAMES.contains(&word))
+}
+
+/// Whether what is not in the scene is a label of its text all the same: of what something else left out.
+fn is_label(found: &Diagnostic, sources: &Sources) -> bool {
+    let Some(at) = found.span() else { return false };
+    let text = sources.text(at.source);
+    let label = text.get(at.range()).map(|label| format!("\"{label}\""));
+    label.is_some_and(|label| {
+        memchr::memmem::find_iter(text.as_bytes(), &label)
+            .any(|at| text.as_bytes()[at + label.len()..].trim_ascii_start().starts_with(b"{"))
+    })
 }
 
 /// Whether a mistake stands on a line that reads another file.

@@ -21,7 +21,7 @@ impl Scanner<'_> {
                     self.at += 1;
                     break;
                 }
-                b'\\' => self.escape(),
+                b'\\' => self.escape(start),
                 _ => {
                     self.at = self.likely_end(start + 1);
                     self.out.faults.push(Fault::String { at: start..self.at });
@@ -34,7 +34,8 @@ impl Scanner<'_> {
         self.in_for &= self.open.len() != self.depth;
     }
 
-    fn escape(&mut self) {
+    /// An escape of the string that begins at `start`.
+    fn escape(&mut self, start: usize) {
         let rest = &self.bytes[self.at + 1..];
         let length = match rest.first() {
             Some(b'"' | b'\\' | b'n' | b't') => Some(1),
@@ -58,7 +59,12 @@ impl Scanner<'_> {
             None | Some(b'\n') => 0,
             Some(_) => 1 + rest[1..].iter().take_while(continues).count(),
         };
-        self.out.faults.push(Fault::Escape { at: self.at..self.at + 1 + length });
+        // Of a path with such between its folders one is told.
+        let is_told = |fault: &Fault| matches!(fault, Fault::Escape { at } if at.start > start);
+        let is_path = rest.first() != Some(&b'u');
+        if !is_path || !self.out.faults.last().is_some_and(is_told) {
+            self.out.faults.push(Fault::Escape { at: self.at..self.at + 1 + length });
+        }
         self.at += 1 + length;
     }
 

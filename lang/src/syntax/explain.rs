@@ -27,6 +27,9 @@ pub(super) struct Explained {
     pub(super) resume: Option<usize>,
 }
 
+/// Tokens of a definition that are looked at for its range.
+const LOOKED_AT: usize = 16;
+
 /// What is said of `==` where a value is given.
 pub(crate) const COMPARES: &str = "`==` compares; a value is given with `=`";
 /// What is said of an `else` that nothing stands before.
@@ -114,6 +117,12 @@ impl<'a> Around<'a> {
         }
         let before = self.before(1)?;
         let start = (0..self.at).rev().find(|i| self.begins(*i)).unwrap_or(0);
+        let after = self.tokens.get(self.at + 1);
+        let is_range = before.ends_operand() && after.is_some_and(Token::begins_operand);
+        if current.text == ":" && self.word(start) == "for" && is_range {
+            let message = "a range is written `0..3`: from 0 up to, but not, 3";
+            return Some(self.error("E0023", current, message).guess(self.span(current), ".."));
+        }
         if current.text == ":" && head::opens_block(self.word(start)) {
             let found = self.error("E0023", current, "a block stands between `{` and `}`");
             return Some(found.help("what is to be done stands in it, not behind `:`"));
@@ -132,7 +141,10 @@ impl<'a> Around<'a> {
             if self.is_word(self.at + 1) && self.word(self.at + 2) == "=" {
                 let start = Span::new(self.source, before.start, before.start);
                 let help = "a name with a type is defined with `let` or `param`";
-                return Some(found.help(help).guess(start, "let "));
+                let value = (self.at..).take_while(|i| !self.begins(*i) || *i == self.at);
+                let has_range = value.take(LOOKED_AT).any(|i| self.word(i) == "in");
+                let word = if has_range { "param " } else { "let " };
+                return Some(found.help(help).guess(start, word));
             }
             return Some(self.colon(current, before, found));
         }

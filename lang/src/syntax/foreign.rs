@@ -7,7 +7,8 @@ use luxel_core::diag::{Diagnostic, Grade, Span};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, stands_nowhere, told};
-use super::lex::{Token, TokenKind};
+use super::joins::branch;
+use super::lex::{Token, TokenKind, tokens};
 use super::loops::loops;
 use super::type_names;
 
@@ -123,6 +124,11 @@ fn lone_if(around: &Around<'_>) -> Option<Diagnostic> {
     // Reading stopped right behind it, or at it.
     if around.word(end + 1) == "else" || !(end..=end + 1).contains(&around.at) {
         return None;
+    }
+    // What begins a line is a statement of its own.
+    let below = tokens(around.text, around.end..around.text.len()).next();
+    if let Some(found) = below.and_then(|next| branch(around, &next)) {
+        return Some(found);
     }
     let found =
         told(around.span(&around.tokens[word]), "an `if` that gives a value wants an `else`");

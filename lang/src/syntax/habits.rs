@@ -5,7 +5,7 @@ use luxel_core::diag::{Diagnostic, Span};
 use super::around::{Around, Place, is_category, stands_nowhere, told};
 use super::defined::stem;
 use super::foreign::{TYPE_BEHIND, TYPES, foreign};
-use super::joins::{nameless, operator, word_operator};
+use super::joins::{branch, nameless, operator, word_operator};
 use super::lex::{Token, TokenKind};
 use super::listed::listed;
 use super::paths::{imported_from, unquoted};
@@ -99,14 +99,10 @@ fn directive(around: &Around<'_>, mark: &Token<'_>) -> Option<Diagnostic> {
 fn word(around: &Around<'_>) -> Option<Diagnostic> {
     let current = around.current()?;
     let before = around.before(1)?;
-    let first = around.at.saturating_sub(2).max(1);
-    let is_branch = |i: &usize| {
-        let is_one = matches!(around.word(*i), "elif" | "elsif" | "elseif");
-        is_one && around.word(i - 1) == "}"
-    };
-    if let Some(i) = (first..=around.at).find(is_branch) {
-        let span = around.span(&around.tokens[i]);
-        return Some(told(span, "a further branch is written `else if`").fix(span, "else if"));
+    let near = around.at.saturating_sub(2)..=around.at;
+    let mut behind = near.filter(|i| *i == 0 || around.word(i - 1) == "}");
+    if let Some(found) = behind.find_map(|i| branch(around, around.tokens.get(i)?)) {
+        return Some(found);
     }
     match before.text {
         "return" if !current.first_on_line => Some(

@@ -7,6 +7,9 @@ use super::lex::TokenKind;
 use super::make::RESERVED;
 use super::statement;
 
+/// Bytes above that are looked at for a definition.
+const LOOKED_AT: usize = 1 << 12;
+
 /// What is said of an object whose parameters do not stand in braces.
 pub(super) const BRACES: &str = "an object has its parameters between `{` and `}`";
 
@@ -216,8 +219,25 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
         return Some(around.error("E0023", next, BRACES));
     }
     let last = head.last()?;
+    // `material = material clay`, where `clay` is defined
+    let given = Span::new(around.source, head[0].start, last.start);
+    if start > 0 && around.word(start - 1) == "=" && is_defined(around, last.text) {
+        let message = format!("`{}` names what is given", last.text);
+        return Some(around.error("E0023", &head[0], message).guess(given, ""));
+    }
     let gap = Span::new(around.source, last.end(), last.end());
     Some(around.error("E0023", last, BRACES).guess(gap, " {}"))
+}
+
+/// Whether a `let` not far above defines a name.
+fn is_defined(around: &Around<'_>, name: &str) -> bool {
+    let above = &around.text.as_bytes()[..around.tokens.first().map_or(0, |first| first.start)];
+    let above = &above[above.len().saturating_sub(LOOKED_AT)..];
+    let is_word = |byte: Option<&u8>| byte.is_some_and(|b| b.is_ascii_alphanumeric() || *b == b'_');
+    memchr::memmem::find_iter(above, name).any(|at| {
+        let before = above[..at].trim_ascii_end();
+        before.ends_with(b"let") && before.len() < at && !is_word(above.get(at + name.len()))
+    })
 }
 
 /// A comment between the words of an object's head, which ends before token `end`.

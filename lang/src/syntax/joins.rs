@@ -178,3 +178,10 @@ fn negated(around: &Around<'_>, at: usize) -> usize {
     }
     next
 }
+
+/// What is said of a word for `else if`, if it is one.
+pub(super) fn branch(around: &Around<'_>, word: &Token<'_>) -> Option<Diagnostic> {
+    let span = around.span(word);
+    let found = told(span, "a further branch is written `else if`");
+    matches!(word.text, "elif" | "elsif" | "elseif").then(|| found.fix(span, "else if"))
+}

@@ -1,10 +1,12 @@
 //! Names, operators and lines as other notations have them.
 
 use luxel_core::diag::{Diagnostic, Span};
+use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, told};
 use super::lex::{Token, TokenKind};
 use super::make::{BEFORE_NAMES, RESERVED};
+use super::type_names;
 
 /// Words in a row that nobody writes but to say something to people.
 const SAID: usize = 3;
@@ -115,7 +117,13 @@ fn units(around: &Around<'_>) -> Option<Diagnostic> {
     let last = &around.tokens[end.map_or(around.tokens.len(), |n| around.at + 1 + n) - 1];
     let all = around.span(first).to(around.span(last));
     let found = told(all, format!("what `{}` says stands between `{{` and `}}`", word.text));
-    Some(found.guess(all, format!("{{ {} }}", &around.text[all.range()])))
+    let written = &around.text[all.range()];
+    // `units mm`
+    let name = Unit::named(written).and_then(|unit| {
+        type_names::measured().find(|name| type_names::dimension(name) == Some(unit.dimension))
+    });
+    let said = name.map_or_else(|| written.to_owned(), |name| format!("{name} = {written}"));
+    Some(found.guess(all, format!("{{ {said} }}")))
 }
 
 /// `a <> b`, `i++` and `*/`

@@ -13,7 +13,9 @@ impl Around<'_> {
     pub(super) fn swallowed(&self) -> Option<usize> {
         (0..=3).find(|back| {
             let word = self.before(*back).filter(|t| t.first_on_line && t.kind == TokenKind::Word);
-            let wants_more = || self.before(back + 1).is_some_and(Token::is_operator);
+            // The value of a function may begin below its head.
+            let gives = word.is_some_and(|word| word.text == "if");
+            let wants_more = || self.before(back + 1).is_some_and(Token::is_operator) && !gives;
             word.is_some() && (wants_more() || self.is_lone(self.at - back))
         })
     }

@@ -20,6 +20,7 @@ pub(super) fn wrapped(around: &Around<'_>) -> Option<Diagnostic> {
     made(around)
         .or_else(|| chosen(around))
         .or_else(|| dotted(around))
+        .or_else(|| recorded(around))
         .or_else(|| valued_body(around).and_then(|brace| body(around, brace)))
 }
 
@@ -61,6 +62,20 @@ fn dotted(around: &Around<'_>) -> Option<Diagnostic> {
     let gap = Span::new(around.source, category.end(), kind.start);
     let message = format!("no `.` stands between `{}` and its kind", category.text);
     (is_one && begins).then(|| told(around.span(dot), message).fix(gap, " "))
+}
+
+/// `let bench = { shape sphere { … } }`
+fn recorded(around: &Around<'_>) -> Option<Diagnostic> {
+    let brace = *around.open.last().filter(|open| around.word(**open) == "{")?;
+    let is_record = brace > 1 && around.word(brace - 1) == "=" && around.is_word(brace - 2);
+    let at = around.at.checked_sub(1)?;
+    let is_object = is_category(around.word(at))
+        && around.begins(at)
+        && around.is_word(at + 1)
+        && around.word(at + 2) == "{";
+    let gap = Span::new(around.source, around.tokens[brace].start, around.tokens[brace].start);
+    let found = told(around.span(&around.tokens[brace]), "objects stand in a `group { … }`");
+    (is_record && is_object).then(|| found.guess(gap, "group "))
 }
 
 /// The brace of `fn f(x: length) { x * 2 }`, in which one value stands.

@@ -220,6 +220,10 @@ impl Evaluator<'_> {
             self.tell(found);
             return Value::Poison;
         }
+        if let Some(found) = order::unbracketed(&given) {
+            self.tell(found);
+            return Value::Poison;
+        }
         let n_mistakes = self.mistakes();
         let n_unnamed = given.iter().filter(|given| given.name.is_none()).count();
         let args = self.arrange(builtin, given, span);

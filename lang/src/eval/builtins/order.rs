@@ -6,6 +6,17 @@ use super::super::Evaluator;
 use super::super::value::Value;
 use super::Given;
 
+/// `look_at(from = 0, 1.8, 7 m, to = …)`: numbers behind one with a name.
+pub(super) fn unbracketed(given: &[Given]) -> Option<Diagnostic> {
+    let is_number = |given: &Given| matches!(given.value, Value::Number(..));
+    let is_bare = |given: &Given| given.name.is_none() && is_number(given);
+    let first = given.iter().position(|given| given.name.is_some() && is_number(given))?;
+    let n = given[first + 1..].iter().take_while(|given| is_bare(given)).count();
+    let all = given[first].span.to(given[first + n].span);
+    let found = Diagnostic::error("E0402", all, "a vector has brackets of its own");
+    (n == 2).then(|| found.help("it is written `(1, 2, 3) m`"))
+}
+
 impl Evaluator<'_> {
     /// What is told of the arguments of a transform as a whole, if they are meant for it in another form.
     pub(super) fn misarranged(&self, function: &str, given: &[Given]) -> Option<Diagnostic> {

@@ -14,6 +14,9 @@ const BYTES: usize = 200;
 /// Bytes between two brackets on one line that are looked at.
 const LINE: usize = 1000;
 
+/// Bytes between brackets of a list over some lines.
+const LIST: u32 = 4000;
+
 /// What is told where something cannot be read.
 const UNREAD: [&str; 9] =
     ["E0009", "E0010", "E0012", "E0013", "E0014", "E0015", "E0016", "E0017", "E0023"];
@@ -164,7 +167,9 @@ fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> boo
             is_open && !bracket.starts_with('}') && is_line()
         }
         "E0009" => {
-            is_line() || opened(cause, sources).is_some_and(|open| closes_one(bracket, open))
+            let is_near = at.start.saturating_sub(before.end) <= LIST;
+            let open = opened(cause, sources).filter(|_| is_near);
+            is_line() || open.is_some_and(|open| closes_one(bracket, open))
         }
         "E0023" => cause.sure().is_none() && (bracket.starts_with('}') || is_line()),
         _ => false,

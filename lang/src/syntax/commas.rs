@@ -52,7 +52,8 @@ impl Around<'_> {
 
     /// The last token of a number, a word or words joined by dots that stands at the place as it does before it.
     fn again(&self) -> Option<usize> {
-        let n_before = (1..=self.at).step_by(2).find(|n| self.word(self.at - n - 1) != ".")?;
+        let is_joined = |n: usize| self.before(n + 1).is_some_and(|token| token.text == ".");
+        let n_before = (1..=self.at).step_by(2).find(|n| !is_joined(*n))?;
         let (before, here) = (&self.tokens[self.at - n_before..self.at], &self.tokens[self.at..]);
         let is_same =
             here.len() >= n_before && before.iter().zip(here).all(|(a, b)| a.text == b.text);

@@ -220,7 +220,9 @@ impl Evaluator<'_> {
             self.tell(found);
             return Value::Poison;
         }
-        if let Some(found) = order::unbracketed(&given) {
+        if builtin.name == "look_at"
+            && let Some(found) = order::unbracketed(&given)
+        {
             self.tell(found);
             return Value::Poison;
         }

@@ -95,9 +95,28 @@ impl<'a> Around<'a> {
             || self.tokens.get(i).is_some_and(|t| t.first_on_line)
     }
 
-    /// The first token of the statement or field of the place.
+    /// The first token of the statement or field of the place, outside round and square brackets.
     pub(super) fn statement(&self) -> usize {
-        (0..=self.at).rev().find(|i| self.begins(*i)).unwrap_or(0)
+        let brackets = self.open.iter().rev().take_while(|open| self.word(**open) != "{");
+        let mut first = brackets.last().copied().unwrap_or(self.at);
+        while first > 0 && !self.begins(first) {
+            first = self.opening(first - 1).unwrap_or(first - 1);
+        }
+        first
+    }
+
+    /// What stands in a bracket, without what stands in others in it.
+    pub(super) fn held(&self, open: usize) -> impl Iterator<Item = &Token<'a>> {
+        let close = self.closing(open).unwrap_or(self.tokens.len());
+        let mut depth = 0_usize;
+        self.tokens[open + 1..close].iter().filter(move |token| {
+            match token.text {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.saturating_sub(1),
+                _ => return depth == 0,
+            }
+            false
+        })
     }
 
     /// Whether token `i` is the first of its argument.
@@ -138,6 +157,16 @@ impl<'a> Around<'a> {
             || last > 0 && self.is_word(last) && is_category(self.word(last - 1));
         is_object || matches!(self.word(last), "=" | "with" | "where" | "units")
     }
+}
+
+/// Whether a word stands in a text right behind another, or behind a sign, blanks aside.
+pub(super) fn stands_behind(word: &str, before: &str, text: &[u8]) -> bool {
+    let is_of_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+    memchr::memmem::find_iter(text, word).any(|at| {
+        let ends = text.get(at + word.len()).is_none_or(|byte| !is_of_word(byte));
+        let begins = !text[..at].last().is_some_and(is_of_word);
+        begins && ends && text[..at].trim_ascii_end().ends_with(before.as_bytes())
+    })
 }
 
 /// Whether an object may begin with the word.

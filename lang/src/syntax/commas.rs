@@ -5,7 +5,7 @@ use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category};
 use super::explain::short;
-use super::lex::TokenKind;
+use super::lex::{Token, TokenKind};
 use super::make::RESERVED;
 
 impl Around<'_> {
@@ -65,19 +65,9 @@ impl Around<'_> {
         let Some(open) = self.open.last().copied().filter(|open| self.word(*open) == "(") else {
             return false;
         };
+        let reckons = |t: &Token<'_>| matches!(t.text, "+" | "-" | "*" | "/" | "^" | "%");
         let is_call = open > 0 && self.is_word(open - 1);
-        let close = self.closing(open).unwrap_or(self.tokens.len());
-        let (mut depth, mut reckons) = (0_usize, false);
-        let is_one = self.tokens[open + 1..close].iter().all(|token| {
-            match token.text {
-                "(" | "[" | "{" => depth += 1,
-                ")" | "]" | "}" => depth = depth.saturating_sub(1),
-                "+" | "-" | "*" | "/" | "^" | "%" => reckons = true,
-                _ => {}
-            }
-            depth > 0 || token.text != ","
-        });
-        !is_call && is_one && reckons
+        !is_call && self.held(open).any(reckons) && self.held(open).all(|t| t.text != ",")
     }
 
     /// Whether with commas where they are missing more than three numbers would stand in the innermost bracket:

@@ -120,8 +120,8 @@ impl<'a> Around<'a> {
         let after = self.tokens.get(self.at + 1);
         let is_range = before.ends_operand() && after.is_some_and(Token::begins_operand);
         if current.text == ":" && self.word(start) == "for" && is_range {
-            let message = "a range is written `0..3`: from 0 up to, but not, 3";
-            return Some(self.error("E0023", current, message).guess(self.span(current), ".."));
+            let found = self.error("E0023", current, head::RANGE);
+            return Some(found.guess(self.span(current), ".."));
         }
         if current.text == ":" && head::opens_block(self.word(start)) {
             let found = self.error("E0023", current, "a block stands between `{` and `}`");
@@ -202,13 +202,13 @@ impl<'a> Around<'a> {
             return Some(self.error("E0013", current, message).fix(span, ""));
         }
         let near = [self.at, self.at - 1, self.at + 1];
-        let doubled = near.into_iter().find(|i| self.word(*i) == "==" && self.is_given(*i))?;
+        let doubled = near.into_iter().find(|i| self.word(*i) == "==" && self.gives(*i))?;
         let doubled = &self.tokens[doubled];
         Some(self.error("E0013", doubled, COMPARES.to_owned()).fix(self.span(doubled), "="))
     }
 
     /// Whether a value is given to what stands before token `sign`: not in `elif i == 1`.
-    fn is_given(&self, sign: usize) -> bool {
+    fn gives(&self, sign: usize) -> bool {
         let Some(name) = sign.checked_sub(1).filter(|i| self.is_word(*i)) else { return false };
         let Some(word) = name.checked_sub(1).filter(|_| !self.begins(name)) else { return true };
         let defines = BEFORE_NAMES.contains(&self.word(word));

@@ -2,7 +2,7 @@
 
 use luxel_core::diag::{Diagnostic, Span};
 
-use super::around::{Around, Place, is_category, stands_nowhere, told};
+use super::around::{Around, Place, is_category, stands_behind, stands_nowhere, told};
 use super::defined::stem;
 use super::foreign::{TYPE_BEHIND, TYPES, foreign};
 use super::joins::{branch, nameless, operator, word_operator};
@@ -295,12 +295,7 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
 fn is_given(around: &Around<'_>, word: &str) -> bool {
     let (start, end) = (around.end, (around.end + LOOKED_AT).min(around.text.len()));
     let below = &around.text.as_bytes()[start.min(end)..end];
-    memchr::memmem::find_iter(below, word).any(|at| {
-        let before = below[..at].trim_ascii_end();
-        let ends =
-            below.get(at + word.len()).is_none_or(|b| !b.is_ascii_alphanumeric() && *b != b'_');
-        before.ends_with(b"=") && ends
-    })
+    stands_behind(word, "=", below)
 }
 
 /// `expect mean = 1, where { … }`, what is expected on one line

@@ -2,10 +2,13 @@
 
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
-use super::around::{Around, Place, is_category};
+use super::around::{Around, Place, is_category, stands_behind};
 use super::lex::TokenKind;
 use super::make::RESERVED;
 use super::statement;
+
+/// What is said of a range that is written otherwise.
+pub(super) const RANGE: &str = "a range is written `0..3`: from 0 up to, but not, 3";
 
 /// Bytes above that are looked at for a definition.
 const LOOKED_AT: usize = 1 << 12;
@@ -67,7 +70,7 @@ fn to(around: &Around<'_>, start: usize) -> Option<Diagnostic> {
     let at = (start..=around.at).find(|i| around.word(*i) == "to")?;
     let [first, word, last] = around.tokens.get(at.checked_sub(1)?..at + 2)? else { return None };
     let gap = Span::new(around.source, first.end(), last.start);
-    let found = around.error("E0023", word, "a range is written `0..3`: from 0 up to, but not, 3");
+    let found = around.error("E0023", word, RANGE);
     (!word.first_on_line).then(|| found.guess(gap, ".."))
 }
 
@@ -233,11 +236,7 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
 fn is_defined(around: &Around<'_>, name: &str) -> bool {
     let above = &around.text.as_bytes()[..around.tokens.first().map_or(0, |first| first.start)];
     let above = &above[above.len().saturating_sub(LOOKED_AT)..];
-    let is_word = |byte: Option<&u8>| byte.is_some_and(|b| b.is_ascii_alphanumeric() || *b == b'_');
-    memchr::memmem::find_iter(above, name).any(|at| {
-        let before = above[..at].trim_ascii_end();
-        before.ends_with(b"let") && before.len() < at && !is_word(above.get(at + name.len()))
-    })
+    stands_behind(name, "let", above)
 }
 
 /// A comment between the words of an object's head, which ends before token `end`.

@@ -72,7 +72,7 @@ pub(super) fn operator(around: &Around<'_>) -> Option<Diagnostic> {
             let span = around.span(current);
             Some(told(span, "a value is given with `=`").fix(span, "="))
         }
-        "=>" if around.before(1)?.text == ")" && around.word(0) == "fn" => {
+        "=>" if around.before(1)?.text == ")" && around.word(around.statement()) == "fn" => {
             let span = around.span(current);
             Some(told(span, "what a function gives stands behind `=`").fix(span, "="))
         }

@@ -94,9 +94,11 @@ pub struct Scan {
 const CONTINUE: [&[u8]; 4] = [b"else", b"with", b"in", b"as"];
 /// Words after which something must follow: a newline after them ends nothing.
 const PREFIX: [&[u8]; 17] = [
-    b"else", b"with", b"in", b"as", b"let", b"param", b"fn", b"for", b"if", b"include", b"import",
-    b"use", b"place", b"set", b"assert", b"expect", b"units",
+    b"let", b"param", b"fn", b"for", b"include", b"import", b"use", b"place", b"set", b"assert",
+    b"expect", b"units", b"if", b"else", b"with", b"in", b"as",
 ];
+/// Those of them that no value begins with.
+const STATEMENTS: &[&[u8]] = PREFIX.split_at(12).0;
 
 /// Faults that are noted: with more a text is no scene, and nothing after the last is scanned.
 pub(crate) const FAULTS: usize = 1000;
@@ -147,7 +149,17 @@ pub(crate) fn block_comment(text: &[u8]) -> Option<usize> {
     memchr::memmem::find(text.get(2..)?, b"*/").map(|end| end + 4)
 }
 
-#[expect(clippy::struct_excessive_bools, reason = "four independent facts about the place")]
+/// What stands before, comments apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Before {
+    /// What may end an expression.
+    Operand,
+    /// A sign, which a value follows: where a statement begins on the next line, it is missing.
+    Sign,
+    /// A word or bracket behind which a statement goes on.
+    Opening,
+}
+
 struct Scanner<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -158,8 +170,7 @@ struct Scanner<'a> {
     most: usize,
     is_known: &'a mut dyn FnMut(usize) -> bool,
     open: Vec<usize>,
-    /// Whether what stands before could end an expression.
-    operand: bool,
+    before: Before,
     newline: bool,
     /// Between `for` and `in`, or in an `assert` before its text, where a comma separates no statements.
     in_for: bool,
@@ -183,7 +194,7 @@ impl<'a> Scanner<'a> {
             most: FAULTS,
             is_known,
             open: vec![],
-            operand: true,
+            before: Before::Operand,
             newline: true,
             in_for: false,
             follower: None,
@@ -233,6 +244,10 @@ impl Scanner<'_> {
         self.out
     }
 
+    fn follows_operand(&self) -> bool {
+        self.before == Before::Operand
+    }
+
     fn next_is(&self, byte: u8) -> bool {
         self.bytes.get(self.at + 1) == Some(&byte)
     }
@@ -245,14 +260,16 @@ impl Scanner<'_> {
         match byte {
             b'\n' => self.newline = true,
             b' ' | b'\t' | b'\r' | 0xEF | 0xBB | 0xBF => {}
-            b',' if self.in_for => self.operand = false,
-            b',' | b';' => (self.operand, self.newline, self.follower) = (true, true, None),
+            b',' if self.in_for => self.before = Before::Opening,
+            b',' | b';' => {
+                (self.before, self.newline, self.follower) = (Before::Operand, true, None);
+            }
             b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'@' => {
                 while self.bytes.get(self.at).is_some_and(word) {
                     self.at += 1;
                 }
                 if self.is_member(start) {
-                    (self.operand, self.doc) = (true, None);
+                    (self.before, self.doc) = (Before::Operand, None);
                     return;
                 }
                 let name = &self.bytes[start..self.at];
@@ -270,7 +287,8 @@ impl Scanner<'_> {
                     };
                     self.in_for &= !begins;
                 }
-                self.operand = byte != b'@' && !PREFIX.contains(&name);
+                let opens = byte == b'@' || PREFIX.contains(&name);
+                self.before = if opens { Before::Opening } else { Before::Operand };
                 self.in_for = matches!(name, b"for" | b"assert") || (self.in_for && name != b"in");
             }
             b'0'..=b'9' => {
@@ -284,17 +302,17 @@ impl Scanner<'_> {
                 {
                     self.at += 1;
                 }
-                (self.operand, self.newline) = (true, false);
+                (self.before, self.newline) = (Before::Operand, false);
             }
             // `#define x`: no mistake of the statement before.
-            b'#' if self.operand && self.newline && self.open.len() == self.depth => {
+            b'#' if self.follows_operand() && self.newline && self.open.len() == self.depth => {
                 self.word(start);
-                (self.operand, self.in_for) = (false, false);
+                (self.before, self.in_for) = (Before::Sign, false);
             }
             _ => {
                 // `{ = 1 m }`: a value without a name, whose unit begins no statement.
                 self.first &= byte != b'=' || self.open.len() != self.depth;
-                (self.operand, self.newline) = (false, false);
+                (self.before, self.newline) = (Before::Sign, false);
             }
         }
     }
@@ -326,7 +344,12 @@ impl Scanner<'_> {
     fn word(&mut self, start: usize) -> bool {
         let mut begins = false;
         if self.open.len() == self.depth {
-            begins = self.first || (self.operand && self.newline);
+            let is_apart = match self.before {
+                Before::Operand => true,
+                Before::Sign => STATEMENTS.contains(&&self.bytes[start..self.at]),
+                Before::Opening => false,
+            };
+            begins = self.first || (is_apart && self.newline);
             if begins {
                 let start = self.doc.unwrap_or(start);
                 if !self.is_in_doubt(start) && (self.is_known)(start) {
@@ -345,7 +368,7 @@ impl Scanner<'_> {
     fn line_comment(&mut self) {
         let rest = &self.bytes[self.at..];
         let is_doc = rest.get(2) == Some(&b'/') && rest.get(3) != Some(&b'/');
-        if is_doc && self.doc.is_none() && self.operand && self.open.len() == self.depth {
+        if is_doc && self.doc.is_none() && self.follows_operand() && self.open.len() == self.depth {
             self.doc = Some(self.at);
         }
         self.at += memchr(b'\n', rest).unwrap_or(rest.len());
@@ -370,7 +393,7 @@ impl Scanner<'_> {
             self.out.faults.push(Fault::Unclosed { open: self.at + 1 });
             self.at = self.bytes.len();
         }
-        (self.operand, self.newline, self.doc) = (true, false, None);
+        (self.before, self.newline, self.doc) = (Before::Operand, false, None);
     }
 
     fn open_bracket(&mut self, byte: u8) -> bool {
@@ -384,7 +407,8 @@ impl Scanner<'_> {
             self.first = true;
         }
         let block = byte == b'{';
-        (self.operand, self.newline, self.doc) = (block, block, None);
+        self.before = if block { Before::Operand } else { Before::Opening };
+        (self.newline, self.doc) = (block, None);
         self.at += 1;
         true
     }
@@ -417,6 +441,12 @@ mod tests {
         let text =
             "scene 1\nlet a = 5 +\n  b\nlet c = [\nx,\ny]\n/// doc\nshape x {\n r = 1 }\n@off\nf()";
         assert_eq!(starts(text), ["scene 1", "let a = 5 +", "let c = [", "/// doc", "@off"]);
+    }
+
+    #[test]
+    fn where_a_value_is_missing_the_next_statement_begins_all_the_same() {
+        assert_eq!(starts("let a =\nlet b = 2 * // twice\n\nfn f() = 1\nuse +\nx").len(), 4);
+        assert_eq!(starts("let a =\nif b { c } else { d }\n@off\nlet e = 1").len(), 2);
     }
 
     #[test]

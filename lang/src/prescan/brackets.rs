@@ -3,7 +3,7 @@
 use luxel_sdk::kind::Kind;
 use memchr::{memchr, memrchr};
 
-use super::{Fault, LOOKED_AT, Scanner, closing};
+use super::{Before, Fault, LOOKED_AT, Scanner, closing};
 
 /// Bytes of a line before a bracket that are looked at, and behind one that was taken for one of another kind.
 const FAR: usize = 1 << 12;
@@ -151,7 +151,7 @@ impl Scanner<'_> {
 
     pub(super) fn close_bracket(&mut self, byte: u8) {
         if self.makes_up_for_last(byte) {
-            (self.operand, self.newline) = (true, false);
+            (self.before, self.newline) = (Before::Operand, false);
             self.at += 1;
             return;
         }
@@ -175,7 +175,7 @@ impl Scanner<'_> {
             }
             Some(_) => {}
         }
-        (self.operand, self.newline) = (true, false);
+        (self.before, self.newline) = (Before::Operand, false);
         self.at += 1;
     }
 }

@@ -2,7 +2,7 @@
 
 use memchr::memchr3;
 
-use super::{Fault, LOOKED_AT, Scanner, closing};
+use super::{Before, Fault, LOOKED_AT, Scanner, closing};
 
 impl Scanner<'_> {
     pub(super) fn string(&mut self) {
@@ -29,7 +29,7 @@ impl Scanner<'_> {
                 }
             }
         }
-        (self.operand, self.newline, self.doc) = (true, false, None);
+        (self.before, self.newline, self.doc) = (Before::Operand, false, None);
         // The text of an assertion ends it.
         self.in_for &= self.open.len() != self.depth;
     }

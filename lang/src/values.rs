@@ -89,7 +89,10 @@ impl Layers {
     fn value(&self, statement: SourceId, at: u32) -> Option<Cow<'_, str>> {
         let notes = self.of(statement)?;
         let i = notes.binary_search_by_key(&at, |note| note.0).ok()?;
-        Some(self.handed.value((statement, at)).unwrap_or(Cow::Borrowed(&notes[i].1)))
+        match self.handed.get((statement, at)) {
+            Some(shown) => shown.text(),
+            None => Some(Cow::Borrowed(&notes[i].1)),
+        }
     }
 
     /// Puts newer ones on top. Each layer has less than half as many as the one below: there are few.
@@ -120,11 +123,23 @@ impl Layers {
 #[derive(Debug, Default)]
 pub(crate) struct HandedOn(Vec<(Place, Shown)>);
 
-/// A value as it is shown, or that is put into words once it is looked at.
+/// A value as it is shown, or that is put into words once it is looked at; or nothing, where a mistake
+/// hides it.
 #[derive(Clone, Debug)]
 pub(crate) enum Shown {
     Text(Arc<str>),
     Later(Unsaid),
+    Nothing,
+}
+
+impl Shown {
+    fn text(&self) -> Option<Cow<'_, str>> {
+        match self {
+            Self::Text(text) => Some(Cow::Borrowed(text)),
+            Self::Later(it) => Some(Cow::Owned((it.say)(&it.numbers, it.measure))),
+            Self::Nothing => None,
+        }
+    }
 }
 
 /// Numbers of a dimension, in SI units.
@@ -137,12 +152,9 @@ pub(crate) struct Unsaid {
 }
 
 impl HandedOn {
-    fn value(&self, place: Place) -> Option<Cow<'_, str>> {
+    fn get(&self, place: Place) -> Option<&Shown> {
         let i = self.0.binary_search_by_key(&place, |(place, _)| *place).ok()?;
-        Some(match &self.0[i].1 {
-            Shown::Text(text) => Cow::Borrowed(&**text),
-            Shown::Later(it) => Cow::Owned((it.say)(&it.numbers, it.measure)),
-        })
+        Some(&self.0[i].1)
     }
 
     /// With newer ones.

@@ -90,6 +90,49 @@ fn beside_what_does_not_close_yet_an_edit_concerns_its_statement() {
 }
 
 #[test]
+fn beside_a_mistake_a_name_is_handed_on() {
+    let mut now: Vec<String> = [
+        "let r = 5 cm",
+        "let grey = material diffuse { reflectance = 0.5 }",
+        "let q = 1 m",
+        CAMERA,
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    now.extend((0..60).map(|i| match i % 3 {
+        0 => format!("shape sphere {{ radius = r * {i} + r, material = grey }}"),
+        1 => format!("shape sphere {{ radius = r, center = ({i}, q, 2 * r) }}"),
+        _ => "shape disk { radius = r, material = grey }".to_owned(),
+    }));
+    let good = now.clone();
+    let mut edited = Edited::new(Settings { noting: true, ..Settings::default() });
+    let mut n = |lines: &[String]| edited.counted(lines);
+    assert_eq!(n(&now), (66, 0));
+    // A name whose value a mistake hides hides it of all that uses it, and nothing more is told.
+    for (i, wrong) in
+        [(0, "let r = "), (0, "let r = 5 cm + 2 s"), (1, "let grey = material dif { }")]
+    {
+        wrong.clone_into(&mut now[i]);
+        let (n_evaluated, n_told) = n(&now);
+        assert!((1..4).contains(&n_evaluated) && n_told == 1, "{wrong} {n_evaluated} {n_told}");
+        now.clone_from(&good);
+        assert_eq!(n(&now).1, 0);
+    }
+    // One that is right, while something else is wrong.
+    now[2] = "let q = 1 m + 2 s".to_owned();
+    assert_eq!(n(&now), (2, 1));
+    now[0] = "let r = 7 cm".to_owned();
+    assert_eq!(n(&now), (3, 1));
+    // A second definition changes nothing but that it is told; one before the first takes its place.
+    now.clone_from(&good);
+    now.insert(4, "let r = 9 cm".to_owned());
+    assert_eq!(n(&now), (1, 1));
+    now.remove(4);
+    now.insert(0, "let grey = material diffuse { reflectance = 0.4 }".to_owned());
+    assert_eq!(n(&now), (3, 1));
+}
+
+#[test]
 fn of_vectors_that_each_shape_has_for_itself_the_numbers_are_handed_on() {
     let ball = |i: usize| {
         let center = match i % 5 {

@@ -45,12 +45,19 @@ pub(super) struct Fitted {
 /// A value for a parameter.
 #[derive(Clone, Debug)]
 pub(super) struct FittedValue {
-    /// By the numbers of nodes that were evaluated.
-    pub(super) value: scene::Value,
+    /// By the numbers of nodes that were evaluated; `None` where a mistake hides it.
+    pub(super) value: Option<scene::Value>,
     /// How an editor shows it, if it does.
     pub(super) shown: Option<Shown>,
     /// Steps that it takes to fit.
     pub(super) steps: u64,
+}
+
+impl FittedValue {
+    /// That of a parameter whose value a mistake hides, of which nothing more is told.
+    pub(super) fn hidden(is_shown: bool) -> Self {
+        Self { value: None, shown: is_shown.then_some(Shown::Nothing), steps: 0 }
+    }
 }
 
 impl Fitted {
@@ -66,10 +73,6 @@ impl Fitted {
 }
 
 impl Handed {
-    pub(super) fn is_empty(&self) -> bool {
-        self.places.is_empty()
-    }
-
     /// What is wanted, by number, each once.
     pub(super) fn wanted(&self) -> &[u32] {
         &self.wanted
@@ -197,6 +200,10 @@ impl State {
                 return None;
             }
             values.insert(wanted.formula, value.clone());
+            if value.is_poison() {
+                fitted.push(FittedValue::hidden(evaluator.noted.is_some()));
+                continue;
+            }
             fitted.push(self.fit((wanted, formula), value, (handed, env), evaluator)?);
         }
         Some(Fitted { values: fitted, of_wanted })
@@ -236,11 +243,11 @@ impl State {
         let value = evaluator.conform(param, &field)?;
         let steps = evaluator.steps - first;
         let is_fit = before == spent(evaluator) && is_simple(&value, &evaluator.scene.nodes);
-        is_fit.then_some(FittedValue { value, shown, steps })
+        is_fit.then_some(FittedValue { value: Some(value), shown, steps })
     }
 
     /// Gives the parameters their new values. `nodes` are the numbers here of those that were evaluated.
-    /// `None`, and a scene of no use, once it is over.
+    /// `None`, and a scene of no use, where a mistake hides one, or once it is over.
     pub(super) fn hand_on(
         &mut self,
         handed: Handed,
@@ -250,12 +257,12 @@ impl State {
     ) -> Option<()> {
         let Fitted { values, of_wanted } = fitted;
         let kept = |FittedValue { mut value, .. }: FittedValue| {
-            if let scene::Value::Node(NodeId(id)) = &mut value {
+            if let Some(scene::Value::Node(NodeId(id))) = &mut value {
                 *id = nodes[*id as usize];
             }
             value
         };
-        let values: Vec<_> = values.into_iter().map(kept).collect();
+        let values: Vec<_> = values.into_iter().map(kept).collect::<Option<_>>()?;
         let change = |(_, Place { node, argument, item, wanted, .. }): (SourceId, Place)| Changed {
             node,
             argument,
@@ -296,7 +303,11 @@ impl Fitted {
         let scene::Value::Vector(numbers) = &argument.value else { return None };
         let (mut numbers, mut measured) = (numbers.clone(), None);
         for (_, place) in places {
-            let scene::Value::Number(x, measure) = self.at(place).value else { return None };
+            let (x, measure) = match self.at(place).value {
+                Some(scene::Value::Number(x, measure)) => (x, measure),
+                Some(_) => return None,
+                None => return Some(Shown::Nothing),
+            };
             *numbers.get_mut(usize::from(place.item?))? = x;
             measured = Some(measure);
         }

@@ -265,11 +265,12 @@ impl State {
     ) -> Option<(Vec<usize>, Handed)> {
         let fresh = gone.start..gone.start + after.fresh.len();
         let new: BTreeSet<usize> = fresh.chain(those.iter().copied()).collect();
-        let gone_or_new = self.stmts[gone.clone()].iter().chain(new.iter().map(|i| after.at(*i)));
-        if gone_or_new.clone().any(Statement::is_wide) {
+        let mut gone_or_new =
+            self.stmts[gone.clone()].iter().chain(new.iter().map(|i| after.at(*i)));
+        if gone_or_new.any(Statement::is_wide) {
             return None;
         }
-        let is_changed = self.changed_names(gone_or_new, (after, firsts));
+        let is_changed = self.changed_names(&self.stmts[gone.clone()], &new, (after, firsts));
         if !is_changed.contains(&true) {
             return Some((new.into_iter().collect(), Handed::default()));
         }
@@ -289,21 +290,31 @@ impl State {
         (is_small && !is_one_wide).then(|| (concerned, self.handed(handed)))
     }
 
-    /// Which names have another value, by number, where statements are gone or new.
-    fn changed_names<'s>(
+    /// Which names have another value, by number, where statements are gone or new. A second definition of
+    /// a name gives it none.
+    fn changed_names(
         &self,
-        gone_or_new: impl Iterator<Item = &'s Statement>,
-        (after, firsts): (&After<'s>, &Firsts<'_>),
+        gone: &[Statement],
+        new: &BTreeSet<usize>,
+        (after, firsts): (&After<'_>, &Firsts<'_>),
     ) -> Vec<bool> {
         let mut is_changed = vec![false; self.names.len()];
-        let change = |stmt: &Statement, is_changed: &mut [bool]| {
-            stmt.names.defines().iter().for_each(|name| is_changed[*name as usize] = true);
+        for name in gone.iter().flat_map(|stmt| stmt.names.defines()) {
+            is_changed[*name as usize] = true;
+        }
+        let change = |i: usize, is_changed: &mut [bool]| {
+            let defines = after.at(i).names.defines().iter();
+            for name in defines.filter(|name| firsts.definer_of(**name) == Some(i)) {
+                is_changed[*name as usize] = true;
+            }
         };
-        gone_or_new.for_each(|stmt| change(stmt, &mut is_changed));
+        for i in new {
+            change(*i, &mut is_changed);
+        }
         if is_changed.contains(&true) {
-            for stmt in firsts.definers().into_iter().map(|i| after.at(i)) {
-                if stmt.names.uses().any(|(name, _)| is_changed[name as usize]) {
-                    change(stmt, &mut is_changed);
+            for i in firsts.definers() {
+                if after.at(i).names.uses().any(|(name, _)| is_changed[name as usize]) {
+                    change(i, &mut is_changed);
                 }
             }
         }

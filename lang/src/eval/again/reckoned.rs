@@ -28,6 +28,8 @@ struct Reckoning<'a> {
     units: &'a BTreeMap<Dimension, f64>,
     /// The numbers that names stand for, in the order of the names.
     names: Vec<(u32, Measured)>,
+    /// Names whose values mistakes hide, in order.
+    hidden: Vec<u32>,
     /// Whether anybody is shown values.
     is_shown: bool,
 }
@@ -45,11 +47,13 @@ impl State {
             Some(Value::Number(x, measure)) => Some((name, (x, measure))),
             _ => None,
         };
+        let is_hidden = |name: &u32| matches!(env.get(self.names.name(*name)), Some(Value::Poison));
         let reckoning = Reckoning {
             handing: &self.handing,
             registry: evaluator.registry,
             units: &env.file.units,
             names: handed.names().filter_map(number).collect(),
+            hidden: handed.names().filter(is_hidden).collect(),
             is_shown: evaluator.noted.is_some(),
         };
         let is_over = evaluator.sink.over();
@@ -86,10 +90,14 @@ impl<'a> Reckoning<'a> {
     /// The value of one that is wanted, by its number.
     fn value(&self, i: u32, last: &mut Last<'a>) -> Option<FittedValue> {
         let wanted = self.handing.wanted(i);
+        let formula = self.handing.formula(i);
+        if formula.names().any(|name| self.hidden.binary_search(&name).is_ok()) {
+            return Some(FittedValue::hidden(self.is_shown));
+        }
         if wanted.is_node {
             return None;
         }
-        let (x, measure) = self.handing.formula(i).number(&|name| self.number_of(name))?;
+        let (x, measure) = formula.number(&|name| self.number_of(name))?;
         let param = self.param(wanted, last)?;
         let units = |dimension: Dimension| self.units.get(&dimension).copied();
         let given = match wanted.n_items {
@@ -107,6 +115,6 @@ impl<'a> Reckoning<'a> {
             _ => return None,
         };
         let shown = self.is_shown.then(|| number_later(x, measure));
-        Some(FittedValue { value, shown, steps: 0 })
+        Some(FittedValue { value: Some(value), shown, steps: 0 })
     }
 }

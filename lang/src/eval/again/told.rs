@@ -37,10 +37,8 @@ impl State {
         let mut sink = Sink::new(budgets.diagnostics);
         for i in odd.iter().take(ODD + 1) {
             let (statement, range) = after.get(*i, edit);
-            let is_first = |name: &u32| firsts.definer_of(*name) == Some(*i);
-            // Of a function it matters what others mention, of a second definition who uses it.
-            if text[range.clone()].contains("fn") || !statement.names.defines().iter().all(is_first)
-            {
+            // Of a function it matters what others mention.
+            if text[range.clone()].contains("fn") {
                 return None;
             }
             let (stmt, _) = statement.read(&text[range.clone()], budgets)?;
@@ -63,8 +61,8 @@ impl State {
         (evaluator, found): (Evaluator<'_>, Vec<Vec<Diagnostic>>),
         values: &KeptValues,
     ) -> Option<Loaded> {
-        // What is set may be wrong for things that are right, and the other way round; and what is handed on.
-        if !plan.sets.labels.is_empty() || !plan.handed.is_empty() {
+        // What is set may be wrong for things that are right, and the other way round.
+        if !plan.sets.labels.is_empty() {
             return None;
         }
         let Plan { edit, gone, fresh, tasks, read, names, .. } = plan;

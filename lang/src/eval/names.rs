@@ -9,7 +9,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 use super::mention::mention_stmts;
 use super::numbered::{Firsts, Tables};
 pub(crate) use super::numbered::{Known, Numbered};
-use super::resolve::{Resolver, Scope, defines, mentions, stray_names};
+use super::resolve::{Around, Resolver, Scope, defines, follows_fn, mentions, stray_names};
 use crate::sink::Sink;
 use crate::syntax::{Name, Stmt, StmtNode};
 
@@ -112,16 +112,6 @@ pub(super) struct Odd<'p> {
     pub(super) facts: &'p Facts,
 }
 
-/// The names of a file.
-pub(super) trait Around {
-    /// The statement that first defines a name, and where it stands in the file.
-    fn definer(&self, name: &str) -> Option<(usize, Span)>;
-    /// The statement that first bears a label, and where it stands in the file.
-    fn labeller(&self, label: &str) -> Option<(usize, Span)>;
-    /// The names that are defined before a statement.
-    fn before(&self, statement: usize) -> Vec<&str>;
-}
-
 /// Names of statements that are read already.
 struct Among<'a, 'p> {
     firsts: &'a Firsts<'a>,
@@ -148,6 +138,15 @@ impl Around for Among<'_, '_> {
     fn before(&self, statement: usize) -> Vec<&str> {
         self.firsts.before(statement)
     }
+
+    fn has_function_before(&self, statement: usize, name: &str) -> bool {
+        let definer = self.firsts.definer(name).filter(|definer| *definer < statement);
+        definer.is_some_and(|definer| {
+            let Placed { text, facts, .. } = (self.at)(definer);
+            let mut names = facts.defines.iter().filter(|known| *known.text == *name);
+            names.next().is_some_and(|known| follows_fn(text, known.span))
+        })
+    }
 }
 
 /// Tells what is wrong with the names of a statement; `mentions` are those of all functions, if it may
@@ -160,9 +159,8 @@ pub(super) fn tell_odd(
 ) {
     let mut scope = scope(odd, around);
     scope.mentions = mentions.take().unwrap_or_default();
-    let before = || around.before(odd.i);
     let mut resolver = Resolver::new(odd.text, sink);
-    resolver.before = Some(&before);
+    resolver.around = Some((around, odd.i));
     resolver.scopes.push(scope);
     for stmt in odd.stmts {
         resolver.stmt(stmt);

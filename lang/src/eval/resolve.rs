@@ -34,6 +34,23 @@ pub(super) fn is_constant(expr: &Expr) -> bool {
     sink.errors() == 0
 }
 
+/// The names of a file.
+pub(super) trait Around {
+    /// The statement that first defines a name, and where it stands in the file.
+    fn definer(&self, name: &str) -> Option<(usize, Span)>;
+    /// The statement that first bears a label, and where it stands in the file.
+    fn labeller(&self, label: &str) -> Option<(usize, Span)>;
+    /// The names that are defined before a statement.
+    fn before(&self, statement: usize) -> Vec<&str>;
+    /// Whether a statement before one defines a function of this name.
+    fn has_function_before(&self, statement: usize, name: &str) -> bool;
+}
+
+/// Whether a name that stands there in a text is that of a function, be it one that cannot be read.
+pub(super) fn follows_fn(text: &str, name: Span) -> bool {
+    text.get(..name.range().start).is_some_and(|before| before.trim_end().ends_with("fn"))
+}
+
 /// The names of one block.
 #[derive(Default)]
 pub(super) struct Scope {
@@ -58,8 +75,8 @@ pub(super) struct Resolver<'a> {
     has_fields: bool,
     /// Where names that nothing defines are kept instead of being told.
     pub(super) free: Option<BTreeMap<Arc<str>, u32>>,
-    /// Names that stand before the statement beside those of `scopes`.
-    pub(super) before: Option<&'a dyn Fn() -> Vec<&'a str>>,
+    /// The file of a statement that is looked at by itself, and which it is: `scopes` has only what it mentions.
+    pub(super) around: Option<(&'a dyn Around, usize)>,
 }
 
 /// What a statement mentions, if it is a function.
@@ -95,7 +112,7 @@ impl<'a> Resolver<'a> {
     pub(super) fn new(text: &'a str, sink: &'a mut Sink) -> Self {
         let (scopes, functions) = (vec![], vec![]);
         let (in_object, has_fields) = (false, false);
-        Self { sink, text, scopes, functions, in_object, has_fields, free: None, before: None }
+        Self { sink, text, scopes, functions, in_object, has_fields, free: None, around: None }
     }
 
     fn block(&mut self, stmts: &[Stmt], names: &[&Name]) {

@@ -9,8 +9,9 @@ use luxel_sdk::params::leave;
 use super::Evaluator;
 use super::by_name::ByName;
 use super::exec::{Body, Place};
-use super::names::{Around, Facts, Mentions, Odd, tell_odd};
+use super::names::{Facts, Mentions, Odd, tell_odd};
 use super::params::PARAM;
+use super::resolve::{Around, follows_fn};
 use crate::sink::Sink;
 use crate::syntax::{self, Cut, Name, Stmt, StmtNode, Tree, Turns};
 
@@ -168,7 +169,7 @@ impl Seen {
             return;
         }
         let mut mentions = Some(std::mem::take(&mut self.mentions));
-        let around = InOrder::of(&self);
+        let around = InOrder::of(&self, text);
         for (i, stmt, facts) in &self.odd {
             let stmts = std::slice::from_ref(stmt);
             let odd = Odd { i: *i, text, stmts, facts };
@@ -193,16 +194,17 @@ fn first(seen: &mut ByName<(u32, Span)>, names: &[Name], stmt: u32) -> usize {
 /// The names of all statements, those that they define in their order too.
 struct InOrder<'s> {
     seen: &'s Seen,
+    text: &'s str,
     /// The statement that defines each name first.
     defines: Vec<(u32, &'s str)>,
 }
 
 impl<'s> InOrder<'s> {
-    fn of(seen: &'s Seen) -> Self {
+    fn of(seen: &'s Seen, text: &'s str) -> Self {
         let defines = seen.defines.iter().map(|(name, (stmt, _))| (*stmt, &**name));
         let mut defines: Vec<_> = defines.collect();
         defines.sort_unstable_by_key(|(stmt, _)| *stmt);
-        Self { seen, defines }
+        Self { seen, text, defines }
     }
 }
 
@@ -218,6 +220,11 @@ impl Around for InOrder<'_> {
     fn before(&self, stmt: usize) -> Vec<&str> {
         let end = self.defines.partition_point(|(at, _)| (*at as usize) < stmt);
         self.defines[..end].iter().map(|(_, name)| *name).collect()
+    }
+
+    fn has_function_before(&self, stmt: usize, name: &str) -> bool {
+        let definer = self.definer(name).filter(|(definer, _)| *definer < stmt);
+        definer.is_some_and(|(_, at)| follows_fn(self.text, at))
     }
 }
 

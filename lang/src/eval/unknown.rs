@@ -7,7 +7,7 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Unit;
 
 use super::builtins;
-use super::resolve::{Resolver, Scope};
+use super::resolve::{Resolver, Scope, follows_fn};
 use crate::syntax::{Expr, ExprNode, Name, OF_A_TEXT, Op, path_around};
 
 /// Known names among which near ones are looked for: more than `near` looks at, names that are known
@@ -169,8 +169,8 @@ impl Resolver<'_> {
         });
         let is_function = |name: &str| {
             let ours = self.scopes.iter().rev().find_map(|scope| scope.names.get(name));
-            let before = ours.and_then(|at| self.text.get(..at.range().start));
-            before.is_some_and(|before| before.trim_end().ends_with("fn"))
+            ours.is_some_and(|at| at.source == place.source && follows_fn(self.text, *at))
+                || self.around.is_some_and(|(around, i)| around.has_function_before(i, name))
                 || builtins::names().any(|known| known == name) && !builtins::is_value(name)
         };
         let mut ends = (1..shown.len().min(FUNCTION)).rev().filter(|_| is_closed);
@@ -194,7 +194,7 @@ impl Resolver<'_> {
         let builtins = || builtins::names().filter(|name| is_called || builtins::is_value(name));
         let mut known: Vec<&str> = builtins().chain(["true", "false"]).collect();
         known.extend(self.scopes.iter().flat_map(|scope| scope.names.keys()).map(|name| &**name));
-        known.extend(self.before.into_iter().flat_map(|before| before()));
+        known.extend(self.around.into_iter().flat_map(|(around, i)| around.before(i)));
         // Which are looked at must not depend on the order in which a table holds them.
         if known.len() > LOOKED_AT {
             known.select_nth_unstable(LOOKED_AT);

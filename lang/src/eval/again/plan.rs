@@ -344,8 +344,11 @@ impl State {
                 Some(stmt) => stmt,
                 None => statement.read(&text[range], &self.settings.budgets)?.0,
             };
-            let uses = statement.names.uses().filter_map(|(name, _)| firsts.definer_of(name));
-            let mut definers: Vec<usize> = uses.collect();
+            // Of a second definition it matters what the name stands for already.
+            let defines = statement.names.defines().iter().copied();
+            let names = statement.names.uses().map(|(name, _)| name).chain(defines);
+            let mut definers: Vec<usize> =
+                names.filter_map(|name| firsts.definer_of(name)).collect();
             // What is wrong may use more names than it seems.
             let is_odd = !statement.names.is_sound;
             if is_odd || self.n_shadows > 0 {

@@ -13,8 +13,9 @@ use super::values::KeptValues;
 use super::warn::faults;
 use super::{State, in_file, source_of};
 use crate::eval::Evaluator;
-use crate::eval::names::{Around, Facts, Odd, tell_odd};
+use crate::eval::names::{Facts, Odd, tell_odd};
 use crate::eval::numbered::Firsts;
+use crate::eval::resolve::{Around, follows_fn};
 use crate::sink::Sink;
 use crate::syntax::Name;
 use crate::{Budgets, Loaded, ParamInfo};
@@ -176,5 +177,12 @@ impl Around for Among<'_> {
 
     fn before(&self, statement: usize) -> Vec<&str> {
         self.firsts.before(statement)
+    }
+
+    fn has_function_before(&self, statement: usize, name: &str) -> bool {
+        self.definer(name).is_some_and(|(definer, at)| {
+            let (_, range) = self.after.get(definer, self.edit);
+            definer < statement && follows_fn(&self.text[range], at)
+        })
     }
 }

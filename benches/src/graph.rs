@@ -39,64 +39,90 @@ struct Case {
 pub(crate) fn run() -> Result<(), String> {
     println!("graph, ms from an edited text of 10 MB to its scene graph (goal 50);");
     println!("and to what an editor tells of it: mistakes and values, not the graph");
-    let object = |i: usize| {
-        let material = if i.is_multiple_of(1000) { "rare" } else { "m1" };
-        format!(
-            "shape sphere \"ball {i}\" {{ center = (1.2, 0.5, -3.25) m, radius = r, material = {material} }}\n"
-        )
-    };
-    let placement = |i: usize| format!("place ball {{ transform = move(({i}, 0.5, -3.25) m) }}\n");
-    let objects = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), object));
-    let told = format!("{objects}set one.radius = 30 cm\nmaterial dielectric {{ }}\n")
-        .replacen("ball 3", "one", 1);
-    let reckoning = objects.replace("radius = r,", "radius = r / 2,");
-    let center = "(1.2, 0.5, -3.25) m";
-    let alike = objects.replace(center, "(1.2 m, r, -3.25 m)");
-    let moved = |i: usize| object(i).replace(center, &format!("({i} mm, r, -3.25 m)"));
-    let apart = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), moved));
-    let own = |i: usize| object(i).replace("radius = r,", &format!("radius = r / {},", i + 1));
-    let reckoned = format!("{HEAD}{}", lines(BYTES / object(55_555).len(), own));
-    let wrong = objects.replacen("radius = r", "radus = r", 1);
-    let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
-    let case = |name, text: &str, (from, to)| {
-        let text = text.to_owned();
-        Case { name, text, mistakes: 0, from, to }
-    };
-    let number = ("ball 50001\" { center = (1.2", "ball 50001\" { center = (1.3");
-    let one_more = ("shape sphere \"ball 50001", "place ball\nshape sphere \"ball 50001");
-    let length = ("r = 50 cm", "r = 40 cm");
-    let rare = ("reflectance = 0.2", "reflectance = 0.3");
-    let cases = [
-        case("objects, a number", &objects, number),
-        case("objects, one more", &objects, one_more),
-        case("objects, the camera", &objects, ("fov = 40", "fov = 35")),
-        case("objects, a material of one in a thousand", &objects, rare),
-        case("objects, a length that all hand on", &objects, length),
-        case("objects, a material of nearly all", &objects, ("e = 0.5", "e = 0.4")),
+    let objects = format!("{HEAD}{}", shapes(object));
+    let registry = linked();
+    let cases = handed(&objects).into_iter().chain(others(&objects)).chain(mistakes(&objects));
+    cases.into_iter().try_for_each(|case| report(&case, &registry))
+}
+
+/// One of many shapes.
+fn object(i: usize) -> String {
+    let material = if i.is_multiple_of(1000) { "rare" } else { "m1" };
+    format!("shape sphere \"ball {i}\" {{ center = {CENTER}, {RADIUS} material = {material} }}\n")
+}
+
+const CENTER: &str = "(1.2, 0.5, -3.25) m";
+const RADIUS: &str = "radius = r,";
+
+/// What of a shape of all becomes what else.
+const NUMBER: [&str; 2] = ["ball 50001\" { center = (1.2", "ball 50001\" { center = (1.3"];
+
+/// So many lines that the text has its size.
+fn shapes(line: impl Fn(usize) -> String) -> String {
+    lines(BYTES / object(55_555).len(), line)
+}
+
+fn case(name: &'static str, text: &str, [from, to]: [&'static str; 2]) -> Case {
+    Case { name, text: text.to_owned(), mistakes: 0, from, to }
+}
+
+/// Edits of what all shapes use.
+fn handed(objects: &str) -> Vec<Case> {
+    let length = ["r = 50 cm", "r = 40 cm"];
+    let rare = ["reflectance = 0.2", "reflectance = 0.3"];
+    let reckoning = objects.replace(RADIUS, "radius = r / 2,");
+    let alike = objects.replace(CENTER, "(1.2 m, r, -3.25 m)");
+    let moved = |i: usize| object(i).replace(CENTER, &format!("({i} mm, r, -3.25 m)"));
+    let own = |i: usize| object(i).replace(RADIUS, &format!("radius = r / {},", i + 1));
+    let called = |i: usize| object(i).replace(RADIUS, &format!("radius = part(r, {}),", i + 1));
+    let apart = format!("{HEAD}{}", shapes(moved));
+    let reckoned = format!("{HEAD}{}", shapes(own));
+    let called = format!("{HEAD}fn part(x: length, n: int) = max(x / n, 1 mm)\n{}", shapes(called));
+    vec![
+        case("objects, a material of one in a thousand", objects, rare),
+        case("objects, a length that all hand on", objects, length),
+        case("objects, a material of nearly all", objects, ["e = 0.5", "e = 0.4"]),
         case("objects, a length that all reckon with", &reckoning, length),
         case("objects, a length in one vector of all", &alike, length),
         case("objects, a length in a vector of each", &apart, length),
         case("objects, a length that each reckons with", &reckoned, length),
-        case("objects, a mistake", &objects, (number.0, "ball 50001\" { center = (1.2 s")),
-        case("objects, an open bracket", &objects, (number.0, "ball 50001\" { center = ((1.2")),
-        case(
-            "objects, an open bracket at the end",
-            &objects,
-            (one_more.0, "let z = (1 m\nshape sphere \"ball 50001"),
-        ),
-        case("objects, an open block", &objects, (number.0, "ball 50001\" { { center = (1.2")),
-        case(
-            "objects, a text that does not end",
-            &objects,
-            (number.0, "ball 50001 { center = (1.2"),
-        ),
-        Case { mistakes: 1, ..case("objects, a number, where a mistake stands", &wrong, number) },
-        case("objects, a number beside a `set` and a warning", &told, number),
-        case("objects, what is `set`", &told, ("radius = 30 cm", "radius = 20 cm")),
-        case("placements, a number", &placements, ("move((50001, 0.5", "move((50001, 0.25")),
-    ];
-    let registry = linked();
-    cases.iter().try_for_each(|case| report(case, &registry))
+        case("objects, a length that each calls a function with", &called, length),
+    ]
+}
+
+/// Edits of single statements.
+fn others(objects: &str) -> Vec<Case> {
+    let one_more = ["shape sphere \"ball 50001", "place ball\nshape sphere \"ball 50001"];
+    let told = format!("{objects}set one.radius = 30 cm\nmaterial dielectric {{ }}\n")
+        .replacen("ball 3", "one", 1);
+    let placement = |i: usize| format!("place ball {{ transform = move(({i}, 0.5, -3.25) m) }}\n");
+    let placements = format!("{HEAD}{}", lines(BYTES / placement(55_555).len(), placement));
+    vec![
+        case("objects, a number", objects, NUMBER),
+        case("objects, one more", objects, one_more),
+        case("objects, the camera", objects, ["fov = 40", "fov = 35"]),
+        case("objects, a number beside a `set` and a warning", &told, NUMBER),
+        case("objects, what is `set`", &told, ["radius = 30 cm", "radius = 20 cm"]),
+        case("placements, a number", &placements, ["move((50001, 0.5", "move((50001, 0.25"]),
+    ]
+}
+
+/// Edits that are wrong, or beside what is.
+fn mistakes(objects: &str) -> Vec<Case> {
+    let of_number = |name, to| case(name, objects, [NUMBER[0], to]);
+    let unclosed = ["shape sphere \"ball 50001", "let z = (1 m\nshape sphere \"ball 50001"];
+    let twice = ["let rare", "let r = 40 cm\nlet rare"];
+    let wrong = objects.replacen("radius = r", "radus = r", 1);
+    vec![
+        of_number("objects, a mistake", "ball 50001\" { center = (1.2 s"),
+        case("objects, a length of all that loses its value", objects, ["r = 50 cm", "r ="]),
+        case("objects, a length of all that is defined twice", objects, twice),
+        of_number("objects, an open bracket", "ball 50001\" { center = ((1.2"),
+        case("objects, an open bracket at the end", objects, unclosed),
+        of_number("objects, an open block", "ball 50001\" { { center = (1.2"),
+        of_number("objects, a text that does not end", "ball 50001 { center = (1.2"),
+        Case { mistakes: 1, ..case("objects, a number, where a mistake stands", &wrong, NUMBER) },
+    ]
 }
 
 fn report(case: &Case, registry: &Registry) -> Result<(), String> {

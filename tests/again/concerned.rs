@@ -126,7 +126,7 @@ fn beside_a_mistake_a_name_is_handed_on() {
     // A second definition changes nothing but that it is told; one before the first takes its place.
     now.clone_from(&good);
     now.insert(4, "let r = 9 cm".to_owned());
-    assert_eq!(n(&now), (1, 1));
+    assert_eq!(n(&now), (2, 1));
     now.remove(4);
     now.insert(0, "let grey = material diffuse { reflectance = 0.4 }".to_owned());
     assert_eq!(n(&now), (3, 1));
@@ -265,9 +265,21 @@ fn what_only_reckons_with_a_value_is_not_evaluated() {
     }
     now[1] = "let k = 4".to_owned();
     assert_eq!(n(&now).1, 0);
-    // A call takes steps of its own, and its statement is evaluated, with what it uses.
-    now[4] = now[4].replace("(r + 1 cm) / k", "half(r) / k");
-    assert_eq!(n(&now), (4, 0));
-    now[0] = "let r = 9 cm".to_owned();
+    // A call of a function of numbers takes as many steps whatever they are.
+    for call in ["half(r) / k", "max(half(half(r)), 1 cm)", "sqrt(r * half(1 m)) + abs(-half(r))"] {
+        now[4] = format!("shape sphere {{ radius = {call} }}");
+        assert!((3..6).contains(&n(&now).0), "{call}");
+        now[0] = format!("let r = 9 cm + {} mm", call.len());
+        // The length, the function, and the other number that the other shapes reckon with.
+        assert_eq!(n(&now), (3, 0), "{call}");
+    }
+    // Another function is another reckoning; one that chooses is evaluated, with what it uses.
+    now[3] = "fn half(x: length) = x / 3 + 2 mm".to_owned();
+    assert_eq!(n(&now), (3, 0));
+    now[0] = "let r = 3 cm".to_owned();
+    assert_eq!(n(&now), (3, 0));
+    now[3] = "fn half(x: length) = if x > 2 cm { x } else { 2 * x }".to_owned();
+    assert_eq!(n(&now), (3, 0));
+    now[0] = "let r = 1 cm".to_owned();
     assert_eq!(n(&now), (4, 0));
 }

@@ -16,7 +16,7 @@ use luxel_sdk::sampling::Rng;
 use edited::{CAMERA, Edited, OTHER, is_good, text_of};
 
 /// Statements that depend on others, emit, share, declare, read other files, or are wrong.
-const LINES: [&str; 74] = [
+const LINES: [&str; 82] = [
     "let r = 5 cm",
     "let r = 25 cm",
     "let grey = material diffuse { reflectance = 0.5 }",
@@ -91,6 +91,14 @@ const LINES: [&str; 74] = [
     "let shiny = material conductor { eta = metal(\"Au\"), distribution = ggx }",
     "let shiny = material conductor { eta = metal(\"Au\"), distribution = word }",
     "let word = \"beckmann\"",
+    "fn wider(x: length, by: float = 2) = twice(x) * by + far",
+    "fn wider(x: length, by: int) = x * by",
+    "fn twice(x: length) = 3 * x - 1 mm",
+    "shape sphere { radius = wider(r), center = (1, 2, 3) m, material = grey }",
+    "shape sphere { radius = max(wider(r, 3) * size, abs(far)), center = (twice(r), r, 3 cm) }",
+    "shape sphere { radius = twice(r) + sqrt(far * r), center = (twice(r), sin(size * 1 rad) * r, r) }",
+    "shape sphere { radius = 1 m, center = (1 m, -twice(r), min(r, far)) }",
+    "shape disk { radius = wider(wider(r, by = 2)) }",
 ];
 
 /// Half-written things, and what ends statements.
@@ -146,9 +154,9 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
         let set = if seed % 4 == 0 { vec![("size".to_owned(), "0.6".to_owned())] } else { vec![] };
         // Some are spent by one statement more.
         let budgets = Budgets {
-            nodes: if seed % 3 == 0 { 1_000_000 } else { 49 },
-            names: if seed % 2 == 0 { 500_000 } else { 11 },
-            statements: if seed % 4 == 3 { 32 } else { 2_000_000 },
+            nodes: if seed % 3 == 0 { 1_000_000 } else { 57 },
+            names: if seed % 2 == 0 { 500_000 } else { 12 },
+            statements: if seed % 4 == 3 { 37 } else { 2_000_000 },
             ..Budgets::default()
         };
         let noting = seed % 5 != 1;
@@ -157,7 +165,7 @@ fn after_any_edit_it_is_what_a_load_from_nothing_gives() {
         let mut edited = Edited::new(settings);
         let good = [
             0, 2, 59, 68, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 18, 20, 24, 52, 53, 54, 56, 57,
-            58, 63, 64, 65, 66,
+            58, 63, 64, 65, 66, 74, 77, 78, 79, 80,
         ];
         let more: &[usize] = [&[][..], &[33, 34], &[42, 43], &[44, 48]][pick(&mut rng, 4)];
         let mut lines: Vec<String> =

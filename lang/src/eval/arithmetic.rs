@@ -28,6 +28,16 @@ pub(super) fn measured(x: f64, unit: Option<&Unit>) -> Measured {
     (x * unit.scale, unit.dimension)
 }
 
+/// What is to be multiplied with a number of dimension `found` to be one of the wanted dimension, where bare
+/// ones count in these units; `None` if it is no such number.
+pub(super) fn scale(
+    found: Dimension,
+    wanted: Dimension,
+    units: &dyn Fn(Dimension) -> Option<f64>,
+) -> Option<f64> {
+    if found == wanted { Some(1.0) } else { units(wanted).filter(|_| found.is_none()) }
+}
+
 /// The number that an operator makes of two.
 pub(super) fn joined(op: Op, (x, dx): Measured, (y, dy): Measured) -> Result<Measured, Unjoined> {
     if matches!(op, Op::Add | Op::Sub | Op::Rem) && dx != dy {

@@ -6,6 +6,7 @@ use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Dimension;
 
 use super::Evaluator;
+use super::arithmetic::scale;
 use super::env::Env;
 use super::value::Value;
 pub(crate) use crate::syntax::type_names::{dimension, measured, names};
@@ -117,7 +118,8 @@ impl Evaluator<'_> {
             }
             return value;
         }
-        if let (true, Some(scale)) = (found.is_none(), env.file.units.get(&wanted)) {
+        let units = |dimension: Dimension| env.file.units.get(&dimension).copied();
+        if let Some(scale) = scale(found, wanted, &units) {
             return Value::Number(x * scale, wanted);
         }
         if !found.is_none() {

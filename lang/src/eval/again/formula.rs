@@ -2,35 +2,31 @@
 
 use std::sync::Arc;
 
-use arrayvec::ArrayVec;
-use luxel_sdk::params::Unit;
+use luxel_sdk::params::Dimension;
 
 use super::source_of;
+use super::steps::{Bodies, Called, Functions, Reckoner, Step, calls, names, renumbered};
 use crate::Budgets;
-use crate::eval::arithmetic::{Measured, joined, measured};
-use crate::eval::builtins;
+use crate::eval::arithmetic::Measured;
 use crate::eval::numbered::Known;
-use crate::eval::value::Value;
 use crate::sink::Sink;
-use crate::syntax::{Expr, ExprNode, Form, Op, parse_expr};
+use crate::syntax::{Expr, ExprNode, Form, parse_expr};
 
 /// Items of a vector, at most.
 pub(super) const MOST_ITEMS: usize = 3;
 
-/// Numbers that may stand open while one is reckoned; few people nest brackets so deep.
-const OPEN: usize = 16;
-
-/// A name, or numbers that are reckoned with: numbers, names, operators and brackets alone; or a vector of
-/// two or three such.
+/// A name, or numbers that are reckoned with: numbers, names, operators, brackets and calls of functions of
+/// numbers alone; or a vector of two or three such.
 ///
 /// Where such an expression came to a number, each of its operands was one, for no operator makes a number
-/// of anything else; and where one came to a vector of numbers, each of its items did. So it takes as many
-/// steps when it comes to that again.
+/// of anything else, and no such function; and where one came to a vector of numbers, each of its items did.
+/// So it takes as many steps when it comes to that again.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Formula<'a> {
     pub(super) text: &'a Arc<str>,
     form: Of,
     steps: &'a [Step],
+    bodies: &'a Bodies,
 }
 
 /// Formulas by number. All their steps are one piece of memory: where a name changes that many have, they are
@@ -40,6 +36,7 @@ pub(super) struct Formulas {
     /// The text of each, what it is, and where its steps end.
     each: Vec<(Arc<str>, Of, u32)>,
     steps: Vec<Step>,
+    bodies: Bodies,
 }
 
 impl Formulas {
@@ -47,7 +44,8 @@ impl Formulas {
         let i = i as usize;
         let start = i.checked_sub(1).map_or(0, |last| self.each[last].2);
         let (text, form, end) = &self.each[i];
-        Formula { text, form: *form, steps: &self.steps[start as usize..*end as usize] }
+        let steps = &self.steps[start as usize..*end as usize];
+        Formula { text, form: *form, steps, bodies: &self.bodies }
     }
 
     /// Each in turn.
@@ -56,19 +54,40 @@ impl Formulas {
     }
 
     /// Adds a text as one, and gives its number; `None` of any other.
-    pub(super) fn read(&mut self, text: &str, budgets: &Budgets, known: &Known) -> Option<u32> {
+    pub(super) fn read(
+        &mut self,
+        text: &str,
+        budgets: &Budgets,
+        (known, functions): (&Known, Functions<'_>),
+    ) -> Option<u32> {
         let first = self.steps.len();
-        let found = read(text, budgets).and_then(|expr| form(&expr, known, &mut self.steps));
+        let reckoner = Reckoner::new(known, functions, &mut self.bodies, &mut self.steps);
+        let found = read(text, budgets).and_then(|expr| form(&expr, reckoner));
         if found.is_none() {
             self.steps.truncate(first);
         }
         found.map(|form| self.put(text.into(), form))
     }
 
-    /// Adds one of others.
-    pub(super) fn add(&mut self, other: Formula<'_>) -> u32 {
-        self.steps.extend_from_slice(other.steps);
+    /// Adds the functions of others, and gives the number here of each.
+    pub(super) fn take_over(&mut self, others: &Self) -> Vec<u32> {
+        self.bodies.take_over(&others.bodies)
+    }
+
+    /// Adds one of others whose functions have these numbers.
+    pub(super) fn add(&mut self, other: Formula<'_>, bodies: &[u32]) -> u32 {
+        self.steps.extend(renumbered(other.steps, bodies));
         self.put(other.text.clone(), other.form)
+    }
+
+    /// What is called with a function of the file, by its number.
+    pub(super) fn called(&self, body: u32) -> &Called {
+        self.bodies.called(body)
+    }
+
+    /// Forgets functions some of which have changed.
+    pub(super) fn forget(&mut self, is_changed: &dyn Fn(u32) -> bool) {
+        self.bodies.forget(is_changed);
     }
 
     /// One whose steps have been added.
@@ -85,18 +104,6 @@ enum Of {
     Name,
     Number,
     Vector,
-}
-
-/// A step of a reckoning, which puts a number on those before or joins the last ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
-    Number(Measured),
-    /// That of a name that the file knows, by number.
-    Name(u32),
-    /// The last one, which is bare, in this unit.
-    Measure(Unit),
-    Negate,
-    Join(Op),
 }
 
 impl<'a> Formula<'a> {
@@ -117,34 +124,22 @@ impl<'a> Formula<'a> {
 
     /// The names that the file knows, each as often as it stands there.
     pub(super) fn names(self) -> impl Iterator<Item = u32> + 'a {
-        self.steps.iter().filter_map(|step| match step {
-            Step::Name(name) => Some(*name),
-            _ => None,
-        })
+        names(self.steps)
     }
 
-    /// The number that it comes to, with those that names stand for; `None` where it is none, a mistake, or
-    /// too many stand open.
-    pub(super) fn number(self, name: &dyn Fn(u32) -> Option<Measured>) -> Option<Measured> {
-        let mut open: ArrayVec<Measured, OPEN> = ArrayVec::new();
-        for step in self.steps {
-            let next = match step {
-                Step::Number(number) => *number,
-                Step::Name(number) => name(*number)?,
-                Step::Negate => open.pop().map(|(x, dimension)| (-x, dimension))?,
-                Step::Measure(unit) => {
-                    let (x, dimension) = open.pop()?;
-                    dimension.is_none().then(|| measured(x, Some(unit)))?
-                }
-                Step::Join(op) => {
-                    let right = open.pop()?;
-                    joined(*op, open.pop()?, right).ok()?
-                }
-            };
-            open.try_push(next).ok()?;
-        }
-        let number = open.pop().filter(|(x, _)| x.is_finite());
-        number.filter(|_| open.is_empty() && !self.is_vector())
+    /// The functions of the file that it calls, by their numbers.
+    pub(super) fn calls(self) -> impl Iterator<Item = u32> + 'a {
+        calls(self.steps)
+    }
+
+    /// The number that it comes to, with those that names stand for and bare ones in these units; `None`
+    /// where it is none, a mistake, or too many stand open.
+    pub(super) fn number(
+        self,
+        name: &dyn Fn(u32) -> Option<Measured>,
+        units: &dyn Fn(Dimension) -> Option<f64>,
+    ) -> Option<Measured> {
+        if self.is_vector() { None } else { self.bodies.number(self.steps, name, units) }
     }
 }
 
@@ -155,59 +150,17 @@ fn read(text: &str, budgets: &Budgets) -> Option<Expr> {
 }
 
 /// What a formula is, whose steps are added; `None` of any other expression.
-fn form(expr: &Expr, known: &Known, steps: &mut Vec<Step>) -> Option<Of> {
+fn form(expr: &Expr, mut reckoner: Reckoner<'_>) -> Option<Of> {
     match &expr.node {
         ExprNode::Items { items, form: Form::Tuple, .. } if items.len() <= MOST_ITEMS => {
-            items.iter().try_for_each(|item| reckon(item, known, steps))?;
+            items.iter().try_for_each(|item| reckoner.add(item))?;
             Some(Of::Vector)
         }
         node => {
-            reckon(expr, known, steps)?;
+            reckoner.add(expr)?;
             Some(if matches!(node, ExprNode::Path(_)) { Of::Name } else { Of::Number })
         }
     }
-}
-
-/// Adds the steps of an expression; `None` if it is not reckoned from numbers.
-fn reckon(expr: &Expr, known: &Known, steps: &mut Vec<Step>) -> Option<()> {
-    match &expr.node {
-        ExprNode::Number(x, unit) => steps.push(Step::Number(measured(*x, unit.as_deref()))),
-        ExprNode::Path(path) => {
-            let [word] = &path[..] else { return None };
-            steps.push(match (known.of(&word.text), builtins::value(&word.text)) {
-                (Some(name), _) => Step::Name(name),
-                (None, Some(Value::Number(x, dimension))) => Step::Number((x, dimension)),
-                _ => return None,
-            });
-        }
-        ExprNode::Paren { inner, unit } => {
-            reckon(inner, known, steps)?;
-            steps.extend(unit.as_deref().map(|unit| Step::Measure(*unit)));
-        }
-        ExprNode::Unary { op: Op::Sub, inner } => {
-            reckon(inner, known, steps)?;
-            steps.push(Step::Negate);
-        }
-        ExprNode::Chain { first, rest } => {
-            reckon(first, known, steps)?;
-            for (op, _, operand) in rest {
-                reckon(operand, known, steps)?;
-                if *op != Op::Pow {
-                    steps.push(joins(*op).then_some(Step::Join(*op))?);
-                }
-            }
-            // Powers are taken from the right.
-            steps
-                .extend(rest.iter().filter(|(op, ..)| *op == Op::Pow).map(|_| Step::Join(Op::Pow)));
-        }
-        _ => return None,
-    }
-    Some(())
-}
-
-/// Whether an operator makes numbers of numbers.
-fn joins(op: Op) -> bool {
-    matches!(op, Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Rem)
 }
 
 pub(super) fn narrow(n: usize) -> u32 {
@@ -216,9 +169,27 @@ pub(super) fn narrow(n: usize) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use luxel_sdk::params::Dimension;
-
     use super::*;
+    use crate::syntax::{StmtNode, read_piece};
+
+    const FUNCTIONS: [&str; 15] = [
+        "fn f(x: length) = 2 * x",
+        "fn h(x: length, y: float = 2) = f(x) / y + k * (x / y)",
+        "fn i(n: int) = n",
+        "fn j(x: any) = 2",
+        "fn l(x: length) = if x > 1 m { x } else { 2 * x }",
+        "fn n(x: float) = n(x) + n(x)",
+        // The first of nine that call one another.
+        "fn o(x: float) = x",
+        "fn p(x: float) = o(x)",
+        "fn q(x: float) = p(x)",
+        "fn s(x: float) = q(x)",
+        "fn t(x: float) = s(x)",
+        "fn u(x: float) = t(x)",
+        "fn v(x: float) = u(x)",
+        "fn w(x: float) = v(x)",
+        "fn x(x: float) = w(x)",
+    ];
 
     /// A formula, behind another, of a file that knows some names, which have the numbers of their letters.
     fn formula(text: &str) -> Option<(Formulas, u32)> {
@@ -227,8 +198,20 @@ mod tests {
             known.number(&name.to_string().into());
         }
         let (mut formulas, budgets) = (Formulas::default(), Budgets::default());
-        formulas.read("z - y", &budgets, &known)?;
-        let i = formulas.read(text, &budgets, &known)?;
+        let functions = FUNCTIONS.map(|text| {
+            let (stmts, told) = read_piece(text, false, source_of(0), &budgets);
+            assert_eq!(told, []);
+            match &stmts[0].node {
+                StmtNode::Fn(def) => def.clone(),
+                _ => panic!("{text}"),
+            }
+        });
+        let function = |name: u32| {
+            let name = known.name(name);
+            functions.iter().find(|def| *def.name.text == *name).cloned()
+        };
+        formulas.read("z - y", &budgets, (&known, &function))?;
+        let i = formulas.read(text, &budgets, (&known, &function))?;
         Some((formulas, i))
     }
 
@@ -239,13 +222,34 @@ mod tests {
             let names = formulas.get(i).names();
             Some(names.filter_map(|i| ('a'..='z').nth(i as usize)).collect())
         };
-        let yes =
-            [("r", "r"), ("2 * r", "r"), ("-(a + b % 3 m) cm ^ a / c", "abac"), ("1.5 km", "")];
+        let yes = [
+            ("r", "r"),
+            ("2 * r", "r"),
+            ("-(a + b % 3 m) cm ^ a / c", "abac"),
+            ("1.5 km", ""),
+            ("f(r)", "r"),
+            ("w(r)", "r"),
+            ("h(r + f(a), y = b) * sqrt(c)", "rabc"),
+            ("(max(a, b), f(c))", "abc"),
+        ];
         for (text, wanted) in yes {
             assert_eq!(names(text).as_deref(), Some(wanted), "{text}");
         }
         let no = [
-            "f(r)",
+            "f()",
+            "f(r, 2)",
+            "f(y = r)",
+            "f((1, 2))",
+            "j(r)",
+            "l(r)",
+            "n(r)",
+            "x(r)",
+            "r(r)",
+            "sin(r, r)",
+            "sin(x = r)",
+            "dot(r, r)",
+            "nowhere(r)",
+            "rgb.linear_srgb(r, r, r)",
             "v.x",
             "a < b",
             "a && b",
@@ -277,6 +281,7 @@ mod tests {
             Some('k') => Some((3.0, none)),
             _ => None,
         };
+        let units = |dimension: Dimension| (dimension == length).then_some(1e-3);
         for (text, wanted) in [
             ("r", Some((0.5, length))),
             ("-(-r) * 2 - 1 cm", Some((0.99, length))),
@@ -289,10 +294,20 @@ mod tests {
             ("r / (k - 3)", None),
             ("k ^ r", None),
             ("k * q", None),
+            ("f(r) + f(2 * r)", Some((3.0, length))),
+            ("h(r)", Some((1.25, length))),
+            ("h(f(r), 4) - h(x = r)", Some((1.25 - 1.25, length))),
+            ("f(k)", Some((0.006, length))),
+            ("f(1 s)", None),
+            ("i(k)", Some((3.0, none))),
+            ("i(k / 2)", None),
+            ("max(r, 75 cm) * cos(k * 0 rad)", Some((0.75, length))),
+            ("sin(r)", None),
+            ("log(k - 3)", None),
             ("(r, r)", None),
         ] {
             let (formulas, i) = formula(text).unwrap();
-            assert_eq!(formulas.get(i).number(&name), wanted, "{text}");
+            assert_eq!(formulas.get(i).number(&name, &units), wanted, "{text}");
         }
     }
 }

@@ -30,8 +30,9 @@ pub(super) struct Handed {
     places: Vec<(SourceId, Place)>,
     /// What is wanted there, by number, each once.
     wanted: Vec<u32>,
-    /// The names that it is reckoned from, each once.
+    /// The names that must have values for that, each once; the functions that are called, by their numbers.
     names: Vec<u32>,
+    calls: Vec<u32>,
 }
 
 /// What becomes of the values that are handed on.
@@ -78,7 +79,7 @@ impl Handed {
         &self.wanted
     }
 
-    /// The names that values are reckoned from, each once.
+    /// The names that must have values for that, each once.
     pub(super) fn names(&self) -> impl Iterator<Item = u32> {
         self.names.iter().copied()
     }
@@ -107,6 +108,8 @@ impl Handed {
             if names().any(|name| is_changed[name as usize]) {
                 self.places.push((source_of(stmt.id), *place));
                 names().for_each(|name| add_unless_last(&mut self.names, name));
+                let calls = handing.formula(place.wanted).calls();
+                calls.for_each(|body| add_unless_last(&mut self.calls, body));
             }
         }
     }
@@ -156,12 +159,20 @@ impl State {
         let mut out = Handed::default();
         let mut is_met = vec![false; self.handing.n_wanted()];
         let mut is_named = vec![false; self.names.len()];
+        let mut calls = vec![];
         for part in parts {
             part.places.iter().for_each(|(_, place)| is_met[place.wanted as usize] = true);
+            calls.extend(&part.calls);
             part.names.iter().for_each(|name| is_named[*name as usize] = true);
             out.places.extend(part.places);
             out.runs.extend(part.runs);
             out.most_nodes = out.most_nodes.max(part.most_nodes);
+        }
+        calls.sort_unstable();
+        calls.dedup();
+        for called in calls.into_iter().map(|body| self.handing.called(body)) {
+            let names = called.names.iter().chain(&called.functions);
+            names.for_each(|name| is_named[*name as usize] = true);
         }
         let met = |(i, is_met): (u32, bool)| is_met.then_some(i);
         out.wanted = (0..).zip(is_met).filter_map(met).collect();

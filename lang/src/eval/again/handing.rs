@@ -11,13 +11,14 @@ use luxel_core::scene::{self, Argument, IsOver, Node, NodeId};
 use luxel_sdk::kind::Kind;
 
 use super::formula::{Formula, Formulas, MOST_ITEMS, narrow};
+use super::steps::Called;
 use super::vector;
 use super::{Statement, source_of};
 use crate::Budgets;
 use crate::eval::numbered::Known;
 use crate::eval::object::stands_somewhere;
 use crate::shares;
-use crate::syntax::{Expr, ExprNode, Object, Stmt, StmtNode, children};
+use crate::syntax::{Expr, ExprNode, FnDef, Object, Stmt, StmtNode, children, read_piece};
 
 /// Texts that are looked at, at most, in each share of the file: what is reckoned with others is evaluated.
 const TEXTS: usize = 1 << 12;
@@ -34,6 +35,8 @@ pub(super) struct Handing {
     formulas: Formulas,
     /// Which of those a text is, if it is one.
     of_texts: HashMap<Arc<str>, Option<u32>>,
+    /// Functions that are called, by the numbers of their names, with texts that call them.
+    callers: Vec<(u32, Arc<str>)>,
     /// How many vectors are.
     n_vectors: usize,
     wanted: Vec<Wanted>,
@@ -101,6 +104,20 @@ pub(super) struct Written<'a> {
     pub(super) registry: &'a Registry,
     /// How many statements define names that every scene has, which may stand for others further down.
     pub(super) n_shadows: usize,
+    /// The text of the statement that defines a name.
+    pub(super) definition: &'a (dyn Fn(u32) -> Option<&'a str> + Sync),
+}
+
+impl Written<'_> {
+    /// The function that has a name, unless something is wrong with it.
+    fn function(&self, name: u32) -> Option<Arc<FnDef>> {
+        let text = (self.definition)(name)?;
+        let (stmts, told) = read_piece(text, false, source_of(u32::MAX), self.budgets);
+        match stmts.into_iter().next()?.node {
+            StmtNode::Fn(def) if told.is_empty() => Some(def),
+            _ => None,
+        }
+    }
 }
 
 /// Whether a statement is an object whose fields are objects, or come to the same wherever they are
@@ -168,11 +185,12 @@ impl Handing {
 
     /// With those of later statements.
     fn with(mut self, other: Self) -> Self {
+        let bodies = self.formulas.take_over(&other.formulas);
         let mut formulas = vec![];
         for formula in other.formulas.iter() {
             let known = self.of_texts.get(formula.text).copied().flatten();
             let i = known.unwrap_or_else(|| {
-                let i = self.formulas.add(formula);
+                let i = self.formulas.add(formula, &bodies);
                 self.met(i)
             });
             self.of_texts.insert(formula.text.clone(), Some(i));
@@ -191,6 +209,24 @@ impl Handing {
     /// Where a statement hands something on.
     pub(super) fn places_of(&self, hands: &Hands) -> &[Place] {
         &self.places[hands.places.start as usize..hands.places.end as usize]
+    }
+
+    /// Forgets functions that have changed, by the numbers of their names, and what is reckoned by them.
+    pub(super) fn forget(&mut self, is_changed: impl Fn(u32) -> bool) {
+        self.formulas.forget(&is_changed);
+        let of_texts = &mut self.of_texts;
+        self.callers.retain(|(function, text)| {
+            let is_known = !is_changed(*function);
+            if !is_known {
+                of_texts.remove(text);
+            }
+            is_known
+        });
+    }
+
+    /// What is called with a function of the file, by its number.
+    pub(super) fn called(&self, body: u32) -> &Called {
+        self.formulas.called(body)
     }
 
     /// How many are wanted.
@@ -326,7 +362,8 @@ impl Handing {
         if self.of_texts.len() >= TEXTS {
             return None;
         }
-        let found = self.formulas.read(text, written.budgets, written.names);
+        let function = |name| written.function(name);
+        let found = self.formulas.read(text, written.budgets, (written.names, &function));
         let found = found.map(|i| self.met(i));
         self.of_texts.insert(text.into(), found);
         found
@@ -334,7 +371,10 @@ impl Handing {
 
     /// Counts a formula that was added last.
     fn met(&mut self, i: u32) -> u32 {
-        self.n_vectors += usize::from(self.formulas.get(i).is_vector());
+        let formula = self.formulas.get(i);
+        self.n_vectors += usize::from(formula.is_vector());
+        let functions = formula.calls().flat_map(|body| &self.formulas.called(body).functions);
+        self.callers.extend(functions.map(|function| (*function, formula.text.clone())));
         self.of_formulas.push(vec![]);
         i
     }

@@ -23,6 +23,7 @@ mod reckoned;
 mod record;
 mod sets;
 mod slice;
+mod steps;
 mod told;
 mod values;
 mod vector;

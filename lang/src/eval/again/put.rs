@@ -1,17 +1,20 @@
 //! What was evaluated takes the place of what was kept.
 
+use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
 
 use luxel_core::diag::SourceId;
+use luxel_core::registry::Registry;
 use luxel_core::scene::{NodeId, Placed};
 
-use super::State;
 use super::handed::Fitted;
 use super::handing::Written;
 use super::made::Made;
 use super::plan::Plan;
+use super::{State, Statement};
 use crate::eval::Evaluator;
+use crate::eval::numbered::Firsts;
 
 impl State {
     /// Becomes the state of the new text. `nodes` and `groups` are the numbers here of those that were
@@ -48,24 +51,44 @@ impl State {
             stmt.range = edit.shifted(stmt.range.start)..edit.shifted(stmt.range.end);
         }
         self.n_ids += fresh.len();
-        self.stmts.splice(gone, fresh);
+        let gone: Vec<Statement> = self.stmts.splice(gone, fresh).collect();
         self.sources.replace(SourceId(0), text.clone());
         self.text = text;
+        let mut new = vec![];
+        for (task, made) in tasks.into_iter().zip(made).filter(|(task, _)| task.is_new) {
+            self.stmts[task.i].made = made;
+            new.push(task.i);
+        }
+        self.hand_anew(&gone, &new, evaluator.registry);
+        (self.is_broken, self.is_wrong, self.has_odd_names) = (false, false, false);
+        Some(())
+    }
+
+    /// Finds what new statements hand on, where others are gone.
+    fn hand_anew(&mut self, gone: &[Statement], new: &[usize], registry: &Registry) {
+        let new_stmts = new.iter().map(|i| &self.stmts[*i]);
+        let defines = gone.iter().chain(new_stmts).flat_map(|stmt| stmt.names.defines());
+        let redefined: HashSet<u32> = defines.copied().collect();
+        if !redefined.is_empty() {
+            self.handing.forget(|name| redefined.contains(&name));
+        }
+        let firsts = Firsts::new(&self.names, &self.tables);
+        let (stmts, text) = (&self.stmts, &*self.text);
+        let definition = |name| Some(&text[stmts[firsts.definer_of(name)?].range.clone()]);
         let written = Written {
-            text: &self.text,
+            text,
             nodes: &self.scene.nodes,
             names: &self.names,
             budgets: &self.settings.budgets,
-            registry: evaluator.registry,
+            registry,
             n_shadows: self.n_shadows,
+            definition: &definition,
         };
-        for (task, made) in tasks.into_iter().zip(made).filter(|(task, _)| task.is_new) {
-            let stmt = &mut self.stmts[task.i];
-            stmt.made = made;
-            stmt.hands = self.handing.add(stmt, &written);
+        let handing = &mut self.handing;
+        let hands: Vec<_> = new.iter().map(|i| handing.add(&stmts[*i], &written)).collect();
+        for (i, hands) in new.iter().zip(hands) {
+            self.stmts[*i].hands = hands;
         }
-        (self.is_broken, self.is_wrong, self.has_odd_names) = (false, false, false);
-        Some(())
     }
 
     /// Puts what stands in the world now in the place of what stood there.

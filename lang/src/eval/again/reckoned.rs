@@ -91,15 +91,16 @@ impl<'a> Reckoning<'a> {
     fn value(&self, i: u32, last: &mut Last<'a>) -> Option<FittedValue> {
         let wanted = self.handing.wanted(i);
         let formula = self.handing.formula(i);
-        if formula.names().any(|name| self.hidden.binary_search(&name).is_ok()) {
+        let is_hidden = |name: u32| self.hidden.binary_search(&name).is_ok();
+        if !self.hidden.is_empty() && formula.names().any(is_hidden) {
             return Some(FittedValue::hidden(self.is_shown));
         }
         if wanted.is_node {
             return None;
         }
-        let (x, measure) = formula.number(&|name| self.number_of(name))?;
-        let param = self.param(wanted, last)?;
         let units = |dimension: Dimension| self.units.get(&dimension).copied();
+        let (x, measure) = formula.number(&|name| self.number_of(name), &units)?;
+        let param = self.param(wanted, last)?;
         let given = match wanted.n_items {
             0 => Given::Number(x, measure),
             n if vector::dimension(param) == Some(measure) => {

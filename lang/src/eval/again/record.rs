@@ -20,7 +20,7 @@ use crate::eval::env::Env;
 use crate::eval::exec::Body;
 use crate::eval::names::{Facts, Known};
 use crate::eval::note::Noting;
-use crate::eval::numbered::Tables;
+use crate::eval::numbered::{Firsts, Tables};
 use crate::syntax::{Cut, Stmt, StmtNode};
 use crate::{Loaded, Settings};
 
@@ -203,15 +203,13 @@ impl Evaluator<'_> {
             moved.for_each(|stmt| stmt.names.move_together());
             let all = stmts.iter().take_while(|_| !is_over());
             let tables = Tables::of(&names, all.map(|stmt| &stmt.names)).0;
-            let written = Written {
-                text: &text,
-                nodes: &scene.nodes,
-                names: &names,
-                budgets: &settings.budgets,
-                registry: self.registry,
-                n_shadows,
-            };
-            (tables, Handing::of(&mut stmts, &written, &is_over))
+            let firsts = Firsts::new(&names, &tables);
+            let definition = |name| Some(&text[ranges.get(firsts.definer_of(name)?)?.clone()]);
+            let (text, nodes, names) = (&*text, &*scene.nodes, &names);
+            let (budgets, registry, definition) = (&settings.budgets, self.registry, &definition);
+            let written = Written { text, nodes, names, budgets, registry, n_shadows, definition };
+            let handing = Handing::of(&mut stmts, &written, &is_over);
+            (tables, handing)
         });
         let Some((tables, handing)) = found.filter(|_| !is_over()) else {
             leave((scene, stmts, names));

@@ -3,6 +3,7 @@
 mod color;
 mod math;
 mod motion;
+mod numbers;
 mod order;
 mod spectrum_file;
 mod sun;
@@ -17,8 +18,10 @@ use luxel_core::diag::{Diagnostic, Grade, Span, near};
 use luxel_sdk::params::Dimension;
 
 pub(super) use self::color::SpectrumFile;
+pub(crate) use self::numbers::OfNumbers;
 
 use super::Evaluator;
+use super::arithmetic::scale;
 use super::call::takes_only;
 use super::env::Env;
 use super::ops::with_zeros;
@@ -41,6 +44,7 @@ pub(crate) struct Builtin {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Run {
+    Number(OfNumbers),
     Math(math::Math),
     Transform(transform::Transform),
     Color(color::Make),
@@ -162,6 +166,14 @@ pub(crate) fn begins(name: &str) -> bool {
     names().any(|known| known.split('.').next() == Some(name))
 }
 
+/// The function of a name that makes a number of so many others.
+pub(crate) fn of_numbers(name: &str, n: usize) -> Option<OfNumbers> {
+    match find(name).filter(|builtin| builtin.args.len() == n)?.run {
+        Run::Number(function) => Some(function),
+        _ => None,
+    }
+}
+
 /// What a function makes of three numbers as linear sRGB, if it makes a colour of them.
 pub(crate) fn linear_srgb(name: &str, c: [f64; 3]) -> Option<[f64; 3]> {
     use color::Make as C;
@@ -246,7 +258,8 @@ impl Evaluator<'_> {
         }
         let mut call = Call { name: builtin.name, args, span, env };
         let value = match builtin.run {
-            Run::Math(_) if is_poisoned => Value::Poison,
+            Run::Number(_) | Run::Math(_) if is_poisoned => Value::Poison,
+            Run::Number(function) => self.of_numbers(function, &call),
             Run::Math(math) => self.math(math, &mut call),
             Run::Transform(transform) => self.make_transform(transform, &mut call),
             Run::Color(make) => self.color(make, &mut call),
@@ -342,11 +355,9 @@ impl Evaluator<'_> {
         wanted: Dimension,
         span: Span,
     ) -> Option<f64> {
-        if found == wanted {
-            return Some(1.0);
-        }
-        if let (true, Some(scale)) = (found.is_none(), call.env.file.units.get(&wanted)) {
-            return Some(*scale);
+        let units = |dimension: Dimension| call.env.file.units.get(&dimension).copied();
+        if let Some(scale) = scale(found, wanted, &units) {
+            return Some(scale);
         }
         if found.is_none() {
             let message =

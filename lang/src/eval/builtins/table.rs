@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::color::Make as C;
 use super::math::Math as M;
+use super::numbers::OfNumbers as N;
 use super::transform::Transform as T;
 use super::{Builtin, Constant, Run};
 
@@ -38,23 +39,29 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "sin",
         &["x"],
-        Run::Math(M::Sin),
+        Run::Number(N::Sin),
         "The sine of an angle, in [-1, 1]. The angle has its unit: `sin(5)` is a mistake without \
          `units { angle = … }`.",
         "sin(30 deg)",
     ),
-    builtin("cos", &["x"], Run::Math(M::Cos), "The cosine of an angle, in [-1, 1].", "cos(60 deg)"),
+    builtin(
+        "cos",
+        &["x"],
+        Run::Number(N::Cos),
+        "The cosine of an angle, in [-1, 1].",
+        "cos(60 deg)",
+    ),
     builtin(
         "tan",
         &["x"],
-        Run::Math(M::Tan),
+        Run::Number(N::Tan),
         "The tangent of an angle: its sine over its cosine.",
         "2 m * tan(20 deg)",
     ),
     builtin(
         "asin",
         &["x"],
-        Run::Math(M::Asin),
+        Run::Number(N::Asin),
         "The angle, from -90 to 90 degrees, whose sine is a number in [-1, 1]; any other number is a \
          mistake (E0209).",
         "asin(0.5)",
@@ -62,7 +69,7 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "acos",
         &["x"],
-        Run::Math(M::Acos),
+        Run::Number(N::Acos),
         "The angle, from 0 to 180 degrees, whose cosine is a number in [-1, 1]; any other number is a \
          mistake (E0209).",
         "acos(-0.5)",
@@ -70,14 +77,14 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "atan",
         &["x"],
-        Run::Math(M::Atan),
+        Run::Number(N::Atan),
         "The angle, from -90 to 90 degrees, whose tangent is a number.",
         "atan(0.25)",
     ),
     builtin(
         "atan2",
         &["y", "x"],
-        Run::Math(M::Atan2),
+        Run::Number(N::Atan2),
         "The angle from the x axis to the point (x, y), from -180 to 180 degrees, counter-clockwise \
          positive. Both are of one dimension; of (0, 0) it is 0.",
         "atan2(30 cm, 40 cm)",
@@ -85,7 +92,7 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "sqrt",
         &["x"],
-        Run::Math(M::Sqrt),
+        Run::Number(N::Sqrt),
         "The square root of a number that is not negative, with the root of its unit: of square metres \
          it is metres. A unit without a root, as `m`, is a mistake (E0205).",
         "sqrt(2 m^2)",
@@ -93,28 +100,28 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "abs",
         &["x"],
-        Run::Math(M::Abs),
+        Run::Number(N::Abs),
         "The number without its sign, with its unit.",
         "abs(-3 cm)",
     ),
     builtin(
         "min",
         &["a", "b"],
-        Run::Math(M::Min),
+        Run::Number(N::Min),
         "The lesser of two numbers of one dimension.",
         "min(30 cm, 0.2 m)",
     ),
     builtin(
         "max",
         &["a", "b"],
-        Run::Math(M::Max),
+        Run::Number(N::Max),
         "The greater of two numbers of one dimension.",
         "max(0, -0.5)",
     ),
     builtin(
         "clamp",
         &["x", "low", "high"],
-        Run::Math(M::Clamp),
+        Run::Number(N::Clamp),
         "The number itself where it lies between `low` and `high`, else the nearer of the two. All three \
          are of one dimension; where `low` is above `high`, it is `high`.",
         "clamp(1.2, 0, 1)",
@@ -122,21 +129,21 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "floor",
         &["x"],
-        Run::Math(M::Floor),
+        Run::Number(N::Floor),
         "The greatest whole number that is not above a number without a unit.",
         "floor(-1.5)",
     ),
     builtin(
         "ceil",
         &["x"],
-        Run::Math(M::Ceil),
+        Run::Number(N::Ceil),
         "The least whole number that is not below a number without a unit.",
         "ceil(7 / 2)",
     ),
     builtin(
         "round",
         &["x"],
-        Run::Math(M::Round),
+        Run::Number(N::Round),
         "The whole number nearest to a number without a unit; halves go away from zero.",
         "round(2.5)",
     ),
@@ -151,14 +158,14 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "exp",
         &["x"],
-        Run::Math(M::Exp),
+        Run::Number(N::Exp),
         "e, 2.71828…, raised to a power without a unit.",
         "exp(-0.5)",
     ),
     builtin(
         "log",
         &["x"],
-        Run::Math(M::Log),
+        Run::Number(N::Log),
         "The natural logarithm of a positive number without a unit; of any other it is a mistake \
          (E0209).",
         "log(100) / log(10)",
@@ -166,7 +173,7 @@ pub(super) static NUMBERS: [Builtin; 19] = [
     builtin(
         "hash01",
         &["seed", "i"],
-        Run::Math(M::Hash01),
+        Run::Number(N::Hash01),
         "Noise: a number in [0, 1), evenly spread, that depends on `seed` and `i` alone, two \
          numbers without a unit: the same two always give the same.",
         "360 deg * hash01(7, 3)",

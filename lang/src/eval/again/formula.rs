@@ -1,5 +1,6 @@
 //! What a parameter's value is written as, where it takes the same steps whatever its names stand for.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use luxel_sdk::params::Dimension;
@@ -85,9 +86,9 @@ impl Formulas {
         self.bodies.called(body)
     }
 
-    /// Forgets functions some of which have changed.
-    pub(super) fn forget(&mut self, is_changed: &dyn Fn(u32) -> bool) {
-        self.bodies.forget(is_changed);
+    /// Forgets functions among names that are defined anew, by their numbers, and those that call them.
+    pub(super) fn forget(&mut self, redefined: &HashSet<u32>) {
+        self.bodies.forget(redefined);
     }
 
     /// One whose steps have been added.

@@ -30,8 +30,9 @@ pub(super) struct Handed {
     places: Vec<(SourceId, Place)>,
     /// What is wanted there, by number, each once.
     wanted: Vec<u32>,
-    /// The names that must have values for that, each once; the functions that are called, by their numbers.
+    /// The names that must have values for that, each once.
     names: Vec<u32>,
+    /// The functions that are called for it, by their numbers.
     calls: Vec<u32>,
 }
 

@@ -2,7 +2,7 @@
 //! these are is found when the statements are evaluated, so that a name that all of them hand on has its
 //! new value everywhere soon.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -35,8 +35,8 @@ pub(super) struct Handing {
     formulas: Formulas,
     /// Which of those a text is, if it is one.
     of_texts: HashMap<Arc<str>, Option<u32>>,
-    /// Functions that are called, by the numbers of their names, with texts that call them.
-    callers: Vec<(u32, Arc<str>)>,
+    /// Texts that call a function, by the number of its name.
+    callers: HashMap<u32, Vec<Arc<str>>>,
     /// How many vectors are.
     n_vectors: usize,
     wanted: Vec<Wanted>,
@@ -211,17 +211,12 @@ impl Handing {
         &self.places[hands.places.start as usize..hands.places.end as usize]
     }
 
-    /// Forgets functions that have changed, by the numbers of their names, and what is reckoned by them.
-    pub(super) fn forget(&mut self, is_changed: impl Fn(u32) -> bool) {
-        self.formulas.forget(&is_changed);
-        let of_texts = &mut self.of_texts;
-        self.callers.retain(|(function, text)| {
-            let is_known = !is_changed(*function);
-            if !is_known {
-                of_texts.remove(text);
-            }
-            is_known
-        });
+    /// Forgets functions among names that are defined anew, by their numbers, and what is reckoned by them.
+    pub(super) fn forget(&mut self, redefined: &HashSet<u32>) {
+        self.formulas.forget(redefined);
+        for text in redefined.iter().filter_map(|name| self.callers.remove(name)).flatten() {
+            self.of_texts.remove(&text);
+        }
     }
 
     /// What is called with a function of the file, by its number.
@@ -373,8 +368,9 @@ impl Handing {
     fn met(&mut self, i: u32) -> u32 {
         let formula = self.formulas.get(i);
         self.n_vectors += usize::from(formula.is_vector());
-        let functions = formula.calls().flat_map(|body| &self.formulas.called(body).functions);
-        self.callers.extend(functions.map(|function| (*function, formula.text.clone())));
+        for function in formula.calls().flat_map(|body| &self.formulas.called(body).functions) {
+            self.callers.entry(*function).or_default().push(formula.text.clone());
+        }
         self.of_formulas.push(vec![]);
         i
     }

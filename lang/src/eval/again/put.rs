@@ -70,7 +70,7 @@ impl State {
         let defines = gone.iter().chain(new_stmts).flat_map(|stmt| stmt.names.defines());
         let redefined: HashSet<u32> = defines.copied().collect();
         if !redefined.is_empty() {
-            self.handing.forget(|name| redefined.contains(&name));
+            self.handing.forget(&redefined);
         }
         let firsts = Firsts::new(&self.names, &self.tables);
         let (stmts, text) = (&self.stmts, &*self.text);

@@ -1,6 +1,6 @@
 //! Formulas as the steps of their reckoning.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
@@ -34,17 +34,18 @@ pub(super) enum Step {
     Of(OfNumbers, u8),
     /// What a function of the file makes of the last ones, by its number among `Bodies`.
     Call(u32),
-    /// In a function: the argument that is the last but so many, once more.
+    /// In a function: the argument that stands so far back, the last at 1, once more.
     Argument(u8),
-    /// That argument as a number of this dimension, perhaps a whole one.
+    /// That argument becomes a number of this dimension, perhaps a whole one.
     Fit(u8, Dimension, bool),
     /// The function ends: so many arguments go, and what it came to stays.
     Return(u8),
 }
 
-/// A function of the file for so many arguments, the others as they are where none is given.
+/// A function of the file where so many of its arguments are given.
 #[derive(Clone, Debug)]
 struct Body {
+    /// The number of its name, and how many.
     of: (u32, usize),
     params: Box<[Arc<str>]>,
     steps: Vec<Step>,
@@ -159,11 +160,11 @@ impl Bodies {
         numbers
     }
 
-    /// Forgets functions some of which have changed.
-    pub(super) fn forget(&mut self, is_changed: &dyn Fn(u32) -> bool) {
+    /// Forgets functions among names that are defined anew, by their numbers, and those that call them.
+    pub(super) fn forget(&mut self, redefined: &HashSet<u32>) {
         let Self { all, known, .. } = self;
         let functions = |body: u32| all[body as usize].called.functions.iter();
-        let is_same = |body: u32| !functions(body).any(|name| is_changed(*name));
+        let is_same = |body: u32| !functions(body).any(|name| redefined.contains(name));
         known.retain(|_, body| body.is_some_and(is_same));
     }
 

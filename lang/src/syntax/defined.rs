@@ -55,6 +55,9 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     if is_category(first.text) {
         return of_object(&words).map(|t| name(t.text, t, t)).collect();
     }
+    if let Some(t) = of_list(&words) {
+        return Box::new([name(t.text, t, t)]);
+    }
     // `#define R 2 m`
     let begins = DEFINING.contains(&first.text) || first.text == "define";
     // `lte x = 5`, `var x = 5` were to define something too.
@@ -110,6 +113,16 @@ fn of_object<'t, 'a>(words: &'t [Token<'a>]) -> impl Iterator<Item = &'t Token<'
         _ => 0,
     };
     named.iter().take(n).filter(|t| t.kind == TokenKind::Word)
+}
+
+/// The name of `float heights[3] = …` and of `float[] heights = …`.
+fn of_list<'t, 'a>(words: &'t [Token<'a>]) -> Option<&'t Token<'a>> {
+    let mark = |i: usize| words.get(i).map_or("", |t| t.text);
+    let open = [1, 2].into_iter().find(|i| mark(*i) == "[")?;
+    let close = open + 1 + usize::from(mark(open + 1) != "]");
+    let at = if open == 1 { close + 1 } else { 1 };
+    let is_given = mark(close) == "]" && mark(at.max(close) + 1) == "=";
+    words.get(at).filter(|t| is_given && t.kind == TokenKind::Word)
 }
 
 fn is_type(word: &str) -> bool {

@@ -6,6 +6,7 @@ use super::around::{Around, Place, is_category, stands_behind};
 use super::lex::TokenKind;
 use super::make::RESERVED;
 use super::statement;
+use super::type_names;
 
 /// What is said of a range that is written otherwise.
 pub(super) const RANGE: &str = "a range is written `0..3`: from 0 up to, but not, 3";
@@ -25,7 +26,8 @@ const FOREIGN: [&str; 22] = [
 
 /// Why the first words of a statement or object near the place cannot be read.
 pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
-    misspelt(around)
+    list(around)
+        .or_else(|| misspelt(around))
         .or_else(|| plugin(around))
         .or_else(|| function(around))
         .or_else(|| block(around))
@@ -168,6 +170,29 @@ fn misspelt(around: &Around<'_>) -> Option<Diagnostic> {
         }
     }
     None
+}
+
+/// `float heights[3] = [1, 2, 3]` and `float[] heights = [1, 2, 3]`
+fn list(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(4);
+    let start = (first..=around.at).rev().find(|i| around.begins(*i))?;
+    let word = around.tokens.get(start)?;
+    let is_type = FOREIGN.contains(&word.text) || type_names::names().any(|ty| ty == word.text);
+    let opens = |i: &usize| around.word(*i) == "[";
+    let open = [start + 1, start + 2].into_iter().find(opens).filter(|_| is_type)?;
+    let close = around.closing(open).filter(|close| *close <= open + 2)?;
+    let name = if open == start + 1 { close + 1 } else { start + 1 };
+    let end = name.max(close);
+    if !around.is_word(name) || around.word(end + 1) != "=" {
+        return None;
+    }
+    let name = around.word(name);
+    let found = around.error("E0023", word, format!("the list `{name}` is defined with `let`"));
+    let found = found.help(format!(
+        "its type, if it is said, stands behind its name: `let {name}: float[] = …`"
+    ));
+    let span = Span::new(around.source, word.start, around.tokens[end].end());
+    Some(found.guess(span, format!("let {name}")))
 }
 
 /// A word that is none of the language, and the one that may be meant.

@@ -20,6 +20,8 @@ pub(crate) const STRAYS_LOOKED_AT: usize = 100;
 /// it so often.
 const READ_AGAIN: usize = 1 << 20;
 const TIMES: usize = 8;
+/// How many of them it takes to find the mend of a bracket, at most.
+const MENDED: usize = 1 << 10;
 
 /// How many bytes of a text may be looked at again.
 pub(crate) fn looked_at_again(text: &str) -> usize {
@@ -134,8 +136,12 @@ impl Search<'_> {
         let end = self.pieces.last()?.range.end;
         faults.iter_mut().rev().find_map(|fault| {
             let Fault::Mismatch { open, at, .. } = *fault else { return None };
+            if !(start..end).contains(&at) {
+                return None;
+            }
+            *self.again = self.again.checked_sub(MENDED)?;
             let other = Fault::Mismatch { open, at, left: 0 };
-            let mend = mend(self.text, &other).filter(|_| (start..end).contains(&at))?;
+            let mend = mend(self.text, &other)?;
             let begin = self.begin(&mend)?;
             *fault = other;
             Some((begin, mend))

@@ -55,8 +55,8 @@ pub(super) fn perhaps_defined(text: &str, piece: Range<usize>, source: SourceId)
     if is_category(first.text) {
         return of_object(&words).map(|t| name(t.text, t, t)).collect();
     }
-    if let Some(t) = of_list(&words) {
-        return Box::new([name(t.text, t, t)]);
+    if let Some((at, _)) = of_list(&words) {
+        return Box::new([name(words[at].text, &words[at], &words[at])]);
     }
     // `#define R 2 m`
     let begins = DEFINING.contains(&first.text) || first.text == "define";
@@ -115,17 +115,19 @@ fn of_object<'t, 'a>(words: &'t [Token<'a>]) -> impl Iterator<Item = &'t Token<'
     named.iter().take(n).filter(|t| t.kind == TokenKind::Word)
 }
 
-/// The name of `float heights[3] = …` and of `float[] heights = …`.
-fn of_list<'t, 'a>(words: &'t [Token<'a>]) -> Option<&'t Token<'a>> {
+/// A list that is defined as other languages do, by its first tokens: which of them is its name, and which the last
+/// before `=`. `float heights[3] = …`, `float[] heights = …`
+pub(super) fn of_list(words: &[Token<'_>]) -> Option<(usize, usize)> {
     let mark = |i: usize| words.get(i).map_or("", |t| t.text);
     let open = [1, 2].into_iter().find(|i| mark(*i) == "[")?;
     let close = open + 1 + usize::from(mark(open + 1) != "]");
-    let at = if open == 1 { close + 1 } else { 1 };
-    let is_given = mark(close) == "]" && mark(at.max(close) + 1) == "=";
-    words.get(at).filter(|t| is_given && t.kind == TokenKind::Word)
+    let name = if open == 1 { close + 1 } else { 1 };
+    let last = name.max(close);
+    let is_word = words.get(name).is_some_and(|t| t.kind == TokenKind::Word);
+    (is_word && mark(close) == "]" && mark(last + 1) == "=").then_some((name, last))
 }
 
-fn is_type(word: &str) -> bool {
+pub(super) fn is_type(word: &str) -> bool {
     type_names::names().any(|known| known == word)
 }
 

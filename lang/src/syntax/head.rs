@@ -3,10 +3,10 @@
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
 use super::around::{Around, Place, is_category, stands_behind};
+use super::defined::{is_type, of_list};
 use super::lex::TokenKind;
 use super::make::RESERVED;
 use super::statement;
-use super::type_names;
 
 /// What is said of a range that is written otherwise.
 pub(super) const RANGE: &str = "a range is written `0..3`: from 0 up to, but not, 3";
@@ -177,22 +177,16 @@ fn list(around: &Around<'_>) -> Option<Diagnostic> {
     let first = around.at.saturating_sub(4);
     let start = (first..=around.at).rev().find(|i| around.begins(*i))?;
     let word = around.tokens.get(start)?;
-    let is_type = FOREIGN.contains(&word.text) || type_names::names().any(|ty| ty == word.text);
-    let opens = |i: &usize| around.word(*i) == "[";
-    let open = [start + 1, start + 2].into_iter().find(opens).filter(|_| is_type)?;
-    let close = around.closing(open).filter(|close| *close <= open + 2)?;
-    let name = if open == start + 1 { close + 1 } else { start + 1 };
-    let end = name.max(close);
-    if !around.is_word(name) || around.word(end + 1) != "=" {
+    let (name, last) = of_list(around.tokens.get(start..)?)?;
+    let ty = if is_type(word.text) { word.text } else { "float" };
+    if ty != word.text && !FOREIGN.contains(&word.text) {
         return None;
     }
-    let name = around.word(name);
+    let name = around.word(start + name);
     let found = around.error("E0023", word, format!("the list `{name}` is defined with `let`"));
-    let found = found.help(format!(
-        "its type, if it is said, stands behind its name: `let {name}: float[] = …`"
-    ));
-    let span = Span::new(around.source, word.start, around.tokens[end].end());
-    Some(found.guess(span, format!("let {name}")))
+    let help = format!("its type, if it is said, stands behind its name: `let {name}: {ty}[] = …`");
+    let span = Span::new(around.source, word.start, around.tokens[start + last].end());
+    Some(found.help(help).guess(span, format!("let {name}")))
 }
 
 /// A word that is none of the language, and the one that may be meant.

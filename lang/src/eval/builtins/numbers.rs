@@ -1,7 +1,6 @@
 //! Functions of numbers.
 
 use arrayvec::ArrayVec;
-use luxel_core::diag::Diagnostic;
 use luxel_sdk::params::Dimension;
 
 use super::{Call, Evaluator, Value};
@@ -57,7 +56,7 @@ impl OfNumbers {
     fn made(self, args: &[Measured]) -> Result<Measured, Unmade> {
         let [(a, measure), (b, second), (c, third)] =
             std::array::from_fn(|i| args.get(i).copied().unwrap_or((0.0, args[0].1)));
-        // What the function of one measure makes of several is nothing.
+        // All that it takes measure the same.
         if let Some(other) = [second, third].into_iter().find(|other| *other != measure) {
             return Err(Unmade::Unlike(measure, other));
         }
@@ -141,8 +140,7 @@ impl Evaluator<'_> {
             Err(Unmade::Unlike(one, other)) => {
                 let message =
                     format!("`{}` is given {} and {}", call.name, one.name(), other.name());
-                self.tell(Diagnostic::error("E0203", call.span, message));
-                Value::Poison
+                self.poison("E0203", call.span, message)
             }
         }
     }

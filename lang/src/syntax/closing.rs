@@ -57,10 +57,12 @@ impl Open<'_> {
 /// A block whose lines are indented ends before the first line that is indented no more than that of its
 /// brace, or with the text; one that an `if` begins, before its `else`.
 pub(super) fn closing(text: &str, start: usize, limit: usize) -> Option<Closing> {
-    let braces = braces(text, start, limit)?;
+    let mut braces = braces(text, start, limit)?;
     let closed = closed_by(&text[start..], [start, start], &braces);
     let next = scan_until(&closed.text, 0..closed.text.len(), 0, limit, &mut |at| at > 0).met;
     let end = next.map(|next| closed.edits.written(next..next).start);
+    // What opens behind it is another statement's.
+    braces.retain(|(open, _)| end.is_none_or(|end| *open < end));
     Some(Closing { braces, end })
 }
 

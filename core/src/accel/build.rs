@@ -77,7 +77,9 @@ fn fill<T: Timber>(tree: &mut Tree<T>, timber: &T, prims: &mut [Prim], watch: &W
     }
     let mut parts = slices(prims, &upper);
     if let [part] = parts.as_mut_slice() {
-        return tree.grow(timber, part, &mut Tools::default(), watch);
+        tree.grow(timber, part, &mut Tools::default(), watch);
+        tree.nodes.shrink_to_fit();
+        return tree.blocks.shrink_to_fit();
     }
     let mut roots = Vec::with_capacity(parts.len());
     let mut around = Vec::with_capacity(parts.len());
@@ -110,8 +112,6 @@ fn fill<T: Timber>(tree: &mut Tree<T>, timber: &T, prims: &mut [Prim], watch: &W
     let mut root = collapse(binary, costs, &mut Plans::default(), &mut joint);
     root.depth += depth;
     tree.root = Some(root);
-    tree.nodes.shrink_to_fit();
-    tree.blocks.shrink_to_fit();
 }
 
 /// What a thread needs for one part after another.
@@ -154,8 +154,8 @@ impl<T: Timber> Tree<T> {
         let left = n_parts - roots.len();
         let room = |n: usize| {
             let more = n * left / roots.len();
-            // A fiftieth more than the mean.
-            n + more + more / 50
+            // Parts that come may be larger, and to move what is there takes longer than they.
+            n + more + more / 8
         };
         append(
             &mut self.nodes,
@@ -182,7 +182,8 @@ fn append<P: Sync, X: Copy + Send + Sync>(
 ) {
     let n: usize = parts.iter().map(|part| get(part).len()).sum();
     if all.capacity() < all.len() + n {
-        all.reserve_exact(room.max(all.len() + n) - all.len());
+        let least = (all.len() + n).max(all.capacity() + all.capacity() / 8);
+        all.reserve_exact(room.max(least) - all.len());
     }
     let mut spare = &mut all.spare_capacity_mut()[..n];
     let mut places = Vec::with_capacity(parts.len());

@@ -35,6 +35,9 @@ pub(super) trait Timber: Sync {
         blocks: &mut Vec<Self::Block>,
     ) -> (Child, Self::Bounds);
 
+    /// Asks for the memory that leaves of these primitives are made of.
+    fn prefetch(&self, _prims: &[Prim]) {}
+
     /// A node and the box around it.
     fn node(slots: &[(Child, Self::Bounds)]) -> (Boxes<Self::Number>, Self::Bounds);
 }
@@ -132,6 +135,7 @@ impl<T: Timber> Tree<T> {
         let Tools { clusters, plans } = tools;
         let binary = clusters.of(prims);
         self.around = bounds(&binary.nodes[0]);
+        timber.prefetch(prims);
         let Self { nodes, blocks, .. } = self;
         let mut leaves = Leaves { timber, prims, nodes, blocks };
         self.root = Some(collapse(binary, T::COSTS, plans, &mut leaves));

@@ -192,9 +192,9 @@ impl Binning {
     fn fill(&self, prims: &[Prim], watch: &Watch) -> Bins {
         let join = |a: Bins, b: Bins| std::array::from_fn(|i| a[i].join(b[i]));
         let put = |bins: Bins, prims: &[Prim]| {
-            // Neighbours often share a bin; with two sets neither waits for the other.
-            let mut sides = [bins, [Bin::EMPTY; BINS]];
-            for pair in prims.chunks(2) {
+            // Neighbours often share a bin; with four sets none waits for another.
+            let mut sides = [bins, [Bin::EMPTY; BINS], [Bin::EMPTY; BINS], [Bin::EMPTY; BINS]];
+            for pair in prims.chunks(4) {
                 for (p, bins) in pair.iter().zip(&mut sides) {
                     let bin = &mut bins[self.of(p)];
                     bin.n += 1;
@@ -202,8 +202,8 @@ impl Binning {
                     bin.centres = bin.centres.grow(p.centre());
                 }
             }
-            let [a, b] = sides;
-            join(a, b)
+            let [a, b, c, d] = sides;
+            join(join(a, b), join(c, d))
         };
         fold(prims, watch, || [Bin::EMPTY; BINS], put, join)
     }

@@ -9,6 +9,7 @@ use super::error::BuildError;
 use super::node::{Block, Bounds, Child, LANES, Node, Shift, narrow};
 use super::partition::Prim;
 use super::passes::fold;
+use super::processor::prefetch_value;
 use super::watch::{STRIDE, Watch};
 
 /// Strides of primitives that are made at once.
@@ -183,6 +184,14 @@ impl Timber for Triangles<'_> {
         });
         blocks.extend((0..n).map(|_| Block::of(&mut triangles)));
         (Child::leaf(first, n), bounds)
+    }
+
+    fn prefetch(&self, prims: &[Prim]) {
+        for p in prims {
+            for point in self.indices[p.index() as usize] {
+                prefetch_value(&self.points[point as usize]);
+            }
+        }
     }
 
     fn node(slots: &[(Child, Bounds)]) -> (Node, Bounds) {

@@ -125,15 +125,18 @@ fn whole_pages(at: *mut u8, size: usize) -> Range<usize> {
 
 /// Asks for large pages: where each page of 4 KiB is asked for alone when it is first written to, that
 /// takes a seventh of the time in which the tree of a large mesh is built.
+///
+/// Of all pages that hold some of it: what the system was asked of in part it moves no more as a whole, and
+/// memory that grows would be copied.
 #[cfg(target_os = "linux")]
 fn in_large_pages(at: *mut u8, size: usize) -> *mut u8 {
     if size >= IN_LARGE_PAGES && !at.is_null() {
-        let pages = whole_pages(at, size);
+        let page = rustix::param::page_size();
+        let before = at.addr() % page;
+        let length = (before + size).next_multiple_of(page);
         let advice = rustix::mm::Advice::LinuxHugepage;
-        // SAFETY: what the pages hold stays. A system that has no others says so, and nothing is lost.
-        let _ = unsafe {
-            rustix::mm::madvise(at.wrapping_add(pages.start).cast(), pages.len(), advice)
-        };
+        // SAFETY: what the pages hold stays, whoever's it is. A system that has no others says so.
+        let _ = unsafe { rustix::mm::madvise(at.wrapping_sub(before).cast(), length, advice) };
     }
     at
 }
@@ -257,6 +260,24 @@ mod tests {
             assert!(holds(at, size, letter), "{letter}");
             give_up(&MEMORY, at, size + 4097);
         }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    #[expect(clippy::disallowed_methods, reason = "what the system knows of this process")]
+    fn large_memory_is_one_piece_to_the_system_so_that_it_grows_where_it_is() {
+        let memory = Memory::new();
+        let at = filled(&memory, LARGE, 3);
+        let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+        let ends = |line: &str| {
+            let (start, end) = line.split_once(' ').unwrap().0.split_once('-').unwrap();
+            [start, end].map(|end| usize::from_str_radix(end, 16).unwrap())
+        };
+        let piece =
+            |at: usize| maps.lines().position(|line| (ends(line)[0]..ends(line)[1]).contains(&at));
+        assert_eq!(piece(at.addr()), piece(at.addr() + LARGE - 1));
+        assert!(piece(at.addr()).is_some());
+        give_up(&memory, at, LARGE);
     }
 
     #[cfg(target_os = "linux")]

@@ -21,6 +21,7 @@ mod shares;
 mod sink;
 mod syntax;
 mod values;
+mod words;
 
 pub use budgets::Budgets;
 pub use catalogue::{CATALOGUE, Example, Page, Setup, page, setup};

@@ -9,6 +9,8 @@ use std::ops::Range;
 
 use memchr::memchr;
 
+use crate::words::{CONTINUE, NO_VALUES, PREFIX};
+
 pub(crate) use brackets::opens_object;
 
 /// What is wrong with the brackets, strings or comments of a text; offsets are bytes.
@@ -89,16 +91,6 @@ pub struct Scan {
     /// The start that was known: the scan ended there, and it is not among the others.
     pub met: Option<usize>,
 }
-
-/// Words that continue a statement on a new line.
-const CONTINUE: [&[u8]; 4] = [b"else", b"with", b"in", b"as"];
-/// Words after which something must follow: a newline after them ends nothing.
-const PREFIX: [&[u8]; 17] = [
-    b"let", b"param", b"fn", b"for", b"include", b"import", b"use", b"place", b"set", b"assert",
-    b"expect", b"units", b"if", b"else", b"with", b"in", b"as",
-];
-/// Those of them that no value begins with.
-const STATEMENTS: &[&[u8]] = PREFIX.split_at(12).0;
 
 /// Faults that are noted: with more a text is no scene, and nothing after the last is scanned.
 pub(crate) const FAULTS: usize = 1000;
@@ -274,7 +266,7 @@ impl Scanner<'_> {
                 }
                 let name = &self.bytes[start..self.at];
                 let follows = self.follower == Some(name) && self.may_follow(name);
-                if follows || CONTINUE.contains(&name) {
+                if follows || is_one_of(CONTINUE, name) {
                     (self.newline, self.doc) = (false, None);
                     self.follower = self.follower.filter(|_| !follows);
                 } else {
@@ -287,7 +279,7 @@ impl Scanner<'_> {
                     };
                     self.in_for &= !begins;
                 }
-                let opens = byte == b'@' || PREFIX.contains(&name);
+                let opens = byte == b'@' || is_one_of(PREFIX, name);
                 self.before = if opens { Before::Opening } else { Before::Operand };
                 self.in_for = matches!(name, b"for" | b"assert") || (self.in_for && name != b"in");
             }
@@ -346,7 +338,7 @@ impl Scanner<'_> {
         if self.open.len() == self.depth {
             let is_apart = match self.before {
                 Before::Operand => true,
-                Before::Sign => STATEMENTS.contains(&&self.bytes[start..self.at]),
+                Before::Sign => is_one_of(NO_VALUES, &self.bytes[start..self.at]),
                 Before::Opening => false,
             };
             begins = self.first || (is_apart && self.newline);
@@ -416,6 +408,11 @@ impl Scanner<'_> {
 
 /// Bytes of a line that are looked at to see which bracket is the wrong one.
 const LOOKED_AT: usize = 256;
+
+/// Whether it is one of these words.
+fn is_one_of(words: &[&str], name: &[u8]) -> bool {
+    words.iter().any(|word| word.as_bytes() == name)
+}
 
 /// The bracket that closes an open one.
 fn closing(open: u8) -> u8 {

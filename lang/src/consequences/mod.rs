@@ -8,7 +8,8 @@ use std::collections::BTreeSet;
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_sdk::kind::Kind;
 
-use crate::syntax::{BEFORE_NAMES, EARLY};
+use crate::syntax::EARLY;
+use crate::words::BEFORE_NAMES;
 
 /// Bytes before a place that are looked at: of a line before a bracket that closes nothing, and of a call.
 const LOOKED_AT: usize = 1 << 10;

@@ -6,7 +6,8 @@ use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
 use luxel_sdk::kind::Kind;
 use memchr::memmem;
 
-use crate::syntax::{BEFORE_NAMES, Token, TokenKind, tokens};
+use crate::syntax::{Token, TokenKind, tokens};
+use crate::words::BEFORE_NAMES;
 
 use super::nearby::is_unread;
 

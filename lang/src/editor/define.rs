@@ -11,7 +11,8 @@ use luxel_sdk::params::Unit;
 use super::document::Document;
 use super::piece::Piece;
 use super::symbols::{Role, Sort, Symbol};
-use crate::syntax::{RESERVED, StmtNode};
+use crate::syntax::StmtNode;
+use crate::words::RESERVED;
 
 /// Names behind one another's dots that are followed: far more than files that import one another.
 pub(super) const MAX_DOTS: usize = 64;

@@ -13,7 +13,8 @@ use super::schema::Given;
 use super::symbols::{Role, Sort};
 use crate::eval::types;
 use crate::manual::{self, Function};
-use crate::syntax::{OF_A_TEXT, StmtNode};
+use crate::syntax::StmtNode;
+use crate::words::OF_A_TEXT;
 
 /// Words that begin statements, with what is written after them and what they mean.
 const WORDS: [(&str, &str, &str); 13] = [

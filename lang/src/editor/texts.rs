@@ -7,7 +7,7 @@ use luxel_sdk::params::{Param, Type};
 use super::context::{Context, Head};
 use super::named::Around;
 use super::schema::{self, Given};
-use crate::syntax::OF_A_TEXT;
+use crate::words::OF_A_TEXT;
 
 /// What the string at a place stands for.
 pub(super) enum Said {

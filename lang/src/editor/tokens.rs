@@ -8,7 +8,8 @@ use super::document::Document;
 use super::piece::Piece;
 use super::symbols::{Role, Sort, Symbol};
 use crate::eval::builtins;
-use crate::syntax::{RESERVED, Token, TokenKind, tokens};
+use crate::syntax::{Token, TokenKind, tokens};
+use crate::words::RESERVED;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,9 +15,10 @@ use super::mention::mention_body;
 use super::{builtins, types};
 use crate::sink::Sink;
 use crate::syntax::{
-    Arg, COMPARES, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Op, RESERVED,
-    Stmt, StmtNode, Tree, Ty, children, says_units, stray,
+    Arg, COMPARES, Comp, Expect, Expr, ExprNode, Field, FnBody, FnDef, Name, Object, Op, Stmt,
+    StmtNode, Tree, Ty, children, says_units, stray,
 };
+use crate::words::RESERVED;
 
 /// Tells every name that is unknown, used too early or defined twice.
 pub(crate) fn resolve(tree: &Tree, text: &str, sink: &mut Sink) {

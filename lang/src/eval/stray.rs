@@ -10,7 +10,8 @@ use super::Evaluator;
 use super::env::Env;
 use super::exec::Body;
 use super::value::Value;
-use crate::syntax::{ExprNode, Field, Name, Object, RESERVED, stray};
+use crate::syntax::{ExprNode, Field, Name, Object, stray};
+use crate::words::RESERVED;
 
 /// The parameters of a class that take an object of a kind.
 pub(super) fn takers(class: &Class, kind: Kind) -> impl Iterator<Item = &'static Param> {

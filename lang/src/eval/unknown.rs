@@ -8,7 +8,8 @@ use luxel_sdk::params::Unit;
 
 use super::builtins;
 use super::resolve::{Resolver, Scope, follows_fn};
-use crate::syntax::{Expr, ExprNode, Name, OF_A_TEXT, Op, path_around};
+use crate::syntax::{Expr, ExprNode, Name, Op, path_around};
+use crate::words::OF_A_TEXT;
 
 /// Known names among which near ones are looked for: more than `near` looks at, names that are known
 /// twice counted.

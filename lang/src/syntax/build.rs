@@ -10,13 +10,14 @@ use pest::iterators::Pair;
 use super::Rule;
 use super::edits::Edits;
 use super::gaps::Gaps;
-use super::make::{self, BEFORE_NAMES, RESERVED};
+use super::make;
 use super::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, Object, ParamDef,
     Quoted, Stmt, StmtNode,
 };
 use crate::budgets::Budgets;
 use crate::sink::Sink;
+use crate::words::{BEFORE_NAMES, RESERVED};
 
 /// Builds trees from pairs whose text begins at byte `base` of the source.
 pub(super) struct Builder<'a> {

@@ -6,7 +6,7 @@ use luxel_sdk::params::Unit;
 use super::around::{Around, Place, is_category};
 use super::explain::short;
 use super::lex::{Token, TokenKind};
-use super::make::RESERVED;
+use crate::words::RESERVED;
 
 impl Around<'_> {
     /// `(0, 1 2)`

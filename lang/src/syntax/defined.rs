@@ -7,9 +7,9 @@ use luxel_core::diag::{SourceId, Span, nearest};
 
 use super::around::{is_category, stands_nowhere};
 use super::lex::{Token, TokenKind, tokens};
-use super::make::{RESERVED, STATEMENTS};
 use super::tree::Name;
 use super::type_names;
+use crate::words::{RESERVED, STATEMENTS};
 
 /// Words before a name that is being defined.
 const DEFINING: [&str; 3] = ["let", "param", "fn"];

@@ -10,11 +10,12 @@ use super::foreign::body_of_steps;
 use super::habits::habit;
 use super::head;
 use super::lex::{Token, TokenKind, tokens};
-use super::make::{BEFORE_NAMES, OF_A_NUMBER, OF_A_TEXT, RESERVED, STATEMENTS, nameless};
+use super::make::nameless;
 use super::notation::{notation, remark};
 use super::peers::{BEGINS, is_pbrt};
 use super::unfinished::unfinished;
 use super::wrapped::{choice, valued_body, wrapped};
+use crate::words::{BEFORE_NAMES, OF_A_NUMBER, OF_A_TEXT, RESERVED, STATEMENTS};
 
 /// A mistake with what is needed to go on after it.
 pub(super) struct Explained {

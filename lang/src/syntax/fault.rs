@@ -7,8 +7,8 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 use super::around::is_category;
 use super::closing::indent;
 use super::lex::{TokenKind, tokens};
-use super::make::OF_A_NUMBER;
 use crate::prescan::{Fault, opens_object};
+use crate::words::OF_A_NUMBER;
 
 /// The function whose arguments are mostly named, and their names.
 const LOOK_AT: (&str, [&str; 3]) = ("look_at", ["from", "to", "up"]);

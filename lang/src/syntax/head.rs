@@ -5,8 +5,8 @@ use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use super::around::{Around, Place, is_category, stands_behind};
 use super::defined::{is_type, of_list};
 use super::lex::TokenKind;
-use super::make::RESERVED;
 use super::statement;
+use crate::words::RESERVED;
 
 /// What is said of a range that is written otherwise.
 pub(super) const RANGE: &str = "a range is written `0..3`: from 0 up to, but not, 3";

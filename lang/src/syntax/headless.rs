@@ -7,7 +7,7 @@ use super::closing::rewritten;
 use super::edits::Mended;
 use super::head::opens_block;
 use super::lex::{Token, TokenKind, tokens};
-use super::make::STATEMENTS;
+use crate::words::STATEMENTS;
 
 /// Words of other languages, and one of ours, with which nothing begins that has a block.
 const FOREIGN: [&str; 7] = ["else", "foreach", "loop", "repeat", "unless", "until", "while"];

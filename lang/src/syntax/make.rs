@@ -7,26 +7,7 @@ use luxel_sdk::params::Unit;
 
 use super::tree::{Doc, Expr, ExprNode, Form, ListTy, Name, Ty};
 
-/// Names that no definition may take.
-pub(crate) const RESERVED: [&str; 19] = [
-    "let", "param", "fn", "for", "if", "include", "import", "use", "place", "set", "assert",
-    "expect", "units", "else", "with", "as", "in", "true", "false",
-];
-
-/// Those that begin a statement.
-pub(super) const STATEMENTS: &[&str] = RESERVED.split_at(13).0;
-
-/// Words that a name follows.
-pub(crate) const BEFORE_NAMES: [&str; 3] = ["let", "param", "fn"];
-
-/// Functions of one number.
-pub(super) const OF_A_NUMBER: [&str; 8] =
-    ["abs", "ceil", "cos", "floor", "scale", "sin", "sqrt", "tan"];
-
-/// Functions that take the name of something measured, as a text.
-pub(crate) const OF_A_TEXT: [&str; 3] = ["metal", "glass", "illuminant"];
-
-/// What is said where none follows one.
+/// What is said where no name follows a word that wants one.
 pub(super) fn nameless(word: &str, at: Span) -> Diagnostic {
     Diagnostic::error("E0019", at, format!("a name is missing after `{word}`"))
 }

@@ -52,7 +52,6 @@ pub(crate) use cut::{Cut, Cuts, resume_limit};
 pub(crate) use defined::{says_units, stray};
 pub(crate) use explain::COMPARES;
 pub(crate) use lex::{Token, TokenKind, tokens};
-pub(crate) use make::{BEFORE_NAMES, OF_A_TEXT, RESERVED};
 pub(crate) use number::parse as parse_number;
 pub(crate) use parse::{
     Tree, Turns, cut, cut_whole, joined_at, parse, parse_by_pest, parse_expr, parse_in_turns,

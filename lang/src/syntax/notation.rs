@@ -5,8 +5,8 @@ use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, told};
 use super::lex::{Token, TokenKind};
-use super::make::{BEFORE_NAMES, RESERVED};
 use super::type_names;
+use crate::words::{BEFORE_NAMES, RESERVED};
 
 /// Words in a row that nobody writes but to say something to people.
 const SAID: usize = 3;

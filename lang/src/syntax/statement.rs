@@ -5,8 +5,8 @@ use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, told};
 use super::lex::{Token, TokenKind};
-use super::make::RESERVED;
 use super::peers::is_pbrt;
+use crate::words::RESERVED;
 
 /// Words with which other languages end something.
 const ENDING: [&str; 8] = ["break", "continue", "done", "end", "endif", "fi", "pass", "return"];

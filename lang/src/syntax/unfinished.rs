@@ -5,7 +5,8 @@ use luxel_core::diag::Diagnostic;
 use super::around::{Around, Place, is_category, told};
 use super::head::opens_block;
 use super::lex::{Token, TokenKind};
-use super::make::{BEFORE_NAMES, STATEMENTS, nameless};
+use super::make::nameless;
+use crate::words::{BEFORE_NAMES, STATEMENTS};
 
 impl Around<'_> {
     /// A word that begins a line behind what wants something more, near the place where reading stopped: how

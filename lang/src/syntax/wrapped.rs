@@ -4,7 +4,7 @@ use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, is_category, told};
 use super::lex::{Token, TokenKind};
-use super::make::STATEMENTS;
+use crate::words::STATEMENTS;
 
 /// Words that elsewhere make an object.
 const MAKING: [&str; 8] = ["add", "create", "def", "define", "draw", "insert", "make", "new"];

@@ -6,8 +6,9 @@ use luxel_core::diag::Span;
 
 use super::Reader;
 use super::cursor::{Cursor, begins_word};
-use crate::syntax::make::{self, RESERVED};
+use crate::syntax::make;
 use crate::syntax::tree::{Name, Object};
+use crate::words::RESERVED;
 
 /// Whether a word of the language can be neither kind nor unit.
 pub(super) fn is_keyword(word: &str) -> bool {

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use super::Reader;
 use super::expr::Place;
 use super::head::is_reserved;
-use crate::syntax::make::{self, RESERVED};
+use crate::syntax::make;
 use crate::syntax::tree::{
     Block, Doc, Expect, Expr, ExprNode, Field, FnBody, FnDef, FnParam, Name, ParamDef, Stmt,
     StmtNode, Ty,
 };
+use crate::words::RESERVED;
 
 impl Reader<'_> {
     /// A statement, and the comma or semicolon after it.

@@ -48,29 +48,8 @@ impl Builder<'_> {
             Err(bad) => bad,
         };
         let span = self.span(pair);
-        // `(a > 1) and (b > 1)`
-        if let Some(found) = condition(span, text) {
+        if let Some(found) = self.of_word(pair, span) {
             self.sink.push(found);
-            return None;
-        }
-        if is_suffix(text) {
-            self.sink.push(of_suffix(span));
-            return None;
-        }
-        if text == "then" {
-            let message = "no `then` stands between a condition and its block";
-            self.sink.push(Diagnostic::error("E0204", span, message).fix(span, ""));
-            return None;
-        }
-        if matches!(text, "px" | "pixel" | "pixels") {
-            let all = self.written(blank_before(pair).start..pair.as_span().end());
-            let message = format!("there is no unit `{text}`: pixels are counted");
-            let found = Diagnostic::error("E0204", span, message);
-            self.sink.push(found.fix(all, ""));
-            return None;
-        }
-        if matches!(text, "C" | "degC" | "celsius" | "degF") {
-            self.sink.push(self.temperature(pair, span));
             return None;
         }
         if is_category(text) {
@@ -78,7 +57,11 @@ impl Builder<'_> {
             self.begun = Some((pair.as_span().end(), Name { text: text.into(), span }));
             return None;
         }
-        let mut diagnostic = Diagnostic::error("E0204", span, format!("there is no unit `{bad}`"));
+        if let Some(found) = self.scaled(pair, &bad) {
+            self.sink.push(found);
+            return None;
+        }
+        let mut diagnostic = no_unit(span, &bad);
         if let Some((all, number)) = self.hexadecimal(pair) {
             let found = Diagnostic::error("E0016", all, "numbers are written in decimal");
             self.sink.push(found.guess(all, number));
@@ -104,13 +87,51 @@ impl Builder<'_> {
         None
     }
 
+    /// What is told of a word that people put there and that is not only misspelt.
+    fn of_word(&self, pair: &Pair<'_, Rule>, span: Span) -> Option<Diagnostic> {
+        let text = pair.as_str();
+        // `(a > 1) and (b > 1)`
+        if let Some(found) = condition(span, text) {
+            return Some(found);
+        }
+        Some(match text {
+            _ if is_suffix(text) => of_suffix(span),
+            "then" => {
+                let message = "no `then` stands between a condition and its block";
+                Diagnostic::error("E0204", span, message).fix(span, "")
+            }
+            "px" | "pixel" | "pixels" => {
+                let all = self.written(blank_before(pair).start..pair.as_span().end());
+                let message = format!("there is no unit `{text}`: pixels are counted");
+                Diagnostic::error("E0204", span, message).fix(all, "")
+            }
+            "C" | "degC" | "celsius" | "degF" => self.temperature(pair, span),
+            _ => return None,
+        })
+    }
+
+    /// `5 MW`, `3 kHz`: a unit behind a prefix that it is not written with.
+    fn scaled(&self, pair: &Pair<'_, Rule>, bad: &str) -> Option<Diagnostic> {
+        let rest = pair.as_str().strip_prefix(bad)?;
+        let (power, unit) = scale(bad)?;
+        let blank = blank_before(pair).start;
+        let number = number_before(&pair.get_input()[..blank]);
+        let help = |number: &str| {
+            format!("the power of ten stands in the number: `{number}{power} {unit}{rest}`")
+        };
+        let found = no_unit(self.span(pair), bad);
+        if number.is_empty() {
+            return Some(found.help(help("1")));
+        }
+        let all = self.written(blank - number.len()..pair.as_span().end());
+        Some(found.help(help(number)).guess(all, format!("{number}{power} {unit}{rest}")))
+    }
+
     /// `20 C`, `68 degF`
     fn temperature(&self, pair: &Pair<'_, Rule>, span: Span) -> Diagnostic {
         let found = Diagnostic::error("E0204", span, KELVIN);
         let blank = blank_before(pair).start;
-        let before = &pair.get_input()[..blank];
-        let is_part = |c: char| c.is_ascii_digit() || c == '.';
-        let number = &before[before.trim_end_matches(is_part).len()..];
+        let number = number_before(&pair.get_input()[..blank]);
         let kelvin = kelvin(number).filter(|_| !pair.as_str().ends_with('F'));
         let Some(kelvin) = kelvin else { return found };
         found.guess(self.written(blank - number.len()..pair.as_span().end()), kelvin)
@@ -121,6 +142,39 @@ impl Builder<'_> {
         let gap = self.written(blank_before(pair));
         Diagnostic::error("E0204", span, begins_statement(pair.as_str())).guess(gap, "; ")
     }
+}
+
+fn no_unit(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::error("E0204", span, format!("there is no unit `{name}`"))
+}
+
+/// Digits with which a text ends, perhaps with a point; none if they are an exponent.
+fn number_before(text: &str) -> &str {
+    let rest = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let is_exponent = rest.trim_end_matches(['+', '-']).ends_with(['e', 'E']);
+    if is_exponent { "" } else { &text[rest.len()..] }
+}
+
+/// The power of ten and the unit that a word with a prefix of the SI stands for.
+fn scale(word: &str) -> Option<(&'static str, &str)> {
+    const PREFIXES: [(&str, &str); 12] = [
+        ("T", "e12"),
+        ("G", "e9"),
+        ("M", "e6"),
+        ("k", "e3"),
+        ("h", "e2"),
+        ("d", "e-1"),
+        ("c", "e-2"),
+        ("m", "e-3"),
+        ("u", "e-6"),
+        ("µ", "e-6"),
+        ("n", "e-9"),
+        ("p", "e-12"),
+    ];
+    PREFIXES.iter().find_map(|(prefix, power)| {
+        let unit = word.strip_prefix(prefix).filter(|unit| Unit::named(unit).is_some())?;
+        Some((*power, unit))
+    })
 }
 
 /// The blanks before what stands behind a number.

@@ -3,8 +3,6 @@
 #![expect(unsafe_code, reason = "an allocator's promises are unsafe to make")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
-#[cfg(target_os = "linux")]
-use std::ops::Range;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, SyncSender};
@@ -96,15 +94,17 @@ impl Block {
     /// Gives its pages back, piece by piece: other threads are given memory in between.
     #[cfg(target_os = "linux")]
     fn empty(&self) {
-        let pages = whole_pages(self.at, self.layout.size());
-        let mut start = pages.start;
-        while start < pages.end {
+        let (page, first) = (rustix::param::page_size(), self.at.addr());
+        // Whole pages, as others may have the rest.
+        let end = (first + self.layout.size()) / page * page;
+        let mut start = first.next_multiple_of(page);
+        while start < end {
             // A large page that is cut is copied into small ones.
-            let next = (self.at.addr() + start + 1).next_multiple_of(PIECE) - self.at.addr();
-            let n = next.min(pages.end) - start;
+            let next = (start + 1).next_multiple_of(PIECE).min(end);
+            let piece = self.at.wrapping_add(start - first).cast();
             let advice = rustix::mm::Advice::LinuxDontNeed;
             // SAFETY: these pages lie within the block, of which nobody wants to know anything any more.
-            let _ = unsafe { rustix::mm::madvise(self.at.wrapping_add(start).cast(), n, advice) };
+            let _ = unsafe { rustix::mm::madvise(piece, next - start, advice) };
             start = next;
         }
     }
@@ -112,15 +112,6 @@ impl Block {
     /// Elsewhere all of it is given back as a whole.
     #[cfg(not(target_os = "linux"))]
     fn empty(&self) {}
-}
-
-/// The bytes of a block that fill pages: others may have the rest of a page.
-#[cfg(target_os = "linux")]
-fn whole_pages(at: *mut u8, size: usize) -> Range<usize> {
-    let page = rustix::param::page_size();
-    let start = at.addr().next_multiple_of(page) - at.addr();
-    let end = (at.addr() + size) / page * page - at.addr();
-    start..end.max(start)
 }
 
 /// Asks for large pages: where each page of 4 KiB is asked for alone when it is first written to, that

@@ -186,6 +186,7 @@ fn append<P: Sync, X: Copy + Send + Sync>(
 ) {
     let n: usize = parts.iter().map(|part| get(part).len()).sum();
     if all.capacity() < all.len() + n {
+        // However often parts turn out to be larger, what is there is moved few times.
         let least = (all.len() + n).max(all.capacity() + all.capacity() / 8);
         all.reserve_exact(room.max(least) - all.len());
     }

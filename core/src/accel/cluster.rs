@@ -24,7 +24,7 @@ const MAX_EQUAL: usize = 8;
 /// Share of the nodes that obvhs tries to place better, in the first round.
 const REINSERTION: f32 = 0.02;
 
-/// Shares of that in each round. Twelve rounds of less, which obvhs would add, found nothing more.
+/// Shares of that in each round. The twelve of less that obvhs would add change next to nothing.
 const ROUNDS: [f32; 4] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0];
 
 /// The parts themselves.

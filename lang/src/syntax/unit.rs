@@ -116,15 +116,14 @@ impl Builder<'_> {
         let (power, unit) = scale(bad)?;
         let blank = blank_before(pair).start;
         let number = number_before(&pair.get_input()[..blank]);
-        let help = |number: &str| {
-            format!("the power of ten stands in the number: `{number}{power} {unit}{rest}`")
-        };
-        let found = no_unit(self.span(pair), bad);
+        let (found, help) =
+            (no_unit(self.span(pair), bad), "the power of ten stands in the number");
         if number.is_empty() {
-            return Some(found.help(help("1")));
+            return Some(found.help(format!("{help}: 1 {bad} is `1{power} {unit}`")));
         }
         let all = self.written(blank - number.len()..pair.as_span().end());
-        Some(found.help(help(number)).guess(all, format!("{number}{power} {unit}{rest}")))
+        let meant = format!("{number}{power} {unit}{rest}");
+        Some(found.help(format!("{help}: `{meant}`")).guess(all, meant))
     }
 
     /// `20 C`, `68 degF`

@@ -34,6 +34,7 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let is_cause = |found: &&Diagnostic| is_unread(found) && found.sure().is_none();
     let causes = diagnostics.iter().filter(is_cause).filter_map(Diagnostic::span);
     let unread: BTreeSet<Word<'_>> = causes.flat_map(|at| words_beside(at, sources)).collect();
+    named_by_use(diagnostics, sources);
     let mut places: BTreeMap<(SourceId, &str), Vec<Span>> = BTreeMap::new();
     for found in &*diagnostics {
         if let Some(name) = name(found, sources) {
@@ -50,6 +51,35 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         }
         told_once(found, name, &places[&name], sources)
     });
+}
+
+/// Where an object may be given a label or a name, only what fits its uses is offered: a name where something
+/// uses it, of which nothing is told then, and else a label.
+fn named_by_use(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+    let used: BTreeSet<_> = diagnostics.iter().filter_map(|found| name(found, sources)).collect();
+    let mut given = BTreeSet::new();
+    for found in &mut *diagnostics {
+        let Some(source) = found.span().map(|at| at.source) else { continue };
+        let named = found.fixes.iter().position(|fix| given_name(fix).is_some());
+        let Some(i) = named.filter(|_| found.fixes.len() > 1) else { continue };
+        let of = given_name(&found.fixes[i]).map(|name| (source, name.to_owned()));
+        if of.as_ref().is_some_and(|(source, name)| used.contains(&(*source, name))) {
+            found.fixes = vec![found.fixes.swap_remove(i)];
+            given.extend(of);
+        } else if i > 0 {
+            found.fixes.remove(i);
+        }
+    }
+    diagnostics.retain(|found| {
+        let of = name(found, sources).filter(|_| found.code == "E0101");
+        of.is_none_or(|(source, name)| !given.contains(&(source, name.to_owned())))
+    });
+}
+
+/// The name that a mend gives to an object.
+fn given_name(fix: &Fix) -> Option<&str> {
+    let (name, value) = fix.replacement.strip_prefix("let ")?.split_once(" = ")?;
+    (!value.is_empty()).then_some(name)
 }
 
 /// Whether a word that stands elsewhere may be what defines a name: the same, or one that begins with the name

@@ -329,14 +329,7 @@ impl Evaluator<'_> {
             Value::Items(items) => Some(Elements::Items(items)),
             Value::Range(range) if range.dimension.is_none() => {
                 if range.start.fract().abs() > 0.0 || range.end.fract().abs() > 0.0 {
-                    let found = Diagnostic::error("E0208", span, "a loop runs over whole numbers");
-                    // `1...3` is read as `1.. .3`.
-                    let dots = self.written(span).find("...");
-                    self.tell(dots.into_iter().fold(found, |found, at| {
-                        let start = span.range().start + at;
-                        let dots = Span::new(span.source, start, start + 3);
-                        found.help("a range with its end is written `1..=3`").guess(dots, "..=")
-                    }));
+                    self.poison("E0208", span, "a loop runs over whole numbers");
                     return None;
                 }
                 let count = range.end - range.start + if range.inclusive { 1.0 } else { 0.0 };

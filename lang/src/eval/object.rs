@@ -47,7 +47,9 @@ impl Evaluator<'_> {
                 let found = Diagnostic::error("E0401", name.span, message);
                 let is_labelled = object.label.is_some();
                 let label = if is_labelled { String::new() } else { format!("\"{}\"", name.text) };
-                self.tell(found.guess(name.span, label));
+                let all = object.category.span.to(name.span);
+                let named = format!("let {} = group", name.text);
+                self.tell(found.guess(name.span, label).guess(all, named));
             }
             return self.group(object, span, env);
         }

@@ -31,6 +31,12 @@ impl Evaluator<'_> {
     ) -> Diagnostic {
         let (written, end) = (self.written(span), Span { start: span.end, ..span });
         let form = Written::of(written);
+        if let Some((kept, divisor)) = divided(written, units) {
+            let start = span.range().start + kept;
+            let unit = Span::new(span.source, start, span.range().end);
+            let help = format!("what measures the same, divided by `{divisor}`, is a number alone");
+            return diagnostic.help(help).guess(unit, "");
+        }
         for unit in units {
             diagnostic = match form {
                 Written::Numbers => diagnostic.guess(end, format!(" {unit}")),
@@ -56,6 +62,19 @@ impl Written {
             _ => Self::Other,
         }
     }
+}
+
+/// Of a name that is divided by a number with one of some units, the bytes before that unit, and the divisor.
+fn divided<'a>(written: &'a str, units: &[&str]) -> Option<(usize, &'a str)> {
+    let (name, divisor) = written.split_once('/')?;
+    let divisor = divisor.trim_start();
+    let (number, unit) = divisor.split_once(' ')?;
+    let is_name = name.trim_end().bytes().all(|byte| is_of_name(byte) || byte == b'.');
+    let is_number = parse_number(number.as_bytes()).is_some()
+        && !name.starts_with(|c: char| c.is_ascii_digit());
+    let is_unit = units.contains(&unit.trim_start());
+    let kept = written.len() - (divisor.len() - number.len());
+    (is_name && is_number && is_unit).then_some((kept, divisor))
 }
 
 fn is_of_name(byte: u8) -> bool {

@@ -36,6 +36,9 @@ const FUNCTIONS: [(&str, &str); 6] = [
     ("magnitude", "length"),
 ];
 
+/// The axes about which other languages turn by functions of their own.
+const TURNS: [(char, &str); 3] = [('x', "(1, 0, 0)"), ('y', "(0, 1, 0)"), ('z', "(0, 0, 1)")];
+
 /// Functions of other languages for which there is none here.
 const ABSENT: [&str; 4] = ["print", "printf", "append", "input"];
 
@@ -94,7 +97,7 @@ impl Resolver<'_> {
                 ),
             );
         }
-        if let Some(found) = self.power(name.span) {
+        if let Some(found) = self.power(name.span).or_else(|| self.turn(name)) {
             return found;
         }
         if let Some(path) = path_around(self.text, name.span.range().start) {
@@ -144,6 +147,20 @@ impl Resolver<'_> {
             );
         }
         found
+    }
+
+    /// A turn whose name says its axis: `rotate_y(20 deg)`.
+    fn turn(&self, name: &Name) -> Option<Diagnostic> {
+        let axis = TURNS.into_iter().find_map(|(letter, axis)| {
+            let word = name.text.strip_suffix([letter, letter.to_ascii_uppercase()])?;
+            matches!(word.trim_end_matches('_'), "rotate" | "rot").then_some(axis)
+        })?;
+        let (start, end) = (name.span.range().start, name.span.range().end);
+        let is_called = self.text.get(end..).is_some_and(|rest| rest.starts_with('('));
+        let found = Diagnostic::error("E0101", name.span, format!("there is no `{}`", name.text));
+        let found = found.help("a turn says about which axis: `rotate((0, 1, 0), 20 deg)`");
+        let head = Span::new(name.span.source, start, end + 1);
+        is_called.then(|| found.guess(head, format!("rotate({axis}, ")))
     }
 
     /// A name in what was to be a unit with a power.

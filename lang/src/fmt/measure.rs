@@ -122,6 +122,8 @@ fn gap(pieces: &[Piece<'_>], i: usize) -> u8 {
     let tight = match (before.kind, piece.kind) {
         (_, Kind::Comma | Kind::Pair | Kind::Separator | Kind::Colon) => true,
         _ if before.is_comment() || piece.is_comment() => false,
+        // `0.. .5`: three points are no range.
+        (Kind::Range(_), Kind::Number) if piece.text.starts_with('.') => false,
         // `m^2..` would be a number that goes on.
         (Kind::Unit, Kind::Range(_)) => !before.text.ends_with(|c: char| c.is_ascii_digit()),
         (Kind::Open, Kind::Close) => true,

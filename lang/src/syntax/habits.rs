@@ -280,7 +280,10 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
             }
             let found = told(both, "an object has one kind, and its label is a text");
             let help = format!("or `{label} \"{kind}\"`, if `{label}` is the kind");
-            Some(found.help(help).guess(both, format!("{kind} \"{label}\"")))
+            let all = around.span(category).to(both);
+            let named = format!("let {label} = {} {kind}", category.text);
+            let found = found.help(help).guess(both, format!("{kind} \"{label}\""));
+            Some(found.guess(all, named))
         }
         (TokenKind::Text, TokenKind::Word) => {
             let both = around.span(kind).to(around.span(label));

@@ -2,9 +2,9 @@
 
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
-use super::around::{Around, Place, is_category, stands_behind};
+use super::around::{Around, Place, is_category, stands_behind, told};
 use super::defined::{is_type, of_list};
-use super::lex::TokenKind;
+use super::lex::{Token, TokenKind};
 use super::statement;
 use crate::words::RESERVED;
 
@@ -13,15 +13,20 @@ pub(super) const RANGE: &str = "a range is written `0..3`: from 0 up to, but not
 
 /// Bytes above that are looked at for a definition.
 const LOOKED_AT: usize = 1 << 12;
+/// Bytes of the head of a function that are written once more for a mend.
+const SHORT: usize = 200;
 
 /// What is said of an object whose parameters do not stand in braces.
 pub(super) const BRACES: &str = "an object has its parameters between `{` and `}`";
 
+/// What is said of parameters without brackets.
+pub(super) const PARAMETERS: &str = "the parameters of a function stand between `(` and `)`";
+
 /// Words with which other languages begin what `let`, `param` and `fn` begin here.
-const FOREIGN: [&str; 22] = [
+const FOREIGN: [&str; 24] = [
     "auto", "bool", "color", "const", "constant", "declare", "def", "define", "double", "float",
-    "func", "function", "fun", "int", "local", "number", "static", "string", "val", "var", "vec3",
-    "vector",
+    "func", "function", "fun", "int", "local", "macro", "module", "number", "static", "string",
+    "val", "var", "vec3", "vector",
 ];
 
 /// Why the first words of a statement or object near the place cannot be read.
@@ -30,6 +35,7 @@ pub(super) fn head(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| misspelt(around))
         .or_else(|| plugin(around))
         .or_else(|| function(around))
+        .or_else(|| bare_parameters(around))
         .or_else(|| block(around))
         .or_else(|| object(around))
 }
@@ -44,6 +50,27 @@ fn function(around: &Around<'_>) -> Option<Diagnostic> {
     let word = &around.tokens[start];
     let found = around.error("E0023", word, "a function is defined with `fn`");
     (is_head && around.at <= close).then(|| found.guess(around.span(word), "fn"))
+}
+
+/// `fn tint red: float, dark: float = red * dark`
+fn bare_parameters(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(4);
+    let start = (first..around.at).rev().find(|i| around.begins(*i) && around.word(*i) == "fn")?;
+    let (name, parameter) = (around.tokens.get(start + 1)?, around.tokens.get(start + 2)?);
+    let are_words = around.is_word(start + 1) && around.is_word(start + 2);
+    if !are_words || parameter.first_on_line || around.word(start + 3) != ":" {
+        return None;
+    }
+    // A comma ends what was read, not what was meant.
+    let line = &around.text[parameter.start..];
+    let line = &line[..line.find('\n').unwrap_or(line.len())];
+    // A default has a sign too: the last one on the line is the function's.
+    let whole = line.rsplit_once('=').map_or(line, |(inside, _)| inside).trim_end();
+    let found =
+        told(Span::new(around.source, parameter.start, parameter.start + whole.len()), PARAMETERS);
+    let gap = Span::new(around.source, name.end(), parameter.start + whole.len());
+    let is_mended = whole.len() < line.len() && whole.len() <= SHORT;
+    Some(if is_mended { found.guess(gap, format!("({whole})")) } else { found })
 }
 
 /// `for i in 0..3` and `if x > 1` that go on without `{`.
@@ -194,7 +221,19 @@ pub(super) fn begins_nothing(around: &Around<'_>, i: usize, near: Near<'_>) -> D
     let word = &around.tokens[i];
     let short: String = word.text.chars().take(32).collect();
     let found = around.error("E0023", word, format!("`{short}` begins no statement"));
+    if let Some((colon, head)) = colon_behind(around, i + 1).filter(|_| near.name == "fn") {
+        let all = around.span(word).to(around.span(colon));
+        return found.help("did you mean `fn`?").guess(all, format!("fn {head} ="));
+    }
     found.meant(around.span(word), Some(Near { grade: Grade::Guess, ..near }))
+}
+
+/// The `:` behind the brackets of a function whose name is token `i`, and what stands before it.
+fn colon_behind<'a>(around: &'a Around<'_>, i: usize) -> Option<(&'a Token<'a>, &'a str)> {
+    let close = around.closing(i + 1)?;
+    let colon = around.tokens.get(close + 1).filter(|sign| sign.text == ":")?;
+    let head = &around.text[around.tokens.get(i)?.start..around.tokens[close].end()];
+    Some((colon, head)).filter(|_| around.word(i + 1) == "(" && head.len() <= SHORT)
 }
 
 /// Whether token `i` and those after it may follow a word of the language.
@@ -252,7 +291,7 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
 }
 
 /// Whether a `let` not far above defines a name.
-fn is_defined(around: &Around<'_>, name: &str) -> bool {
+pub(super) fn is_defined(around: &Around<'_>, name: &str) -> bool {
     let above = &around.text.as_bytes()[..around.tokens.first().map_or(0, |first| first.start)];
     let above = &above[above.len().saturating_sub(LOOKED_AT)..];
     stands_behind(name, "let", above)

@@ -3,6 +3,7 @@
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, told};
+use super::head::RANGE;
 use super::lex::{Token, TokenKind};
 
 /// Tokens that stand side by side from `first` on, as one place, if their texts are these.
@@ -33,6 +34,15 @@ fn half_joined(around: &Around<'_>, i: usize) -> Option<Diagnostic> {
     })
 }
 
+/// `0...3`
+fn dots(around: &Around<'_>, first: usize) -> Option<Diagnostic> {
+    let [range, next] = around.tokens.get(first..first + 2)? else { return None };
+    let is_it = range.text == ".." && next.text.starts_with('.') && range.end() == next.start;
+    let all = Span::new(around.source, range.start, range.end() + 1);
+    let help = "a range with its end is written `0..=3`";
+    is_it.then(|| told(all, RANGE).help(help).guess(all, "..=").guess(all, ".."))
+}
+
 /// `x := 3`, `2 ** 3`, `x += 1`, `a ? b : c`, `fn f() -> float`, `(x) => x`
 pub(super) fn operator(around: &Around<'_>) -> Option<Diagnostic> {
     let current = around.current()?;
@@ -40,6 +50,9 @@ pub(super) fn operator(around: &Around<'_>) -> Option<Diagnostic> {
     for first in [back, at] {
         if let Some(span) = joined(around, first, &[":", "="]) {
             return Some(told(span, "a value is given with `=`").fix(span, "="));
+        }
+        if let Some(found) = dots(around, first) {
+            return Some(found);
         }
         if let Some(span) = joined(around, first, &["=", "<"]) {
             return Some(told(span, "this comparison is written `<=`").fix(span, "<="));

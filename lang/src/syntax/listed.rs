@@ -2,7 +2,8 @@
 
 use luxel_core::diag::{Diagnostic, Grade, Span};
 
-use super::around::Around;
+use super::around::{Around, told};
+use super::head::is_defined;
 use super::lex::{Token, TokenKind};
 
 /// Bytes of a list that are written once more for a mend.
@@ -66,7 +67,7 @@ fn blanks(around: &Around<'_>) -> Option<Diagnostic> {
     Some(found.mend(all, numbers, if has_signs { Grade::Guess } else { Grade::Sure }))
 }
 
-/// `rgb.srgb[0.8, 0.7, 0.6]`
+/// `rgb.srgb[0.8, 0.7, 0.6]` and `heights[0, 1]`
 fn indices(around: &Around<'_>) -> Option<Diagnostic> {
     around.current().filter(|comma| comma.text == ",")?;
     let open = *around.open.last().filter(|open| around.word(**open) == "[")?;
@@ -77,6 +78,14 @@ fn indices(around: &Around<'_>) -> Option<Diagnostic> {
     let close = around.closing(open)?;
     let inside = around.tokens[open].end()..around.tokens[close].start;
     let all = around.span(&around.tokens[open]).to(around.span(&around.tokens[close]));
+    let [first, rest @ ..] = &around.tokens[open + 1..close] else { return None };
+    if let ([comma, last], true) = (rest, is_defined(around, word.text)) {
+        let found = told(around.span(comma), "one number stands between `[` and `]`");
+        let both = Span::new(around.source, first.end(), last.start);
+        return Some(
+            found.help("what is in a list of a list is written `a[0][1]`").guess(both, "]["),
+        );
+    }
     let found = Diagnostic::error("E0023", all, "a function is called with `(` and `)`");
     let is_short = inside.len() <= SHORT;
     Some(if is_short { found.guess(all, format!("({})", &around.text[inside])) } else { found })

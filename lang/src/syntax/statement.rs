@@ -20,6 +20,7 @@ pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| stepped(around))
         .or_else(|| quoted_name(around))
         .or_else(|| suffixed(around))
+        .or_else(|| parted_unit(around))
         .or_else(|| signed(around))
         .or_else(|| commented_unit(around))
         .or_else(|| unquoted_path(around))
@@ -148,6 +149,29 @@ fn suffixed(around: &Around<'_>) -> Option<Diagnostic> {
     let (letter, number) = (around.before(1)?, around.before(2)?);
     let touch = number.kind == TokenKind::Number && number.end() == letter.start;
     (touch && is_suffix(letter.text)).then(|| of_suffix(around.span(letter)))
+}
+
+/// `3 c m`
+fn parted_unit(around: &Around<'_>) -> Option<Diagnostic> {
+    // Reading stops at the second, or behind it.
+    [2, 3].into_iter().find_map(|back| parted_at(around, around.at.checked_sub(back)?))
+}
+
+fn parted_at(around: &Around<'_>, i: usize) -> Option<Diagnostic> {
+    let [number, first, second] = around.tokens.get(i..i + 3)? else { return None };
+    let is_value = number.kind == TokenKind::Number || number.text == ")";
+    let are_words = [first, second].iter().all(|word| word.kind == TokenKind::Word);
+    let is_unit = Unit::named(&[first.text, second.text].concat()).is_some();
+    // `1 m m` has one twice.
+    let is_unit = is_unit && first.text != second.text;
+    let is_field = matches!(around.word(i + 3), "=" | "{");
+    let breaks = first.first_on_line || second.first_on_line;
+    if !is_value || !are_words || !is_unit || breaks || is_field {
+        return None;
+    }
+    let both = around.span(first).to(around.span(second));
+    let gap = Span::new(around.source, first.end(), second.start);
+    Some(Diagnostic::error("E0204", both, "a unit is one word").guess(gap, ""))
 }
 
 /// `+3` and `+/- 3`

@@ -167,7 +167,7 @@ impl Reader<'_> {
     fn infix(&mut self, place: Place) -> Option<(Op, Span)> {
         let length = match self.cursor.rest() {
             [b'+', b'-', ..] if place == Place::Side => return None,
-            [b'/', b'/', ..] => return None,
+            [b'/', b'/', ..] | [b'.', b'.', b'.', ..] => return None,
             [b'.', b'.', b'=', ..] => 3,
             [b'.', b'.', ..]
             | [b'|', b'|', ..]

@@ -335,6 +335,12 @@ mod tests {
     }
 
     #[test]
+    fn a_word_too_much_is_told_at_each_place() {
+        let text = "// é\nlet a = vec3(0, 1, 0)\nlet b = vec3(1, 0, 0)\n// é";
+        assert_eq!(codes(text), ["E0101", "E0101", "E0409"]);
+    }
+
+    #[test]
     fn a_value_is_not_judged_whose_brackets_are_only_likely() {
         let uses = "let a = ends(2) - (1, 1, 1) m\nlet b = tall - (1, 1, 1) m";
         let defined = |close: &str| {

@@ -138,12 +138,13 @@ fn name<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a s
     Some((at.source, name)).filter(|_| Kind::of_word(name).is_none() || found.code == WORD)
 }
 
-/// The name that may be meant.
+/// The name that may be meant, if one is: `vec3` is only too much.
 fn meant(found: &Diagnostic) -> Option<&str> {
     match &found.fixes[..] {
-        [only] if Some(only.span) == found.span() => Some(&only.replacement),
+        [only] if Some(only.span) == found.span() => Some(&*only.replacement),
         _ => None,
     }
+    .filter(|name| !name.is_empty())
 }
 
 /// Where a name is defined that stands nowhere else in a text.
@@ -153,7 +154,7 @@ fn definition(name: &str, source: SourceId, sources: &Sources) -> Option<Span> {
     let all = memmem::find_iter(text.as_bytes(), name.as_bytes());
     let mut all = all.filter(|at| {
         let (before, behind) = (&text[..*at], &text[at + name.len()..]);
-        !name.is_empty() && !before.ends_with(in_word) && !behind.starts_with(in_word)
+        !before.ends_with(in_word) && !behind.starts_with(in_word)
     });
     let at = all.next().filter(|_| all.next().is_none())?;
     let before = text[..at].trim_end_matches([' ', '\t']);

@@ -86,7 +86,7 @@ impl Evaluator<'_> {
             for arg in args {
                 self.eval(&arg.value, env);
             }
-            self.unknown_argument(function, extra);
+            self.unknown_argument(function, extra, args);
             return None;
         }
         let mut positional = 0;
@@ -99,7 +99,7 @@ impl Evaluator<'_> {
                 Some(positional - 1).filter(|i| *i < def.params.len())
             };
             let Some(i) = place else {
-                self.unknown_argument(function, arg);
+                self.unknown_argument(function, arg, args);
                 return None;
             };
             if values[i].is_some() {
@@ -129,9 +129,12 @@ impl Evaluator<'_> {
         Some(inner)
     }
 
-    fn unknown_argument(&mut self, function: &Function, arg: &Arg) {
+    /// Tells of one of a call's arguments that the function does not take.
+    fn unknown_argument(&mut self, function: &Function, arg: &Arg, args: &[Arg]) {
         let def = &function.def;
-        let known = || def.params.iter().map(|p| &*p.name.text);
+        let is_given =
+            |name: &str| args.iter().flat_map(|arg| &arg.name).any(|it| &*it.text == name);
+        let known = || def.params.iter().map(|p| &*p.name.text).filter(|name| !is_given(name));
         let diagnostic = if let Some(name) = &arg.name {
             let message = format!("`{}` has no parameter `{}`", def.name.text, name.text);
             Diagnostic::error("E0402", name.span, message)

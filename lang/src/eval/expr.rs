@@ -160,7 +160,12 @@ impl Evaluator<'_> {
             }
             other => {
                 let message = format!("{} has no `.{}`", other.describe(), name.text);
-                return self.poison("E0101", name.span, message);
+                let found = Diagnostic::error("E0101", name.span, message);
+                let is_list = matches!(other, Value::Numbers(_) | Value::Items(_));
+                let counts = ["length", "len", "size", "count"].contains(&&*name.text);
+                let help = "how many a list holds is `len(list)`";
+                self.tell(if is_list && counts { found.help(help) } else { found });
+                return Value::Poison;
             }
         };
         if let Some(value) = found {
@@ -337,8 +342,14 @@ impl Evaluator<'_> {
             }
             Value::Poison => None,
             other => {
+                let what = match &other {
+                    Value::Range(range) => {
+                        format!("a range of {}", range.dimension.name().trim_start_matches("a "))
+                    }
+                    other => other.describe(),
+                };
                 let message =
-                    format!("a loop runs over a list or a range, not {}", other.describe());
+                    format!("a loop runs over a list or a range of whole numbers, not {what}");
                 self.poison("E0214", span, message);
                 None
             }

@@ -55,6 +55,7 @@ impl Written {
         let has_calls = text.as_bytes().windows(2).any(is_call);
         match text.as_bytes() {
             number if parse_number(number).is_some() => Self::Numbers,
+            [b'#', b'[', .., b']'] if is_plain(text) => Self::Numbers,
             [b'(' | b'[', .., b')' | b']'] if is_one(text) && !has_calls => Self::Numbers,
             [b'[', ..] | [] => Self::Other,
             [first, ..] if is_of_name(*first) && is_one(text) => Self::Whole,
@@ -117,6 +118,7 @@ mod tests {
             ("(0, r, -2)", Written::Numbers),
             ("[(0, 1, 2), (r + 1, 0, 0)]", Written::Numbers),
             ("(0,\n  1)", Written::Numbers),
+            ("#[0 1\n 2]", Written::Numbers),
             ("r", Written::Whole),
             ("abs(-r)", Written::Whole),
             ("box.sizes[i + 1]", Written::Whole),

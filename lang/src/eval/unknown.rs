@@ -97,7 +97,7 @@ impl Resolver<'_> {
                 ),
             );
         }
-        if let Some(found) = self.power(name.span).or_else(|| self.turn(name)) {
+        if let Some(found) = self.written_otherwise(name) {
             return found;
         }
         if let Some(path) = path_around(self.text, name.span.range().start) {
@@ -147,6 +147,28 @@ impl Resolver<'_> {
             );
         }
         found
+    }
+
+    /// A unit by which a number is multiplied: `50 * cm`.
+    fn product(&self, name: &Name) -> Option<Diagnostic> {
+        let unit = Unit::named(&name.text).map(|_| name.span)?;
+        let (before, rest) = self.text.split_at_checked(unit.range().start)?;
+        let number = before.trim_end_matches(' ').strip_suffix('*')?.trim_end_matches(' ');
+        let digits = number.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+        let begins = !digits.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+        let is_number = digits.len() < number.len() && begins;
+        // `50 * cm^2` and `50 * cm / s` go on.
+        let behind = rest.get(unit.range().len()..)?.trim_start_matches(' ');
+        let is_whole = !behind.starts_with(['^', '/', '*', '.', '(', '[']);
+        let all = Span::new(unit.source, number.len(), unit.range().end);
+        let found = Diagnostic::error("E0101", unit, format!("there is no `{}`", name.text));
+        let found = found.help("a unit stands behind its number");
+        (is_number && is_whole).then(|| found.guess(all, format!(" {}", name.text)))
+    }
+
+    /// A power, a turn or a unit as other languages write them.
+    fn written_otherwise(&self, name: &Name) -> Option<Diagnostic> {
+        self.power(name.span).or_else(|| self.turn(name)).or_else(|| self.product(name))
     }
 
     /// A turn whose name says its axis: `rotate_y(20 deg)`.

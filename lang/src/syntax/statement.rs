@@ -11,10 +11,15 @@ use crate::words::RESERVED;
 /// Words with which other languages end something.
 const ENDING: [&str; 8] = ["break", "continue", "done", "end", "endif", "fi", "pass", "return"];
 
+/// Words that other languages put before a statement.
+const MODIFIERS: [&str; 7] = ["async", "export", "extern", "inline", "private", "pub", "public"];
+
 /// Why the place cannot be read, if such a statement stands there.
 pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
     placed_call(around)
         .or_else(|| header_again(around))
+        .or_else(|| modified(around))
+        .or_else(|| given_block(around))
         .or_else(|| lone_name(around))
         .or_else(|| assertion(around))
         .or_else(|| stepped(around))
@@ -37,6 +42,8 @@ pub(super) fn pattern(word: &str) -> Option<&'static str> {
         "expect" => "an expectation is written `expect mean = 0.5 ± 0.01`",
         "param" => "a parameter is written `param size: length = 2 m in 1 m..=3 m`",
         "import" => "an import is written `import \"tools.scene\" as tools`",
+        "include" => "an include is written `include \"tools.scene\" with { size = 2 m }`",
+        "place" => "a placement is written `place ball { transform = move((1, 0, 0) m) }`",
         "set" => "a setting is written `set label.radius = 2 m`",
         _ => return None,
     })
@@ -72,6 +79,36 @@ fn header_again(around: &Around<'_>) -> Option<Diagnostic> {
     let both = around.span(word).to(around.span(version));
     let message = "a file says once, and first, which version of the language it is in";
     Some(told(both, message).guess(both, ""))
+}
+
+/// `pub fn f(x: float) = x`
+fn modified(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(2);
+    let start = (first..around.at).rev().find(|i| around.begins(*i))?;
+    let (word, next) = (&around.tokens[start], around.tokens.get(start + 1)?);
+    let begins = RESERVED.contains(&next.text) || is_category(next.text);
+    if !MODIFIERS.contains(&word.text) || !begins || next.first_on_line {
+        return None;
+    }
+    let gap = Span::new(around.source, word.start, next.start);
+    Some(told(around.span(word), format!("`{}` begins no statement", word.text)).fix(gap, ""))
+}
+
+/// `group "pair" = { … }`
+fn given_block(around: &Around<'_>) -> Option<Diagnostic> {
+    let equals = (around.at.saturating_sub(2)..around.at + 3).find(|i| around.word(*i) == "=")?;
+    let label = equals.checked_sub(1).map(|i| &around.tokens[i])?;
+    let mut first = equals.checked_sub(2)?;
+    let is_object = |i: usize| is_category(around.word(i)) || around.word(i) == "group";
+    first -= usize::from(first > 0 && !is_object(first));
+    let opens = around.word(equals + 1) == "{" && label.kind == TokenKind::Text;
+    if !opens || !is_object(first) || !around.begins(first) {
+        return None;
+    }
+    let sign = around.span(&around.tokens[equals]);
+    let found = told(sign, "no `=` stands between an object and its block");
+    let gap = Span::new(around.source, label.end(), around.tokens[equals + 1].start);
+    Some(found.fix(gap, " "))
 }
 
 /// `ball`, and nothing beside it.
@@ -217,7 +254,14 @@ fn unquoted_path(around: &Around<'_>) -> Option<Diagnostic> {
     let length = rest.find(|c: char| c.is_whitespace() || c == ';').unwrap_or(rest.len());
     let span = Span::new(around.source, name.start, name.start + length);
     let found = told(span, "the name of a file or a plugin stands between `\"`");
-    Some(found.guess(span, format!("\"{}\"", &rest[..length])))
+    let written = &rest[..length];
+    let is_named = around.word(head + 2) == "as" || written.contains(['/', '"']);
+    Some(if around.word(head) == "import" && !is_named {
+        let name = written.strip_suffix(".scene").unwrap_or(written);
+        found.guess(span, format!("\"{name}.scene\" as {name}"))
+    } else {
+        found.guess(span, format!("\"{written}\""))
+    })
 }
 
 /// `n m`, also where reading goes on to what stands behind it.

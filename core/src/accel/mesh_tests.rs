@@ -53,6 +53,23 @@ fn direction_length_changes_nothing_over_twelve_decades() {
     assert!(hits > 200, "{hits}");
 }
 
+/// Scaled to a mesh of 1e18, products of what measures 0.01 underflow.
+#[test]
+fn a_small_part_of_an_enormous_mesh_is_met_where_it_is() {
+    let mut rng = Rng(12);
+    let (mut points, indices) = icosphere(2, 0.01);
+    points.push(Vec3::splat(1e18));
+    let tree = build(&(points, indices));
+    for _ in 0..1000 {
+        let far = Vec3::new(-1e12, 0.005 * rng.next(), 0.005 * rng.next());
+        let hit = tree.hit(far, Vec3::X, FAR).expect("the ball is closed");
+        // Eight roundings to single precision, and the ball's radius.
+        let error = (hit.t / 1e12 - 1.0).abs();
+        assert!(error <= 8.0 * f64::from(f32::EPSILON) / 2.0 + 1e-14, "{far} {error}");
+        assert!(tree.is_hit(far, Vec3::X, FAR));
+    }
+}
+
 #[test]
 fn parameter_scales_with_direction_even_at_the_ends_of_f32() {
     let tree = build(&icosphere(1, 1.0));

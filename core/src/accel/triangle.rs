@@ -11,6 +11,12 @@ use super::node::{Block, LANES};
 use super::ray::{Line, Shear};
 use crate::cast::narrow;
 
+/// Below it the edge functions of a triangle, differences of two products, may have lost digits that count:
+/// products underflow from 2⁻¹²⁶ on, and have 24 digits.
+const UNDERFLOW: f32 = 1.0 / (1_u128 << 102) as f32;
+/// What they are multiplied by then: a power of two, so that nothing rounds.
+const GROWN: f64 = (1_u128 << 102) as f64;
+
 /// The nearest hit so far; `id` is `u32::MAX` while there is none and `t` is then the limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
@@ -164,10 +170,10 @@ impl Block {
         // Edge functions at the origin of the plane.
         let mut edges = Edges { u: cx * by - cy * bx, v: ax * cy - ay * cx, w: bx * ay - by * ax };
         let mut inside = edges.inside();
-        let zeros = edges.zeros();
-        if (zeros & inside).any() {
+        let lost = edges.lost();
+        if (lost & inside).any() {
             // Only where it must: what a triangle answers does not depend on its neighbours.
-            edges = edges.decided(zeros, [ax, bx, cx], [ay, by, cy]);
+            edges = edges.decided(lost, [ax, bx, cx], [ay, by, cy]);
             inside = edges.inside();
         }
 
@@ -188,35 +194,43 @@ impl Edges {
             | self.u.max(self.v).max(self.w).cmple(Vec4::ZERO)
     }
 
+    /// Where one is zero, or so small that its products may have lost digits to underflow.
     #[inline(always)]
-    fn zeros(self) -> BVec4A {
-        self.u.cmpeq(Vec4::ZERO) | self.v.cmpeq(Vec4::ZERO) | self.w.cmpeq(Vec4::ZERO)
+    fn lost(self) -> BVec4A {
+        let least = self.u.abs().min(self.v.abs()).min(self.w.abs());
+        least.cmplt(Vec4::splat(UNDERFLOW))
     }
 
     /// The same, where `mask` says so with both products exact; a sign survives the narrowing even if
-    /// its value does not.
+    /// its value does not. All three of a triangle are scaled alike, to where single precision has all its digits.
     #[cold]
     #[inline(never)]
     fn decided(self, mask: BVec4A, [ax, bx, cx]: [Vec4; 3], [ay, by, cy]: [Vec4; 3]) -> Self {
-        let difference = |a: Vec4, b: Vec4, c: Vec4, d: Vec4| {
-            Vec4::from_array([0, 1, 2, 3].map(|lane| {
-                let [a, b, c, d] = [a[lane], b[lane], c[lane], d[lane]].map(f64::from);
-                let exact = a * b - c * d;
-                #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
-                let rounded = exact as f32;
-                let least = f32::from_bits(1);
-                match exact.partial_cmp(&0.0) {
-                    Some(std::cmp::Ordering::Greater) => rounded.max(least),
-                    Some(std::cmp::Ordering::Less) => rounded.min(-least),
-                    _ => rounded,
-                }
-            }))
-        };
-        Self {
-            u: Vec4::select(mask, difference(cx, by, cy, bx), self.u),
-            v: Vec4::select(mask, difference(ax, cy, ay, cx), self.v),
-            w: Vec4::select(mask, difference(bx, ay, by, ax), self.w),
+        let mut out = [self.u, self.v, self.w].map(|edge| edge.to_array());
+        for lane in (0..LANES).filter(|lane| mask.test(*lane)) {
+            let [a, b, c] = [(ax, ay), (bx, by), (cx, cy)]
+                .map(|(x, y)| [f64::from(x[lane]), f64::from(y[lane])]);
+            let exact = [(c, b), (a, c), (b, a)].map(|(p, q)| p[0] * q[1] - p[1] * q[0]);
+            let greatest = exact.iter().fold(0.0, |most: f64, edge| most.max(edge.abs()));
+            let scale = if greatest < f64::from(UNDERFLOW) { GROWN } else { 1.0 };
+            for (edge, exact) in out.iter_mut().zip(exact) {
+                edge[lane] = with_sign(exact * scale);
+            }
         }
+        let [u, v, w] = out.map(Vec4::from_array);
+        Self { u, v, w }
+    }
+}
+
+/// A number in single precision, of the same sign even where it underflows.
+fn with_sign(exact: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
+    let rounded = exact as f32;
+    let least = f32::from_bits(1);
+    match exact.partial_cmp(&0.0) {
+        Some(std::cmp::Ordering::Greater) => rounded.max(least),
+        Some(std::cmp::Ordering::Less) => rounded.min(-least),
+        _ => rounded,
     }
 }
 

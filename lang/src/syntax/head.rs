@@ -11,7 +11,7 @@ use crate::words::RESERVED;
 /// What is said of a range that is written otherwise.
 pub(super) const RANGE: &str = "a range is written `0..3`: from 0 up to, but not, 3";
 
-/// Bytes above that are looked at for a definition.
+/// Bytes above that are looked at for a definition, and of a line for the end of one.
 const LOOKED_AT: usize = 1 << 12;
 /// Bytes of the head of a function that are written once more for a mend.
 const SHORT: usize = 200;
@@ -62,8 +62,11 @@ fn bare_parameters(around: &Around<'_>) -> Option<Diagnostic> {
         return None;
     }
     // A comma ends what was read, not what was meant.
-    let line = &around.text[parameter.start..];
-    let line = &line[..line.find('\n').unwrap_or(line.len())];
+    let rest = &around.text[parameter.start..];
+    let is_end = |(at, c): &(usize, char)| *c == '\n' || rest[*at..].starts_with("//");
+    let end = rest.char_indices().take(LOOKED_AT).find(is_end).map(|(at, _)| at);
+    let end = end.or_else(|| (rest.len() < LOOKED_AT).then_some(rest.len()));
+    let line = &rest[..end.unwrap_or(parameter.text.len())];
     // A default has a sign too: the last one on the line is the function's.
     let whole = line.rsplit_once('=').map_or(line, |(inside, _)| inside).trim_end();
     let found =

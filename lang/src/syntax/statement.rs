@@ -4,6 +4,7 @@ use luxel_core::diag::{Diagnostic, Span};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category, told};
+use super::defined::stem;
 use super::lex::{Token, TokenKind};
 use super::peers::is_pbrt;
 use crate::words::RESERVED;
@@ -255,12 +256,13 @@ fn unquoted_path(around: &Around<'_>) -> Option<Diagnostic> {
     let span = Span::new(around.source, name.start, name.start + length);
     let found = told(span, "the name of a file or a plugin stands between `\"`");
     let written = &rest[..length];
-    let is_named = around.word(head + 2) == "as" || written.contains(['/', '"']);
-    Some(if around.word(head) == "import" && !is_named {
-        let name = written.strip_suffix(".scene").unwrap_or(written);
-        found.guess(span, format!("\"{name}.scene\" as {name}"))
-    } else {
-        found.guess(span, format!("\"{written}\""))
+    let is_unnamed = around.word(head) == "import" && around.word(head + 2) != "as";
+    Some(match stem(written).filter(|_| is_unnamed) {
+        Some(name) => {
+            let path = written.strip_suffix(".scene").unwrap_or(written);
+            found.guess(span, format!("\"{path}.scene\" as {name}"))
+        }
+        None => found.guess(span, format!("\"{written}\"")),
     })
 }
 

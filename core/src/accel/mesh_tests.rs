@@ -53,22 +53,33 @@ fn direction_length_changes_nothing_over_twelve_decades() {
     assert!(hits > 200, "{hits}");
 }
 
-/// Scaled to a mesh of 1e18, products of what measures 0.01 underflow.
+/// Scaled to a mesh of 1e18, products of what measures 0.01 underflow, and products of these with distances do
+/// where it measures 1000.
 #[test]
 fn a_small_part_of_an_enormous_mesh_is_met_where_it_is() {
     let mut rng = Rng(12);
-    let (mut points, indices) = icosphere(2, 0.01);
-    points.push(Vec3::splat(1e18));
-    let tree = build(&(points, indices));
-    for _ in 0..1000 {
-        let far = Vec3::new(-1e12, 0.005 * rng.next(), 0.005 * rng.next());
-        let hit = tree.hit(far, Vec3::X, FAR).expect("the ball is closed");
-        // Eight roundings to single precision, and the ball's radius.
-        let error = (hit.t / 1e12 - 1.0).abs();
-        assert!(error <= 8.0 * f64::from(f32::EPSILON) / 2.0 + 1e-14, "{far} {error}");
-        assert!(tree.is_hit(far, Vec3::X, FAR));
+    for radius in [1e-6, 0.01, 10.0, 1000.0, 1e6] {
+        let (mut points, indices) = icosphere(2, radius);
+        points.push(Vec3::splat(1e18));
+        let tree = build(&(points, indices));
+        let mut shot = |distance: f32| {
+            let o = Vec3::new(-distance, 0.5 * radius * rng.next(), 0.5 * radius * rng.next());
+            assert!(tree.is_hit(o, Vec3::X, FAR), "{o}");
+            tree.hit(o, Vec3::X, FAR).expect("the ball is closed").t
+        };
+        for _ in 0..500 {
+            // Its front is met, which lies within a radius of its centre.
+            let near = shot(3.0 * radius) / f64::from(radius);
+            assert!((2.0 * (1.0 - ROUNDINGS)..3.0).contains(&near), "{radius} {near}");
+            let error = (shot(1e12) / f64::from(1e12_f32) - 1.0).abs();
+            assert!(error <= ROUNDINGS + f64::from(radius) / 1e12, "{radius} {error}");
+        }
     }
 }
+
+/// What rounding adds to a distance at most, relative: in a row an edge, its product, two sums, the quotient by
+/// the sum of the edges, which has two, and the product with the length of the direction are rounded.
+const ROUNDINGS: f64 = 8.0 * (f32::EPSILON / 2.0) as f64;
 
 #[test]
 fn parameter_scales_with_direction_even_at_the_ends_of_f32() {

@@ -44,9 +44,7 @@ impl Direction {
         if !EXPONENTS.contains(&exponent) {
             return None;
         }
-        // Powers of two, whose exponents add up to that of 1.
-        let scale = f64::from_bits(exponent);
-        let per_scale = f64::from_bits(2 * 1f64.to_bits() - exponent);
+        let (scale, per_scale) = (f64::from_bits(exponent), per_power_of_two(largest));
         let exact = d * per_scale;
         let d = exact.as_vec3();
         let axes = AXES[kz];
@@ -67,6 +65,13 @@ impl Direction {
     pub fn per_scale(&self) -> f64 {
         self.per_scale
     }
+}
+
+/// 1 over the greatest power of two that is not above a number, neither of them too small to be normal: their
+/// exponents add up to that of 1. Of 0 it is finite.
+#[inline(always)]
+pub(super) fn per_power_of_two(number: f64) -> f64 {
+    f64::from_bits(2 * 1f64.to_bits() - (number.to_bits() & f64::INFINITY.to_bits()))
 }
 
 /// A ray in a mesh's scaled frame, in double precision.

@@ -8,14 +8,13 @@
 use glam::{BVec4A, DVec3, Vec4};
 
 use super::node::{Block, LANES};
-use super::ray::{Line, Shear};
+use super::ray::{Line, Shear, per_power_of_two};
 use crate::cast::narrow;
 
-/// Below it the edge functions of a triangle, differences of two products, may have lost digits that count:
-/// products underflow from 2⁻¹²⁶ on, and have 24 digits.
-const UNDERFLOW: f32 = 1.0 / (1_u128 << 102) as f32;
-/// What they are multiplied by then: a power of two, so that nothing rounds.
-const GROWN: f64 = (1_u128 << 102) as f64;
+/// Below it the edge functions of a triangle are scaled: they, differences of two products of what measures
+/// 2⁻³⁰, may be multiplied by distances down to 2⁻⁴² before anything of 24 digits is lost to underflow, which
+/// begins at 2⁻¹²⁶.
+const UNDERFLOW: f32 = 1.0 / (1_u64 << 60) as f32;
 
 /// The nearest hit so far; `id` is `u32::MAX` while there is none and `t` is then the limit.
 #[derive(Clone, Copy, Debug)]
@@ -194,7 +193,7 @@ impl Edges {
             | self.u.max(self.v).max(self.w).cmple(Vec4::ZERO)
     }
 
-    /// Where one is zero, or so small that its products may have lost digits to underflow.
+    /// Where one is zero, or so small that products with it may lose digits to underflow.
     #[inline(always)]
     fn lost(self) -> BVec4A {
         let least = self.u.abs().min(self.v.abs()).min(self.w.abs());
@@ -202,7 +201,7 @@ impl Edges {
     }
 
     /// The same, where `mask` says so with both products exact; a sign survives the narrowing even if
-    /// its value does not. All three of a triangle are scaled alike, to where single precision has all its digits.
+    /// its value does not. The three of a triangle that is so small are scaled alike, the greatest to one or more, below two.
     #[cold]
     #[inline(never)]
     fn decided(self, mask: BVec4A, [ax, bx, cx]: [Vec4; 3], [ay, by, cy]: [Vec4; 3]) -> Self {
@@ -212,7 +211,8 @@ impl Edges {
                 .map(|(x, y)| [f64::from(x[lane]), f64::from(y[lane])]);
             let exact = [(c, b), (a, c), (b, a)].map(|(p, q)| p[0] * q[1] - p[1] * q[0]);
             let greatest = exact.iter().fold(0.0, |most: f64, edge| most.max(edge.abs()));
-            let scale = if greatest < f64::from(UNDERFLOW) { GROWN } else { 1.0 };
+            let is_small = greatest < f64::from(UNDERFLOW);
+            let scale = if is_small { per_power_of_two(greatest) } else { 1.0 };
             for (edge, exact) in out.iter_mut().zip(exact) {
                 edge[lane] = with_sign(exact * scale);
             }

@@ -344,7 +344,7 @@ impl Evaluator<'_> {
             other => {
                 let what = match &other {
                     Value::Range(range) => {
-                        format!("a range of {}", range.dimension.name().trim_start_matches("a "))
+                        format!("a range whose ends are each {}", range.dimension.name())
                     }
                     other => other.describe(),
                 };

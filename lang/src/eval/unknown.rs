@@ -155,7 +155,9 @@ impl Resolver<'_> {
         let (before, rest) = self.text.split_at_checked(unit.range().start)?;
         let number = before.trim_end_matches(' ').strip_suffix('*')?.trim_end_matches(' ');
         let digits = number.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
-        let begins = !digits.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+        // `2^3 * cm` and `x / 2 * cm` are something else with the unit behind the number.
+        let begins = !digits.trim_end_matches(' ').ends_with(['^', '/'])
+            && !digits.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
         let is_number = digits.len() < number.len() && begins;
         // `50 * cm^2` and `50 * cm / s` go on.
         let behind = rest.get(unit.range().len()..)?.trim_start_matches(' ');

@@ -3,6 +3,8 @@
     python compare.py accuracy --luxel target/release/luxel [--spp 1024] [--res 256]
     python compare.py speed    --luxel target/release/luxel [--spp 16] [--res 512] [--rounds 5]
 
+Each program ends paths by chance as it does unless it is told otherwise.
+
 `accuracy` prints the ratio of means, with its standard error, for the whole picture and for the
 pixels that lie whole on one surface, and for the grey box the relative MSE of 32 x 32 blocks at
 growing sample counts. `speed` interleaves the programs and counts processor time (user + system):

@@ -12,7 +12,7 @@ camera perspective {
   look = look_at(from = (0, 0, 0) m, to = (0.3, 0.2, -1) m, up = (0, 1, 0)), fov = 60 deg
 }
 film rgb { resolution = (16, 16) }
-integrator path { russian_roulette_from = 0, light_sampling = false }
+integrator path { russian_roulette_from = 0, russian_roulette_below = 1, light_sampling = false }
 sampler independent { samples = 16 }
 light area {
   shape = shape sphere { radius = 1 m, material = skin }
@@ -211,8 +211,10 @@ fn what_cannot_be_studied_is_told() {
 
 #[test]
 fn what_a_class_has_not_is_left_out_and_nothing_that_misses_the_target_is_recommended() {
-    let direct =
-        FURNACE.replace("path { russian_roulette_from = 0, light_sampling = false }", "direct {}");
+    let direct = FURNACE.replace(
+        "path { russian_roulette_from = 0, russian_roulette_below = 1, light_sampling = false }",
+        "direct {}",
+    );
     let (_, done) =
         study(&direct, &["--sweep", "depth=2,spp=1,4", "--truth", "2", "--target", "1%"]);
     assert_eq!(done.code, 3, "{done:?}");

@@ -22,7 +22,12 @@ pub(crate) struct Direct {
 impl Direct {
     fn path(self) -> PathTracer {
         let light_sampling = self.light_sampling;
-        PathTracer { max_depth: 1, russian_roulette_from: u32::MAX, light_sampling }
+        PathTracer {
+            max_depth: 1,
+            russian_roulette_from: u32::MAX,
+            russian_roulette_below: 0.0,
+            light_sampling,
+        }
     }
 }
 

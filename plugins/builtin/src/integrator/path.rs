@@ -21,6 +21,11 @@ pub(crate) struct PathTracer {
     /// time, biases nothing.
     #[param(default = 3, min = 0, max = 4_294_967_295u32)]
     pub(crate) russian_roulette_from: u32,
+    /// The throughput below which it may: with the chance of what its throughput is of this, and if
+    /// it lives on, it counts as much as this (a weight window). The default costs a few more
+    /// scattering events than 1 does, and pays for them with less noise; 0 ends no path.
+    #[param(default = 0.25, min = 0, max = 1)]
+    pub(crate) russian_roulette_below: f32,
     /// Whether lights are looked for at every corner. Without, only paths that meet one count.
     #[param(default = true)]
     pub(crate) light_sampling: bool,
@@ -84,16 +89,17 @@ impl PathIntegrator for PathTracer {
 }
 
 impl PathTracer {
-    /// Russian roulette: a path lives on with the chance of its throughput, refraction aside, which
-    /// in a grey furnace leaves its throughput at 1 (PBR4 §13.2.1).
+    /// Russian roulette by throughput, refraction aside, below a window of weights (PBR4 §13.2.1;
+    /// Booth 1985).
     fn survives(&self, path: &mut Path, samples: &mut Samples<'_>) -> bool {
-        let chance = path.beta.max_element() * path.eta_scale;
+        let throughput = path.beta.max_element() * path.eta_scale;
         // A NaN ends the path too.
-        let hopeless = !(chance > 0.0 && chance.is_finite());
+        let hopeless = !(throughput > 0.0 && throughput.is_finite());
         if hopeless || path.depth < self.russian_roulette_from {
             return !hopeless;
         }
         let u = samples.next_1d();
+        let chance = throughput / self.russian_roulette_below;
         if chance < 1.0 {
             path.beta *= chance.recip();
             return u < chance;

@@ -80,7 +80,18 @@ fn radiance(integrator: &dyn Integrator, at: &Arrival, index: u32) -> f64 {
 }
 
 fn path(max_depth: u32, russian_roulette_from: u32, light_sampling: bool) -> PathTracer {
-    PathTracer { max_depth, russian_roulette_from, light_sampling }
+    PathTracer { max_depth, russian_roulette_from, russian_roulette_below: 1.0, light_sampling }
+}
+
+/// Mean and variance of the radiance of so many paths.
+fn moments(tracer: &PathTracer, at: &Arrival, n: u32) -> (f64, f64) {
+    let (mut mean, mut square) = (0.0, 0.0);
+    for i in 0..n {
+        let l = radiance(tracer, at, i);
+        mean += l / f64::from(n);
+        square += l * l / f64::from(n);
+    }
+    (mean, square - mean * mean)
 }
 
 #[test]
@@ -103,16 +114,39 @@ fn russian_roulette_by_throughput_has_variance_ninety_at_albedo_nine_tenths() {
     // moment 9·90² + 90.
     let tracer = path(1_000_000, 0, false);
     let n = 200_000;
-    let (mut mean, mut square) = (0.0, 0.0);
-    for i in 0..n {
-        let l = radiance(&tracer, &wall(0.9, false), i);
-        mean += l / f64::from(n);
-        square += l * l / f64::from(n);
-    }
-    let variance = square - mean * mean;
+    let (mean, variance) = moments(&tracer, &wall(0.9, false), n);
     assert!((mean - 10.0).abs() < 5.0 * (90.0 / f64::from(n)).sqrt(), "{mean}");
     let error = 5.0 * ((9.0 * 8100.0 + 90.0 - 8100.0) / f64::from(n)).sqrt();
     assert!((variance - 90.0).abs() < error, "{variance}");
+}
+
+#[test]
+fn a_window_of_weights_has_the_variance_of_its_tail() {
+    let (albedo, below) = (0.9f64, 0.25f64);
+    // Fourteen events bring the throughput below the window; from there on it is that of the window,
+    // for a geometric number of events, mean 10, or the path ends at once.
+    let first = albedo.powi(14) / below;
+    let power = |k: i32| {
+        let geometric = (1..2000).map(|n| 0.1 * albedo.powi(n - 1) * f64::from(n).powi(k));
+        first * below.powi(k) * geometric.sum::<f64>()
+    };
+    let (m1, m2, m3, m4) = (power(1), power(2), power(3), power(4));
+    let truth = m2 - m1 * m1;
+    let fourth = m4 - 4.0 * m1 * m3 + 6.0 * m1 * m1 * m2 - 3.0 * m1.powi(4);
+    let tracer = PathTracer { russian_roulette_below: 0.25, ..path(1_000_000, 0, false) };
+    let n = 200_000;
+    let (mean, variance) = moments(&tracer, &wall(0.9, false), n);
+    assert!((mean - 10.0).abs() < 5.0 * (truth / f64::from(n)).sqrt(), "{mean}");
+    let error = 5.0 * ((fourth - truth * truth) / f64::from(n)).sqrt();
+    assert!((variance - truth).abs() < error, "{variance} instead of {truth}");
+}
+
+#[test]
+fn a_window_at_zero_ends_no_path() {
+    let tracer = PathTracer { russian_roulette_below: 0.0, ..path(40, 0, false) };
+    let full = (1.0 - 0.5f64.powi(41)) / 0.5;
+    let got = radiance(&tracer, &wall(0.5, false), 0);
+    assert!((got - full).abs() < 1e-5, "{got} {full}");
 }
 
 #[test]

@@ -197,6 +197,12 @@ impl Evaluator<'_> {
         if let Some(block) = block {
             self.block(block, env, &mut body);
         }
+        // `place sphere { radius = 1 m }`: its fields are those of another statement, as is told.
+        let is_class = |kind| self.registry.class(kind, self.written(what.span)).is_some();
+        if value.is_poison() && [Kind::Shape, Kind::Light].into_iter().any(is_class) {
+            self.damaged = true;
+            return;
+        }
         let (outer, material) = self.group_fields(&body.fields);
         let object = match &value {
             Value::Object(object) => object.clone(),

@@ -248,7 +248,14 @@ impl Evaluator<'_> {
         if x < 0.0 || x >= length as f64 {
             let message =
                 format!("index {x} of a list of {length}: the last is {}", length as f64 - 1.0);
-            return self.poison("E0216", at.span, message);
+            let mut found = Diagnostic::error("E0216", at.span, message);
+            let from_start = x + length as f64;
+            if x < 0.0 && from_start >= 0.0 {
+                let help = "elements are counted from 0 at the start of a list";
+                found = found.help(help).guess(at.span, from_start.to_string());
+            }
+            self.tell(found);
+            return Value::Poison;
         }
         #[expect(
             clippy::cast_possible_truncation,

@@ -11,9 +11,11 @@ use luxel_sdk::params::{Dimension, Param, Type};
 use super::Evaluator;
 use super::env::File;
 use super::ops::with_zeros;
-use super::quotes::perhaps_name;
 use super::value::{FieldValue, Value, What};
 use crate::syntax::Form;
+
+/// Bytes of a mend that is offered for a value as a whole.
+const LINE: usize = 100;
 
 impl Evaluator<'_> {
     /// Fits a field to its parameter; `None` after a mistake.
@@ -27,7 +29,8 @@ impl Evaluator<'_> {
             Ok(value) => Some(value),
             Err(misfit) => {
                 let mut found = self.misfit(&misfit, field.span);
-                found = perhaps_name(found, param, field);
+                found = self.with_unquoted(found, param, field);
+                found = self.with_matt(found, param, field);
                 if is_heat {
                     let body = format!("blackbody({})", self.written(field.span));
                     found = found.help("light of a temperature is that of a black body");
@@ -37,6 +40,23 @@ impl Evaluator<'_> {
                 None
             }
         }
+    }
+
+    /// With the matt surface that may be meant by a colour or a texture: `material = rgb.srgb(1, 0, 0)`.
+    fn with_matt(&self, found: Diagnostic, param: &Param, field: &FieldValue) -> Diagnostic {
+        let is_colour = match &field.value {
+            Value::Color(_, dimension) => dimension.is_none(),
+            Value::Object(object) => matches!(object.what, What::Node(_, Kind::Texture)),
+            _ => false,
+        };
+        let matt = self.registry.class(Kind::Material, "diffuse");
+        if !is_colour || param.ty != Type::Object(Kind::Material) || matt.is_none() {
+            return found;
+        }
+        let found = found.help("a colour is the `reflectance` of a material");
+        let written = self.written(field.span);
+        let surface = format!("material diffuse {{ reflectance = {written} }}");
+        if surface.len() <= LINE { found.guess(field.span, surface) } else { found }
     }
 
     fn misfit(&self, misfit: &Misfit, span: Span) -> Diagnostic {

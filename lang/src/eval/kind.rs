@@ -6,21 +6,24 @@ use luxel_sdk::kind::Kind;
 
 use super::Evaluator;
 use super::elsewhere::meant;
+use super::env::Env;
 use super::stray::takers;
 use super::unseen::is_slip;
-use super::value::Head;
+use super::value::{Head, Value};
 use crate::syntax::{Name, Object};
 
 /// Libraries that a message lists, at most.
 const SHOWN: usize = 8;
 
 impl Evaluator<'_> {
-    /// What an object is; where nothing is that, which is told, what it surely was meant to be.
+    /// What an object is; where nothing is that, which is told, what it surely was meant to be. `env` has
+    /// the names that may be meant by its kind.
     pub(super) fn head(
         &mut self,
         object: &Object,
         span: Span,
         within: Option<&Class>,
+        env: Option<&Env>,
     ) -> Result<Head, Option<Head>> {
         let category = &object.category;
         let Some(kind) = Kind::of_word(&category.text) else {
@@ -54,7 +57,7 @@ impl Evaluator<'_> {
         if self.registry.class(kind, &head.class.text).is_some() {
             return Ok(head);
         }
-        let near = self.no_class(kind, &head.class, &names());
+        let near = self.no_class(kind, &head.class, &names(), env);
         let sure = near.filter(|near| near.grade == Grade::Sure);
         let named = |near: Near<'_>| Name { text: near.name.into(), ..head.class.clone() };
         Err(sure.map(|near| Head { class: named(near), ..head.clone() }))
@@ -98,7 +101,13 @@ impl Evaluator<'_> {
 
     /// Tells of a class that nobody has, and which libraries that are not loaded may have it; gives the one
     /// that was probably meant.
-    fn no_class<'n>(&mut self, kind: Kind, class: &Name, names: &[&'n str]) -> Option<Near<'n>> {
+    fn no_class<'n>(
+        &mut self,
+        kind: Kind,
+        class: &Name,
+        names: &[&'n str],
+        env: Option<&Env>,
+    ) -> Option<Near<'n>> {
         let near = meant(&class.text, names);
         // It may be of the plugin that is asked for and not there, which has been told.
         if near.is_none() && self.n_unmet > 0 {
@@ -112,6 +121,13 @@ impl Evaluator<'_> {
         if missing {
             let advice = self.unloaded.iter().take(SHOWN).map(|library| library.advice.clone());
             found = advice.fold(found, Diagnostic::help);
+        }
+        // `material red { }`, where `let red = material diffuse { … }` stands above
+        if let Some(Value::Object(_)) = env.and_then(|env| env.get(&class.text)) {
+            let name = &class.text;
+            let help =
+                format!("`{name}` is the name of an object: `{name}`, or `{name} with {{ … }}`");
+            found = found.help(help);
         }
         self.tell(found.help(format!("known are {}", names.join(", "))));
         near

@@ -53,7 +53,7 @@ impl Evaluator<'_> {
             }
             return self.group(object, span, env);
         }
-        let head = self.head(object, span, within);
+        let head = self.head(object, span, within, Some(env));
         let mut body = Body::new(Place::Object);
         let class = |head: &Head| self.registry.class(head.kind?, &head.class.text);
         let known = head.as_ref().map_or_else(|meant| meant.as_ref(), Some);

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::slice;
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Grade, Span, near};
+use luxel_core::diag::{Diagnostic, Grade, Span};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Unit;
 
@@ -424,7 +424,7 @@ impl<'a> Resolver<'a> {
         }
         let message = format!("there is no type `{}`", ty.name.text);
         let found = Diagnostic::error("E0215", ty.name.span, message)
-            .meant(ty.name.span, near(&ty.name.text, types::names()));
+            .meant(ty.name.span, types::meant(&ty.name.text));
         let known: Vec<_> = types::names().collect();
         self.sink.push(found.help(format!("known are {}", known.join(", "))));
     }

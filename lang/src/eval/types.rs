@@ -9,7 +9,7 @@ use super::Evaluator;
 use super::arithmetic::scale;
 use super::env::Env;
 use super::value::Value;
-pub(crate) use crate::syntax::type_names::{dimension, measured, names};
+pub(crate) use crate::syntax::type_names::{dimension, meant, measured, names};
 use crate::syntax::{Form, ListTy, Ty};
 
 impl Evaluator<'_> {

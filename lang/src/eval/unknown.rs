@@ -133,20 +133,69 @@ impl Resolver<'_> {
             found = found.guess(call, "(");
         } else if meant.is_some() {
             found = found.meant(place, meant);
-        } else if VECTORS.contains(&&*shown.to_lowercase()) {
-            found = found.help("a vector is written without a word: `(0, 1, 0)`");
-            if self.text.get(place.range().end..).is_some_and(|rest| rest.starts_with('(')) {
-                found = found.fix(place, "");
-            }
-        } else if shown == "range" {
-            found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
         } else {
-            found = found.help(
-                "names come from `let`, `param`, `fn`, `for` and `import`, not from `include`; text is \
-                 written in quotes: \"…\"",
-            );
+            found = self.of_elsewhere(found, name, shown, place);
         }
         found
+    }
+
+    /// With what a word of other languages, or one at a place of theirs, is here.
+    fn of_elsewhere(&self, found: Diagnostic, name: &Name, shown: &str, place: Span) -> Diagnostic {
+        if VECTORS.contains(&&*shown.to_lowercase()) {
+            let found = found.help("a vector is written without a word: `(0, 1, 0)`");
+            let is_call =
+                self.text.get(place.range().end..).is_some_and(|rest| rest.starts_with('('));
+            if is_call { found.fix(place, "") } else { found }
+        } else if self.is_placed(name) {
+            found.help(
+                "`place` puts what has a name; an object by itself is written `shape NAME { … }`",
+            )
+        } else if shown == "range" {
+            let found = found.help("a range is written `0..10`: from 0 up to, but not, 10");
+            match self.range(place) {
+                Some((call, range)) => found.guess(call, range),
+                None => found,
+            }
+        } else if self.begins_call(place) {
+            found.help(format!("an object is written `shape {shown} {{ … }}`"))
+        } else {
+            found.help(
+                "names come from `let`, `param`, `fn`, `for` and `import`, not from `include`; text is \
+                 written in quotes: \"…\"",
+            )
+        }
+    }
+
+    /// The call `range(0, 10)`, and how it is written here.
+    fn range(&self, name: Span) -> Option<(Span, String)> {
+        let inner = self.text.get(name.range().end..)?.strip_prefix('(')?.split(')').next()?;
+        let is_plain = |text: &&str| {
+            !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.')
+        };
+        let bounds: Vec<&str> = inner.split(',').map(str::trim).filter(is_plain).collect();
+        let range = match &bounds[..] {
+            _ if bounds.len() != inner.split(',').count() => return None,
+            [end] => format!("0..{end}"),
+            [start, end] => format!("{start}..{end}"),
+            _ => return None,
+        };
+        // Its two brackets.
+        let end = name.range().end + inner.len() + 2;
+        Some((Span::new(name.source, name.range().start, end), range))
+    }
+
+    /// Whether a call of the name begins a statement.
+    fn begins_call(&self, name: Span) -> bool {
+        let (before, rest) = self.text.split_at_checked(name.range().start).unwrap_or_default();
+        let is_call = rest.get(name.range().len()..).is_some_and(|rest| rest.starts_with('('));
+        let before = before.trim_end_matches([' ', '\t']);
+        is_call && (before.is_empty() || before.ends_with(['\n', ';']))
+    }
+
+    /// Whether a name stands behind `place`.
+    fn is_placed(&self, name: &Name) -> bool {
+        let before = self.text.get(..name.span.range().start).map(str::trim_end);
+        before.is_some_and(|before| before.ends_with("place"))
     }
 
     /// A unit by which a number is multiplied: `50 * cm`.

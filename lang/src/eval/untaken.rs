@@ -47,7 +47,7 @@ impl Evaluator<'_> {
         let is_slip = self.registry.class(kind, &name.text).is_none()
             && near(&name.text, names()).is_some_and(|near| near.grade == Grade::Sure);
         if is_slip {
-            let _told = self.head(object, object.category.span.to(object.body.span), None);
+            let _told = self.head(object, object.category.span.to(object.body.span), None, None);
         }
     }
 

@@ -6,6 +6,7 @@ use luxel_core::diag::{Diagnostic, Grade, Near, SourceId, Span, near};
 use luxel_sdk::params::Unit;
 
 use super::around::{Around, Place, is_category};
+use super::borrowed::{borrowed, own_type};
 use super::foreign::body_of_steps;
 use super::habits::habit;
 use super::head;
@@ -60,7 +61,7 @@ pub(super) fn explain(
     let diagnostic = around.diagnose();
     // Of steps where a value is wanted, or of a choice, none is looked at for itself.
     let body = body_of_steps(&around).or_else(|| valued_body(&around));
-    let is_skipped = body.is_some() || choice(&around).is_some();
+    let is_skipped = body.is_some() || choice(&around).is_some() || own_type(&around).is_some();
     let blocks = around
         .open
         .iter()
@@ -83,6 +84,7 @@ impl<'a> Around<'a> {
         self.number()
             .or_else(|| unfinished(self))
             .or_else(|| wrapped(self))
+            .or_else(|| borrowed(self))
             .or_else(|| habit(self))
             .or_else(|| notation(self))
             .or_else(|| head::head(self))

@@ -3,6 +3,7 @@
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
 use super::around::{Around, Place, is_category, stands_behind, told};
+use super::borrowed::in_braces;
 use super::defined::{is_type, of_list};
 use super::lex::{Token, TokenKind};
 use super::statement;
@@ -280,7 +281,8 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
     }
     let on_line = next.filter(|t| !t.first_on_line && t.text != "}");
     if let Some(next) = on_line {
-        return Some(around.error("E0023", next, BRACES));
+        let found = around.error("E0023", next, BRACES);
+        return Some(in_braces(around, found, end - 1, end));
     }
     let last = head.last()?;
     // `material = material clay`, where `clay` is defined

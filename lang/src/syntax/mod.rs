@@ -3,6 +3,7 @@
 
 mod agree;
 mod around;
+mod borrowed;
 mod build;
 #[cfg(any(test, feature = "fuzz"))]
 pub(crate) mod check;

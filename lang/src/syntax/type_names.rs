@@ -1,5 +1,6 @@
 //! The names of types.
 
+use luxel_core::diag::{Grade, Near, near};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Dimension;
 
@@ -36,10 +37,36 @@ const OTHERS: [&str; 12] = [
     "any",
 ];
 
+/// Types of other languages, with what they are here.
+const ELSEWHERE: [(&str, &str); 16] = [
+    ("boolean", "bool"),
+    ("colour", "color"),
+    ("double", "float"),
+    ("f32", "float"),
+    ("f64", "float"),
+    ("i32", "int"),
+    ("i64", "int"),
+    ("integer", "int"),
+    ("num", "number"),
+    ("point", "vec3"),
+    ("real", "float"),
+    ("rgb", "color"),
+    ("str", "string"),
+    ("text", "string"),
+    ("u32", "int"),
+    ("vector", "vec3"),
+];
+
 /// Every type's name.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.iter().map(|(_, word)| *word);
     NUMBERS.iter().map(|(name, _)| *name).chain(OTHERS).chain(kinds)
+}
+
+/// What is meant by a name that is none of a type.
+pub(crate) fn meant(name: &str) -> Option<Near<'static>> {
+    let other = ELSEWHERE.iter().find(|(other, _)| other.eq_ignore_ascii_case(name));
+    other.map_or_else(|| near(name, names()), |(_, name)| Some(Near { name, grade: Grade::Guess }))
 }
 
 /// The types of numbers that have a unit.

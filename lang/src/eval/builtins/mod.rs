@@ -233,7 +233,7 @@ impl Evaluator<'_> {
             return Value::Poison;
         }
         if builtin.name == "look_at"
-            && let Some(found) = order::unbracketed(&given)
+            && let Some(found) = order::unbracketed(&given).or_else(|| self.up_first(&given))
         {
             self.tell(found);
             return Value::Poison;

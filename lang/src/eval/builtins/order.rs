@@ -1,6 +1,7 @@
 //! Arguments in another order than here, or a vector's numbers without its own brackets.
 
 use luxel_core::diag::Diagnostic;
+use luxel_sdk::params::Dimension;
 
 use super::super::Evaluator;
 use super::super::value::Value;
@@ -18,6 +19,22 @@ pub(super) fn unbracketed(given: &[Given]) -> Option<Diagnostic> {
 }
 
 impl Evaluator<'_> {
+    /// `look_at((0, 1, 0), (0, 1, 5) m, (0, 0, 0) m)`: what is up before what has a place.
+    pub(super) fn up_first(&self, given: &[Given]) -> Option<Diagnostic> {
+        let measure = |given: &Given| match &given.value {
+            Value::Numbers(numbers) if given.name.is_none() => Some(numbers.dimension),
+            _ => None,
+        };
+        let [up, from, to] = given else { return None };
+        let measures = [up, from, to].map(measure);
+        let all = up.span.to(to.span);
+        let written = [from, to, up].map(|given| self.written(given.span));
+        let found = Diagnostic::error("E0402", all, "what is up stands last");
+        let is_first =
+            measures == [Dimension::NONE, Dimension::LENGTH, Dimension::LENGTH].map(Some);
+        is_first.then(|| found.guess(all, written.join(", ")))
+    }
+
     /// What is told of the arguments of a transform as a whole, if they are meant for it in another form.
     pub(super) fn misarranged(&self, function: &str, given: &[Given]) -> Option<Diagnostic> {
         let is_number = |given: &Given| matches!(given.value, Value::Number(..));

@@ -43,7 +43,9 @@ pub(super) fn in_braces(
 /// `group [ shape sphere { } ]`
 fn bracketed_group(around: &Around<'_>) -> Option<Diagnostic> {
     let first = around.at.saturating_sub(3);
-    let start = (first..around.at).rev().find(|i| around.word(*i) == "group")?;
+    let may_begin = |i: usize| around.begins(i) || around.word(i - 1) == "=";
+    let is_group = |i: &usize| around.word(*i) == "group" && may_begin(*i);
+    let start = (first..around.at).rev().find(is_group)?;
     let label = around.tokens.get(start + 1).is_some_and(|t| t.kind == TokenKind::Text);
     let open = start + 1 + usize::from(label);
     if !matches!(around.word(open), "(" | "[") || around.tokens[open].first_on_line {
@@ -57,29 +59,39 @@ fn bracketed_group(around: &Around<'_>) -> Option<Diagnostic> {
 /// `red with reflectance = 0.5` and `red with (reflectance = 0.5)`
 fn changed(around: &Around<'_>) -> Option<Diagnostic> {
     let (with, next) = (around.before(1)?, around.current()?);
-    let is_with = with.text == "with" && !next.first_on_line && around.before(2).is_some();
-    let message = "what is changed stands between `{` and `}`";
-    let found = around.error("E0023", next, message);
-    if next.text == "(" {
-        return is_with.then(|| in_braces(around, found, around.at - 1, around.at));
+    if with.text != "with" || next.first_on_line || around.before(2).is_none() {
+        return None;
     }
-    let is_field = is_with && next.kind == TokenKind::Word && around.word(around.at + 1) == "=";
-    let line = around.text[next.start..around.end].split(['\n', '{', ';']).next()?.trim_end();
-    let all = Span::new(around.source, next.start, next.start + line.len());
-    let is_whole = around.open.is_empty() && line.len() <= SHORT && !line.contains("//");
-    let mend = |found: Diagnostic| found.guess(all, format!("{{ {line} }}"));
-    is_field.then(|| if is_whole { mend(found) } else { found })
+    let found = around.error("E0023", next, "what is changed stands between `{` and `}`");
+    if next.text == "(" {
+        return Some(in_braces(around, found, around.at - 1, around.at));
+    }
+    if next.kind != TokenKind::Word || around.word(around.at + 1) != "=" {
+        return None;
+    }
+    let rest = &around.text[next.start..around.end];
+    let is_end = |(_, c): &(usize, char)| matches!(c, '\n' | '{' | ';' | '/');
+    let end = rest.char_indices().take(SHORT).find(is_end);
+    let end = end.map(|(at, _)| at).or_else(|| (rest.len() < SHORT).then_some(rest.len()));
+    let line = end.filter(|_| around.open.is_empty()).map(|end| rest[..end].trim_end());
+    let all = |line: &str| Span::new(around.source, next.start, next.start + line.len());
+    Some(match line {
+        Some(line) => found.guess(all(line), format!("{{ {line} }}")),
+        None => found,
+    })
 }
 
 /// `let (a, b) = (1, 2)`
 fn taken_apart(around: &Around<'_>) -> Option<Diagnostic> {
     let (word, open) = (around.before(1)?, around.current()?);
-    let close = around.closing(around.at).filter(|_| matches!(open.text, "(" | "["))?;
-    let is_one =
-        word.text == "let" && around.begins(around.at - 1) && around.word(close + 1) == "=";
+    let is_let = word.text == "let" && around.begins(around.at - 1);
+    if !is_let || !matches!(open.text, "(" | "[") {
+        return None;
+    }
+    let close = around.closing(around.at).filter(|close| around.word(close + 1) == "=")?;
     let span = around.span(open).to(around.span(&around.tokens[close]));
     let help = "an element is taken out by its index, counted from 0: `let a = pair[0]`";
-    is_one.then(|| told(span, "`let` names one value").help(help))
+    Some(told(span, "`let` names one value").help(help))
 }
 
 /// `sizes[0:2]`
@@ -132,21 +144,26 @@ const MOVES: [&str; 5] = ["move", "rotate", "scale", "spin", "translate"];
 fn moved(around: &Around<'_>) -> Option<Diagnostic> {
     let i = around.tokens.iter().position(|t| t.kind != TokenKind::Doc)?;
     let word = &around.tokens[i];
-    let close = around.closing(i + 1).filter(|_| around.word(i + 1) == "(")?;
-    let is_one = MOVES.contains(&word.text) && is_category(around.word(close + 1));
+    if !MOVES.contains(&word.text) || around.word(i + 1) != "(" {
+        return None;
+    }
+    let close = around.closing(i + 1)?;
+    let is_one = is_category(around.word(close + 1)) && around.at <= close + 1;
     let help = "it stands in it: `shape sphere { transform = move((2, 0, 0) m) }`";
     let found = around.error("E0023", word, "what moves an object is its `transform`").help(help);
-    (is_one && around.at <= close + 1).then_some(found)
+    is_one.then_some(found)
 }
 
 /// `shape sphere { radius = 1 m } material = red`
 fn behind_brace(around: &Around<'_>) -> Option<Diagnostic> {
     let (name, brace) = (around.current()?, around.before(1)?);
     let is_field = name.kind == TokenKind::Word && around.word(around.at + 1) == "=";
-    let open = around.opening(around.at - 1).filter(|_| brace.text == "}" && is_field)?;
-    let is_object = around.within(open) == Place::Fields && !name.first_on_line;
+    if brace.text != "}" || !is_field || name.first_on_line {
+        return None;
+    }
+    let open = around.opening(around.at - 1)?;
     let message = format!("`{}` stands behind the `}}` that ends the parameters", name.text);
-    let found = around.error("E0023", name, message);
-    let found = found.label(around.span(brace), "they end here");
+    let found = around.error("E0023", name, message).label(around.span(brace), "they end here");
+    let is_object = around.within(open) == Place::Fields;
     is_object.then(|| found.help("it stands before it, behind a comma"))
 }

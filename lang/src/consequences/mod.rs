@@ -39,19 +39,26 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let (words, braces) = (places(diagnostics, "E0416"), places(diagnostics, "E0008"));
     let early = places(diagnostics, "E0102");
     let (unknown, parted) = (places(diagnostics, "E0101"), places(diagnostics, "E0014"));
+    let (crossed, groups) = (crossed(diagnostics), groups(diagnostics));
     diagnostics.retain(|found| {
         let has_cause =
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
         let says_less = match found.code {
-            "E0101" => has_cause(&words) || is_one_name || is_nameless && found.sure().is_none(),
+            "E0101" => {
+                let is_nobody = is_one_name || is_nameless && found.sure().is_none();
+                is_nobody || has_cause(&words) || is_category_behind(found, &braces, sources)
+            }
             // A text that does not end may be a label, and a file that is not read may bear it.
             "E0109" => is_unended || is_unincluded || has_others && is_label(found, sources),
-            "E0023" => has_cause(&braces),
+            "E0023" => has_cause(&braces) || has_cause(&crossed),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
             "E0402" => found.fixes.is_empty() && stands_behind(found, &parted, sources),
             "E0403" => doubts.iter().any(|doubt| is_given_in(found, *doubt, sources)),
-            "E0026" | "E0401" => follows_category(found, &unknown, sources),
+            "E0026" | "E0401" => {
+                follows_category(found, &unknown, sources)
+                    || found.code == "E0026" && stands_in(found, &groups, sources)
+            }
             _ => false,
         };
         if says_less {
@@ -118,18 +125,23 @@ fn is_given_in(found: &Diagnostic, doubt: Span, sources: &Sources) -> bool {
     let (Some(head), Some(within)) = (head.filter(|head| head.len() <= LOOKED_AT), within) else {
         return false;
     };
-    let mut depth = 0_i32;
-    let is_inside = head.bytes().skip_while(|byte| *byte != b'{').all(|byte| {
-        depth += i32::from(byte == b'{') - i32::from(byte == b'}');
-        depth > 0
-    });
     let mut names = found.message.split('`').skip(1).step_by(2);
     let is_given = |name: &str| {
         let mut places = memchr::memmem::find_iter(within.as_bytes(), name);
         let is_set = |rest: &str| rest.trim_start().starts_with('=');
         places.any(|i| within.get(i + name.len()..).is_some_and(is_set))
     };
-    is_inside && depth > 0 && names.any(is_given)
+    leaves_brace(head) && names.any(is_given)
+}
+
+/// Whether the first brace that opens in a text is still open at its end.
+fn leaves_brace(text: &str) -> bool {
+    let mut depth = 0_i32;
+    let is_inside = text.bytes().skip_while(|byte| *byte != b'{').all(|byte| {
+        depth += i32::from(byte == b'{') - i32::from(byte == b'}');
+        depth > 0
+    });
+    is_inside && depth > 0
 }
 
 /// The lines before a brace that closes nothing that are indented further than it: an object whose own brace is
@@ -202,6 +214,28 @@ fn follows_category(found: &Diagnostic, words: &BTreeSet<Span>, sources: &Source
     })
 }
 
+/// Whether a kind of object is taken for a name behind a bracket on its line that is not closed: in
+/// `fn leg(top: length = group {` it begins what the function makes.
+fn is_category_behind(found: &Diagnostic, open: &BTreeSet<Span>, sources: &Sources) -> bool {
+    let Some(at) = found.span() else { return false };
+    let text = sources.text(at.source);
+    let is_category = text.get(at.range()).is_some_and(|word| Kind::of_word(word).is_some());
+    let is_one = is_category || text.get(at.range()) == Some("group");
+    let bracket = open.range(..at).next_back().filter(|bracket| bracket.source == at.source);
+    is_one && bracket.is_some_and(|bracket| bracket.range().start >= line_of(at, sources))
+}
+
+/// Whether something stands in the braces behind one of some heads.
+fn stands_in(found: &Diagnostic, heads: &BTreeSet<Span>, sources: &Sources) -> bool {
+    let Some(at) = found.span() else { return false };
+    let head = heads.range(..at).next_back().filter(|head| head.source == at.source);
+    let between = head.and_then(|head| {
+        let between = sources.text(at.source).get(head.range().end..at.range().start)?;
+        Some(between).filter(|between| between.len() <= LOOKED_AT)
+    });
+    between.is_some_and(leaves_brace)
+}
+
 /// Whether a value without a name stands behind one of some places, in the same brackets.
 fn stands_behind(found: &Diagnostic, places: &BTreeSet<Span>, sources: &Sources) -> bool {
     let Some(at) = found.span() else { return false };
@@ -223,6 +257,20 @@ fn stands_behind(found: &Diagnostic, places: &BTreeSet<Span>, sources: &Sources)
         });
         is_inside && depth == 0
     })
+}
+
+/// The brackets that others close.
+fn crossed(diagnostics: &[Diagnostic]) -> BTreeSet<Span> {
+    let crossed = diagnostics.iter().filter(|found| found.code == "E0009");
+    crossed.filter_map(|found| found.labels.get(1).map(|open| open.span)).collect()
+}
+
+/// Words that are surely meant to be `group`.
+fn groups(diagnostics: &[Diagnostic]) -> BTreeSet<Span> {
+    let is_one = |found: &&Diagnostic| {
+        found.code == "E0401" && found.sure().is_some_and(|fix| fix.replacement == "group")
+    };
+    diagnostics.iter().filter(is_one).filter_map(Diagnostic::span).collect()
 }
 
 /// Where something is told with a code.

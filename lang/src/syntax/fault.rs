@@ -45,7 +45,8 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
             Some((*open..open + 1, "("))
         }
         Fault::Mismatch { open, at, left: 0 }
-            if text[*at..].starts_with('}') && opens_object(text.as_bytes(), *open) =>
+            if text[*at..].starts_with('}')
+                && (opens_object(text.as_bytes(), *open) || is_before_else(text, *at)) =>
         {
             Some((*open..open + 1, "{"))
         }
@@ -58,6 +59,11 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
         }
         _ => None,
     }
+}
+
+/// Whether `else` stands right behind the bracket at a byte: it ends one of two values or blocks.
+fn is_before_else(text: &str, at: usize) -> bool {
+    tokens(text, at + 1..text.len()).next().is_some_and(|token| token.text == "else")
 }
 
 /// The second of two braces of which one never closes: nothing that may stand in braces begins with one.
@@ -92,7 +98,14 @@ fn before_block(text: &str, open: usize) -> Option<usize> {
     })?;
     let is_last = tokens(text, brace.end()..end).next().is_none();
     let is_head = matches!(first.text, "fn" | "for" | "if") && is_last;
-    is_head.then(|| text[..brace.start].trim_end().len())
+    // `fn leg(top: length = group {`: what the function makes begins behind the last `=`.
+    let before = tokens(text, open + 1..brace.start).collect::<Vec<_>>();
+    let value = before.windows(2).rev().find(|pair| {
+        let begins = pair[1].text == "group" || is_category(pair[1].text);
+        pair[0].text == "=" && begins && first.text == "fn"
+    });
+    let end = value.map_or(brace.start, |pair| pair[0].start);
+    is_head.then(|| text[..end].trim_end().len())
 }
 
 /// Whether what was closed at a byte by another bracket is closed further on in its line too.

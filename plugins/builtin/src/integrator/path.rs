@@ -21,9 +21,9 @@ pub(crate) struct PathTracer {
     /// time, biases nothing.
     #[param(default = 3, min = 0, max = 4_294_967_295u32)]
     pub(crate) russian_roulette_from: u32,
-    /// The throughput below which it may: with the chance of what its throughput is of this, and if
-    /// it lives on, it counts as much as this (a weight window). The default costs a few more
-    /// scattering events than 1 does, and pays for them with less noise; 0 ends no path.
+    /// The throughput below which it may: a path of a tenth of this lives on with a chance of a tenth,
+    /// and then counts as much as this (a weight window). 1 takes less time and has more noise than
+    /// that is worth where walls light one another; 0 ends no path.
     #[param(default = 0.25, min = 0, max = 1)]
     pub(crate) russian_roulette_below: f32,
     /// Whether lights are looked for at every corner. Without, only paths that meet one count.

@@ -139,6 +139,15 @@ fn a_definition_that_is_mended_counts_as_one() {
 }
 
 #[test]
+fn a_bracket_between_a_doc_comment_and_its_statement_closes_what_stands_above() {
+    let mut document = Document::new("scene 1\n)\n///\n}let a = 1\n", &Budgets::default());
+    document.edit(8..8, "{");
+    same(&document, "opened");
+    document.edit(8..9, "");
+    same(&document, "as before");
+}
+
+#[test]
 fn a_brace_that_is_missing_further_up_is_told_for_one_that_closes_nothing() {
     let text = "scene 1\nlet a = 1\ngroup \"g\" {\n  for i in 0..3 {\n    let b = i = 2\n  }\n}\nlet c = a\n";
     let mut document = Document::new(text, &Budgets::default());

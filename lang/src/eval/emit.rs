@@ -199,7 +199,8 @@ impl Evaluator<'_> {
         }
         // `place sphere { radius = 1 m }`: its fields are those of another statement, as is told.
         let is_class = |kind| self.registry.class(kind, self.written(what.span)).is_some();
-        if value.is_poison() && [Kind::Shape, Kind::Light].into_iter().any(is_class) {
+        if self.unknown.contains(&what.span) && [Kind::Shape, Kind::Light].into_iter().any(is_class)
+        {
             self.damaged = true;
             return;
         }

@@ -124,7 +124,7 @@ fn perhaps_colour(found: Diagnostic, text: &str, param: &Param, span: Span) -> D
     }
 }
 
-/// The components of `#rrggbb`, from 0 to 1, to a quarter of a step.
+/// The components of `#rrggbb`, from 0 to 1, to an eighth of a step.
 fn hexadecimal(text: &str) -> Option<[f64; 3]> {
     let digits = text.strip_prefix('#').filter(|it| it.len() == 6 && !it.starts_with('+'))?;
     let bytes = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();

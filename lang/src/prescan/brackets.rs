@@ -150,6 +150,8 @@ impl Scanner<'_> {
     }
 
     pub(super) fn close_bracket(&mut self, byte: u8) {
+        // No statement begins with a doc comment before a bracket that closes what stands above it.
+        self.doc = None;
         if self.makes_up_for_last(byte) {
             (self.before, self.newline) = (Before::Operand, false);
             self.at += 1;

@@ -26,6 +26,10 @@ impl Evaluator<'_> {
             _ => None,
         };
         let [up, from, to] = given else { return None };
+        // What is nowhere but in the middle may lack its unit, and is no direction.
+        if matches!(&up.value, Value::Numbers(up) if up.data.iter().all(|x| x.abs() <= 0.0)) {
+            return None;
+        }
         let measures = [up, from, to].map(measure);
         let all = up.span.to(to.span);
         let written = [from, to, up].map(|given| self.written(given.span));

@@ -75,5 +75,8 @@ fn what_manuals_call_a_mistake_is_one() {
     check("log(0)", "E0209");
     check("normalize((0, 0, 0))", "E0209");
     check("rgb(1, 0, 0)", "E0206");
+    // What is nowhere but in the middle is no direction, though it has no unit.
+    check("look_at((0, 0, 0), (0, 1, 5) m, (0, 1, 0) m)", "E0201");
+    check("look_at((0, 1, 0), (0, 1, 5) m, (0, 0, 0) m)", "E0402");
     check("matrix([1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 1, 0,  0, 0, 0, 1])", "E0412");
 }

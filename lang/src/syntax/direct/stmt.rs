@@ -191,7 +191,7 @@ impl Reader<'_> {
     fn ty(&mut self) -> Option<Ty> {
         self.cursor.skip();
         let start = self.cursor.at;
-        self.cursor.word()?;
+        self.cursor.word().filter(|word| !is_reserved(word))?;
         let end = self.cursor.at;
         if self.cursor.takes(b'[') {
             self.cursor.take_while(|byte| byte.is_ascii_digit());

@@ -39,7 +39,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let (words, braces) = (places(diagnostics, "E0416"), places(diagnostics, "E0008"));
     let early = places(diagnostics, "E0102");
     let (unknown, parted) = (places(diagnostics, "E0101"), places(diagnostics, "E0014"));
-    let (crossed, groups) = (crossed(diagnostics), groups(diagnostics));
+    let groups = groups(diagnostics);
     diagnostics.retain(|found| {
         let has_cause =
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
@@ -50,7 +50,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             }
             // A text that does not end may be a label, and a file that is not read may bear it.
             "E0109" => is_unended || is_unincluded || has_others && is_label(found, sources),
-            "E0023" => has_cause(&braces) || has_cause(&crossed),
+            "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
             "E0402" => found.fixes.is_empty() && stands_behind(found, &parted, sources),
@@ -257,12 +257,6 @@ fn stands_behind(found: &Diagnostic, places: &BTreeSet<Span>, sources: &Sources)
         });
         is_inside && depth == 0
     })
-}
-
-/// The brackets that others close.
-fn crossed(diagnostics: &[Diagnostic]) -> BTreeSet<Span> {
-    let crossed = diagnostics.iter().filter(|found| found.code == "E0009");
-    crossed.filter_map(|found| found.labels.get(1).map(|open| open.span)).collect()
 }
 
 /// Words that are surely meant to be `group`.

@@ -157,7 +157,8 @@ impl Resolver<'_> {
                 None => found,
             }
         } else if self.begins_call(place) {
-            found.help(format!("an object is written `shape {shown} {{ … }}`"))
+            let help = "a function comes from `fn` or `import`; an object is written";
+            found.help(format!("{help} `shape {shown} {{ … }}`"))
         } else {
             found.help(
                 "names come from `let`, `param`, `fn`, `for` and `import`, not from `include`; text is \
@@ -169,12 +170,13 @@ impl Resolver<'_> {
     /// The call `range(0, 10)`, and how it is written here.
     fn range(&self, name: Span) -> Option<(Span, String)> {
         let inner = self.text.get(name.range().end..)?.strip_prefix('(')?.split(')').next()?;
-        let is_plain = |text: &&str| {
-            !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.')
+        let is_plain = |bound: &&str| {
+            let is_of_it = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+            !bound.is_empty() && bound.chars().all(is_of_it)
         };
-        let bounds: Vec<&str> = inner.split(',').map(str::trim).filter(is_plain).collect();
+        let bounds: Vec<&str> = inner.split(',').map(str::trim).collect();
         let range = match &bounds[..] {
-            _ if bounds.len() != inner.split(',').count() => return None,
+            _ if !bounds.iter().all(is_plain) => return None,
             [end] => format!("0..{end}"),
             [start, end] => format!("{start}..{end}"),
             _ => return None,
@@ -195,7 +197,8 @@ impl Resolver<'_> {
     /// Whether a name stands behind `place`.
     fn is_placed(&self, name: &Name) -> bool {
         let before = self.text.get(..name.span.range().start).map(str::trim_end);
-        before.is_some_and(|before| before.ends_with("place"))
+        let rest = before.and_then(|before| before.strip_suffix("place"));
+        rest.is_some_and(|rest| !rest.ends_with(|c: char| c.is_alphanumeric() || c == '_'))
     }
 
     /// A unit by which a number is multiplied: `50 * cm`.

@@ -5,6 +5,9 @@ use luxel_sdk::kind::Kind;
 
 use super::lex::{Token, TokenKind};
 
+/// Bytes of a text that are written once more for a mend, at most.
+pub(super) const SHORT: usize = 200;
+
 /// What statements stand in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {

@@ -2,11 +2,8 @@
 
 use luxel_core::diag::{Diagnostic, Span};
 
-use super::around::{Around, Place, is_category, told};
+use super::around::{Around, Place, SHORT, is_category, told};
 use super::lex::TokenKind;
-
-/// Bytes between brackets that are written once more for a mend.
-const SHORT: usize = 200;
 
 /// What is said of a group whose members do not stand in braces.
 const GROUPED: &str = "what stands in a group stands between `{` and `}`";

@@ -6,7 +6,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Span};
 
 use super::around::is_category;
 use super::closing::indent;
-use super::lex::{TokenKind, tokens};
+use super::lex::{Token, TokenKind, tokens};
 use crate::prescan::{Fault, opens_object};
 use crate::words::OF_A_NUMBER;
 
@@ -46,7 +46,7 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
         }
         Fault::Mismatch { open, at, left: 0 }
             if text[*at..].starts_with('}')
-                && (opens_object(text.as_bytes(), *open) || is_before_else(text, *at)) =>
+                && (opens_object(text.as_bytes(), *open) || is_of_choice(text, *open..*at)) =>
         {
             Some((*open..open + 1, "{"))
         }
@@ -61,9 +61,12 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
     }
 }
 
-/// Whether `else` stands right behind the bracket at a byte: it ends one of two values or blocks.
-fn is_before_else(text: &str, at: usize) -> bool {
-    tokens(text, at + 1..text.len()).next().is_some_and(|token| token.text == "else")
+/// Whether `else` stands right before or behind two brackets: what they hold is one of two values or blocks.
+fn is_of_choice(text: &str, brackets: Range<usize>) -> bool {
+    let is_else = |token: Token<'_>| token.text == "else";
+    let is_behind = tokens(text, brackets.end + 1..text.len()).next().is_some_and(is_else);
+    let before = text[..brackets.start].trim_end().strip_suffix("else");
+    is_behind || before.is_some_and(|before| before.ends_with(['}', ' ', '\n']))
 }
 
 /// The second of two braces of which one never closes: nothing that may stand in braces begins with one.

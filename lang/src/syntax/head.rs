@@ -2,7 +2,7 @@
 
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
-use super::around::{Around, Place, is_category, stands_behind, told};
+use super::around::{Around, Place, SHORT, is_category, stands_behind, told};
 use super::borrowed::in_braces;
 use super::defined::{is_type, of_list};
 use super::lex::{Token, TokenKind};
@@ -14,8 +14,6 @@ pub(super) const RANGE: &str = "a range is written `0..3`: from 0 up to, but not
 
 /// Bytes above that are looked at for a definition, and of a line for the end of one.
 const LOOKED_AT: usize = 1 << 12;
-/// Bytes of the head of a function that are written once more for a mend.
-const SHORT: usize = 200;
 
 /// What is said of an object whose parameters do not stand in braces.
 pub(super) const BRACES: &str = "an object has its parameters between `{` and `}`";

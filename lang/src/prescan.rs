@@ -4,6 +4,7 @@
 
 mod brackets;
 mod strings;
+mod tables;
 
 use std::ops::Range;
 
@@ -12,6 +13,7 @@ use memchr::memchr;
 use crate::words::{CONTINUE, NO_VALUES, PREFIX};
 
 pub(crate) use brackets::opens_object;
+pub(crate) use tables::table;
 
 /// What is wrong with the brackets, strings or comments of a text; offsets are bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -215,7 +217,11 @@ impl Scanner<'_> {
                 b'"' => self.string(),
                 b'/' if self.next_is(b'/') => self.line_comment(),
                 b'/' if self.next_is(b'*') => self.block_comment(),
-                b'#' if self.next_is(b'[') => self.table(),
+                b'#' if self.next_is(b'[') => {
+                    if !self.table() {
+                        return self.out;
+                    }
+                }
                 b'(' | b'[' | b'{' => {
                     if !self.open_bracket(byte) {
                         return self.out;
@@ -377,15 +383,15 @@ impl Scanner<'_> {
         self.at = stop;
     }
 
-    fn table(&mut self) {
-        let rest = &self.bytes[self.at..];
-        if let Some(end) = memchr(b']', rest) {
-            self.at += end + 1;
-        } else {
-            self.out.faults.push(Fault::Unclosed { open: self.at + 1 });
-            self.at = self.bytes.len();
-        }
+    /// A table; one that does not end is a bracket in which anything may stand.
+    fn table(&mut self) -> bool {
+        let Some(length) = table(&self.bytes[self.at..]) else {
+            self.at += 1;
+            return self.open_bracket(b'[');
+        };
+        self.at += length;
         (self.before, self.newline, self.doc) = (Before::Operand, false, None);
+        true
     }
 
     fn open_bracket(&mut self, byte: u8) -> bool {
@@ -477,5 +483,6 @@ mod tests {
         check("((((", Fault::TooDeep { at: 3 });
         check("\"\\q\"", Fault::Escape { at: 1..3 });
         check("#[ 1 2", Fault::Unclosed { open: 1 });
+        check("a { b = #[ 1 }", Fault::Mismatch { open: 9, at: 13, left: 1 });
     }
 }

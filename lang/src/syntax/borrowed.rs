@@ -12,6 +12,7 @@ const GROUPED: &str = "what stands in a group stands between `{` and `}`";
 pub(super) fn borrowed(around: &Around<'_>) -> Option<Diagnostic> {
     own_type(around)
         .or_else(|| taken_apart(around))
+        .or_else(|| nested_table(around))
         .or_else(|| slice(around))
         .or_else(|| changed(around))
         .or_else(|| bracketed_group(around))
@@ -89,6 +90,22 @@ fn taken_apart(around: &Around<'_>) -> Option<Diagnostic> {
     let span = around.span(open).to(around.span(&around.tokens[close]));
     let help = "an element is taken out by its index, counted from 0: `let a = pair[0]`";
     Some(told(span, "`let` names one value").help(help))
+}
+
+/// `#[ [1 2] [3 4] ]`
+fn nested_table(around: &Around<'_>) -> Option<Diagnostic> {
+    let is_table = |open: &usize| {
+        around.word(*open) == "[" && open.checked_sub(1).is_some_and(|i| around.word(i) == "#")
+    };
+    let open = (0..=around.at).rev().filter(is_table).find(|open| around.word(open + 1) == "[")?;
+    let inner = &around.tokens[open + 1];
+    let found =
+        around.error("E0018", inner, "a table is one list of numbers, without brackets in it");
+    let close = around.closing(open).filter(|close| *close < around.tokens.len());
+    let Some(close) = close.map(|close| &around.tokens[close]) else { return Some(found) };
+    let all = Span::new(around.source, inner.start, close.start);
+    let bare = around.text[inner.start..close.start].replace(['[', ']', '(', ')'], "");
+    Some(if bare.len() <= SHORT { found.guess(all, bare) } else { found })
 }
 
 /// `sizes[0:2]`

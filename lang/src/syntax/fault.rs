@@ -38,9 +38,12 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
     };
     match fault {
         Fault::Stray { at } => Some((*at..at + 1, "")),
-        Fault::Unclosed { open } => doubled(text, *open)
-            .map(|again| (again..again + 1, ""))
-            .or_else(|| before_block(text, *open).map(|end| (end..end, closing(*open)))),
+        Fault::Unclosed { open } => {
+            doubled(text, *open).map(|again| (again..again + 1, "")).or_else(|| {
+                let end = numbers(text, *open).or_else(|| before_block(text, *open))?;
+                Some((end..end, closing(*open)))
+            })
+        }
         Fault::Mismatch { open, at, left: 0 } if is_call(text, *open..*at) => {
             Some((*open..open + 1, "("))
         }
@@ -53,7 +56,8 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
         Fault::Mismatch { open, at, left: 0 } if is_closed_later(text, *at, closing(*open)) => None,
         Fault::Mismatch { open, at, left: 0 } => Some((*at..at + 1, closing(*open))),
         Fault::Mismatch { open, at, left: 1 } => {
-            let end = before_field(text, *open..*at).unwrap_or(*at);
+            let end = numbers(text, *open).or_else(|| before_field(text, *open..*at));
+            let end = end.unwrap_or(*at);
             let end = text[..end].trim_end().len();
             Some((end..end, closing(*open)))
         }
@@ -76,6 +80,23 @@ fn doubled(text: &str, open: usize) -> Option<usize> {
     let next = open + 1 + blanks(rest);
     let before = text[..open].trim_end_matches([' ', '\t']);
     if text[next..].starts_with('{') { Some(next) } else { before.ends_with('{').then_some(open) }
+}
+
+/// Where the numbers of a table end, whose bracket opens there.
+fn numbers(text: &str, open: usize) -> Option<usize> {
+    if !text[..open].ends_with('#') {
+        return None;
+    }
+    let mut all = tokens(text, open + 1..text.len()).peekable();
+    let mut end = None;
+    while let Some(token) = all
+        .next_if(|token| token.kind == TokenKind::Number || matches!(token.text, "-" | "+" | ","))
+    {
+        if token.kind == TokenKind::Number {
+            end = Some(token.end());
+        }
+    }
+    end
 }
 
 /// Where the head of a block ends on its line, in which a bracket opens that never closes.
@@ -183,7 +204,7 @@ fn before_field(text: &str, inside: Range<usize>) -> Option<usize> {
             // Arguments have commas between them.
             _ if depth == 0
                 && inner[i].first_on_line
-                && (is_named(i) || is_object(i))
+                && (is_named(i) && !is_own(i) || is_object(i))
                 && inner[i - 1].text != "," =>
             {
                 return Some(inner[i - 1].end());

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::prescan::block_comment;
+use crate::prescan::{block_comment, table};
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,8 +100,9 @@ fn token(rest: &str, c: char, is_doc: bool) -> (TokenKind, usize) {
     if is_doc {
         return (TokenKind::Doc, rest.find('\n').unwrap_or(rest.len()));
     }
-    if rest.starts_with("#[") {
-        return (TokenKind::Table, rest.find(']').map_or(rest.len(), |end| end + 1));
+    let is_table = rest.starts_with("#[");
+    if let Some(length) = is_table.then(|| table(rest.as_bytes())).flatten() {
+        return (TokenKind::Table, length);
     }
     let dotted = rest.starts_with('.') && rest[1..].starts_with(|c: char| c.is_ascii_digit());
     match c {

@@ -1,5 +1,6 @@
 //! Mistakes of which the cause is told already, or of which another says more.
 
+mod lines;
 mod names;
 mod nearby;
 
@@ -8,7 +9,7 @@ use std::collections::BTreeSet;
 use luxel_core::diag::{Diagnostic, Sources, Span};
 use luxel_sdk::kind::Kind;
 
-use crate::syntax::EARLY;
+use crate::syntax::{EARLY, ONE_WORD};
 use crate::words::BEFORE_NAMES;
 
 /// Bytes before a place that are looked at: of a line before a bracket that closes nothing, and of a call.
@@ -25,6 +26,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         found.span().into_iter().chain(mended).collect::<Vec<Span>>()
     };
     let doubts: Vec<Span> = causes.clone().filter_map(|found| in_doubt(found, sources)).collect();
+    let joined: Vec<Span> = causes.clone().filter_map(|found| joined(found, sources)).collect();
     let bodies: Vec<Span> = causes.clone().filter_map(|found| body(found, sources)).collect();
     let is_unended = causes.clone().any(|found| found.code == "E0005");
     let is_nameless = causes.clone().any(|found| lacks_name(found, sources));
@@ -54,7 +56,9 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
             "E0402" => found.fixes.is_empty() && stands_behind(found, &parted, sources),
-            "E0403" => doubts.iter().any(|doubt| is_given_in(found, *doubt, sources)),
+            "E0403" => {
+                doubts.iter().chain(&joined).any(|doubt| is_given_in(found, *doubt, sources))
+            }
             "E0026" | "E0401" => {
                 follows_category(found, &unknown, sources)
                     || found.code == "E0026" && stands_in(found, &groups, sources)
@@ -78,6 +82,7 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     });
     names::sift(diagnostics, sources);
     nearby::sift(diagnostics, sources);
+    lines::sift(diagnostics, sources);
 }
 
 /// Where it is not known which values stand in which brackets: between one and another that closes it, on the
@@ -134,6 +139,14 @@ fn is_given_in(found: &Diagnostic, doubt: Span, sources: &Sources) -> bool {
     leaves_brace(head) && names.any(is_given)
 }
 
+/// From a name of two words to where its value may begin: the second may be a name by itself.
+fn joined(found: &Diagnostic, sources: &Sources) -> Option<Span> {
+    let at = found.span().filter(|_| found.code == "E0023" && found.message == ONE_WORD)?;
+    let rest = sources.text(at.source).get(at.range().end..)?;
+    let value = rest.find(|c: char| c != ' ').filter(|equals| rest[*equals..].starts_with('='))?;
+    Some(Span::new(at.source, at.range().start, at.range().end + value + 1))
+}
+
 /// Whether the first brace that opens in a text is still open at its end.
 fn leaves_brace(text: &str) -> bool {
     let mut depth = 0_i32;
@@ -186,9 +199,11 @@ fn includes(found: &Diagnostic, sources: &Sources) -> bool {
 
 /// Where the line of a place begins, or as far before it as is looked at.
 fn line_of(at: Span, sources: &Sources) -> usize {
-    let before = sources.text(at.source).as_bytes().get(..at.range().start).unwrap_or_default();
-    let near = before.len().saturating_sub(LOOKED_AT);
-    memchr::memrchr(b'\n', &before[near..]).map_or(near, |end| near + end + 1)
+    let (text, start) = (sources.text(at.source), at.range().start);
+    let near = (start.saturating_sub(LOOKED_AT)..start).find(|near| text.is_char_boundary(*near));
+    let near = near.unwrap_or(start);
+    let before = text.as_bytes().get(near..start).unwrap_or_default();
+    memchr::memrchr(b'\n', before).map_or(near, |end| near + end + 1)
 }
 
 /// How many names are told of that nothing stands for.
@@ -373,6 +388,8 @@ mod tests {
         for gap in ["", " "] {
             let wide = format!("let a = max(1, min2, {gap}\"{}\"))", "é".repeat(40_000));
             assert_eq!(codes(&wide), ["E0010", "E0101", "E0409"]);
+            let wide = format!("fn a(b: \"{gap}{}\" c", "é".repeat(40_000));
+            assert_eq!(codes(&wide), ["E0008", "E0409"]);
         }
     }
 
@@ -396,7 +413,7 @@ mod tests {
     #[test]
     fn values_around_what_cannot_be_read_are_not_judged() {
         let mut sources = Sources::default();
-        sources.add("a.scene", "let a = f(1, 2, 3, 4}; let other = 1");
+        sources.add("a.scene", "let a = f(1, 2, 3,\n4};\nlet other = 1");
         sources.add("b.scene", "let b = f(5, 6, 7, 8); let other = 2");
         let error = |code, file, start, end| {
             Diagnostic::error(code, Span::new(SourceId(file), start, end), "")
@@ -412,7 +429,7 @@ mod tests {
             ("E0403", 0, 10, 18),
             ("E0403", 0, 20, 21),
             ("E0403", 1, 10, 30),
-            ("E0214", 0, 22, 30),
+            ("E0214", 0, 23, 30),
             ("E0101", 0, 10, 30),
         ] {
             assert!(kept(error(code, file, start, end)), "{code} {file} {start}");

@@ -9,6 +9,7 @@ use memchr::memmem;
 use crate::syntax::{Token, TokenKind, tokens};
 use crate::words::BEFORE_NAMES;
 
+use super::line_of;
 use super::nearby::is_unread;
 
 /// Words beside something that cannot be read that may be what was to be defined there, on each side.
@@ -17,6 +18,8 @@ const WORDS: usize = 3;
 const BYTES: usize = 200;
 /// Letters from which on the beginning of such a word may be meant by it: `fn riseb: int)`.
 const LONG: usize = 3;
+/// Bytes of a line on which parameters are looked for.
+const LINE: usize = 1000;
 /// Bytes of a text in which a definition is looked for.
 const SEARCHED: usize = 1 << 20;
 /// Places of one name that are shown.
@@ -33,7 +36,8 @@ type Word<'a> = (SourceId, &'a str, u32);
 pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let is_cause = |found: &&Diagnostic| is_unread(found) && found.sure().is_none();
     let causes = diagnostics.iter().filter(is_cause).filter_map(Diagnostic::span);
-    let unread: BTreeSet<Word<'_>> = causes.flat_map(|at| words_beside(at, sources)).collect();
+    let defined = |at| words_beside(at, sources).chain(parameters(at, sources));
+    let unread: BTreeSet<Word<'_>> = causes.flat_map(defined).collect();
     named_by_use(diagnostics, sources);
     let mut places: BTreeMap<(SourceId, &str), Vec<Span>> = BTreeMap::new();
     for found in &*diagnostics {
@@ -191,4 +195,17 @@ fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
         let word = Span::new(at.source, all[i].start, all[i].end());
         (at.source, all[i].text, word.start)
     })
+}
+
+/// The names of parameters on the line of a place, if it begins a function.
+fn parameters(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
+    let (text, start) = (sources.text(at.source), line_of(at, sources));
+    let is_end = |end: &usize| text.is_char_boundary(*end);
+    let end = (start + LINE..text.len()).find(is_end).unwrap_or(text.len());
+    let end = text[start..end].find('\n').map_or(end, |line| start + line);
+    let line: Vec<Token<'_>> = tokens(text, start..end).collect();
+    let is_function = line.first().is_some_and(|first| first.text == "fn");
+    let is_one = |pair: &&[Token<'_>]| is_function && pair[1].text == ":";
+    let names: Vec<&str> = line.windows(2).filter(is_one).map(|pair| pair[0].text).collect();
+    names.into_iter().map(move |name| (at.source, name, at.start))
 }

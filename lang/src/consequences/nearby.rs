@@ -14,9 +14,6 @@ const BYTES: usize = 200;
 /// Bytes between two brackets on one line that are looked at.
 const LINE: usize = 1000;
 
-/// Bytes between brackets of a list over some lines.
-const LIST: u32 = 4000;
-
 /// What is told where something cannot be read.
 const UNREAD: [&str; 9] =
     ["E0009", "E0010", "E0012", "E0013", "E0014", "E0015", "E0016", "E0017", "E0023"];
@@ -34,7 +31,7 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     for pair in all.windows(2) {
         let [(before, i), (span, j)] = pair else { continue };
         if closes_what(&diagnostics[*i], &diagnostics[*j], sources) {
-            if let Some(call) = call(&diagnostics[*i], sources) {
+            if let Some(call) = call(&diagnostics[*i], &diagnostics[*j], sources) {
                 for fix in &mut diagnostics[*i].fixes {
                     (fix.replacement, fix.grade) = (call.clone(), Grade::Guess);
                 }
@@ -101,13 +98,24 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         ("E0401", "E0019" | "E0023") => found.sure().is_none(),
         // `f[3)`
         ("E0214", "E0009") => is_unsure && touches(found, cause),
-        // Vectors in which several numbers have a unit already.
-        ("E0203", "E0203") => found.message == cause.message && found.sure().is_none(),
+        // Vectors in which several numbers have a unit already, `(30 cm - 45) cm`, and `wall(-275, 275, 0)`.
+        ("E0203", "E0203") => {
+            found.sure().is_none() && (found.message == cause.message || holds(found, cause))
+        }
+        ("E0214", "E0214") => found.sure().is_none() && found.message == cause.message,
+        // `reach(bk ,)`
+        ("E0403", "E0101") => is_unsure && holds(found, cause),
         (code, "E0012" | "E0013" | "E0014" | "E0015" | "E0016" | "E0017" | "E0023") => {
             is_unsure && ["E01", "E02", "E04"].iter().any(|group| code.starts_with(group))
         }
         _ => false,
     }
+}
+
+/// Whether what is told holds something else that is.
+fn holds(found: &Diagnostic, other: &Diagnostic) -> bool {
+    let (Some(outer), Some(inner)) = (found.span(), other.span()) else { return false };
+    outer != inner && outer.start <= inner.start && inner.end <= outer.end
 }
 
 /// Whether a bracket that another one closes opens right behind something that is told.
@@ -118,32 +126,19 @@ fn touches(found: &Diagnostic, cause: &Diagnostic) -> bool {
 
 /// Whether a mistake tells by itself what a bracket behind it closes: of a name, only where its bracket is.
 fn opens(cause: &Diagnostic) -> bool {
-    cause.code != "E0101" || cause.fixes.iter().any(|fix| fix.replacement.contains('('))
+    cause.code != "E0101" || cause.fixes.iter().any(|fix| fix.replacement.contains(['(', '[']))
 }
 
-/// The call that a name may be which begins as one that is surely meant and has no bracket: `lean(b` for `leanb`.
-fn call(found: &Diagnostic, sources: &Sources) -> Option<String> {
+/// What a name may be which begins as one that is surely meant and lacks the bracket that another closes: `lean(b`
+/// for `leanb`.
+fn call(found: &Diagnostic, close: &Diagnostic, sources: &Sources) -> Option<String> {
     let at = found.span().filter(|_| found.code == "E0101")?;
     let (name, meant) = (sources.text(at.source).get(at.range())?, &found.sure()?.replacement);
     let argument = name.strip_prefix(meant.as_str())?;
     let begins = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    argument.starts_with(begins).then(|| format!("{meant}({argument}"))
-}
-
-/// The bracket that another one closes.
-fn opened(cause: &Diagnostic, sources: &Sources) -> Option<u8> {
-    let at = cause.labels.get(1)?.span;
-    sources.text(at.source).as_bytes().get(at.range().start).copied()
-}
-
-/// Whether some brackets hold the one that closes this.
-fn closes_one(brackets: &str, open: u8) -> bool {
-    let close = match open {
-        b'(' => ')',
-        b'[' => ']',
-        _ => '}',
-    };
-    brackets.contains(close)
+    let close = close.span().and_then(|at| sources.text(at.source).get(at.range()))?;
+    let open = if close.starts_with(']') { '[' } else { '(' };
+    argument.starts_with(begins).then(|| format!("{meant}{open}{argument}"))
 }
 
 /// Whether a bracket that closes nothing closes what a mistake before it has left open.
@@ -155,21 +150,16 @@ fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> boo
     if before.source != at.source || !is_stray {
         return false;
     }
-    let is_line = || {
-        // The place of a name reaches to what follows where a bracket that was left out stands.
-        let end = before.range().end.min(at.range().start);
-        let between = text.get(end..at.range().start);
-        between.is_some_and(|it| it.len() <= LINE && !it.contains('\n'))
-    };
+    // The place of a name reaches to what follows where a bracket that was left out stands.
+    let end = before.range().end.min(at.range().start);
+    let between = text.get(end..at.range().start).filter(|it| it.len() <= LINE);
+    let is_line = || between.is_some_and(|it| !it.contains('\n'));
+    // With which the next line begins.
+    let is_next = || between.is_some_and(|it| !it.trim_end().contains('\n'));
     match cause.code {
         "E0101" => {
-            let is_open = cause.sure().is_none() || call(cause, sources).is_some();
-            is_open && !bracket.starts_with('}') && is_line()
-        }
-        "E0009" => {
-            let is_near = at.start.saturating_sub(before.end) <= LIST;
-            let open = opened(cause, sources).filter(|_| is_near);
-            is_line() || open.is_some_and(|open| closes_one(bracket, open))
+            let is_open = cause.sure().is_none() || call(cause, found, sources).is_some();
+            is_open && !bracket.starts_with('}') && is_next()
         }
         "E0023" => cause.sure().is_none() && (bracket.starts_with('}') || is_line()),
         _ => false,

@@ -20,7 +20,7 @@ pub(super) const COMMENTS: &str = "a comment begins with `//`";
 const LOOKED_AT: usize = 1 << 12;
 
 /// What is said of two words that stand for one name.
-const ONE_WORD: &str = "a name is one word";
+pub(crate) const ONE_WORD: &str = "a name is one word";
 
 /// Why the place cannot be read, if it looks like another language's way.
 pub(super) fn habit(around: &Around<'_>) -> Option<Diagnostic> {

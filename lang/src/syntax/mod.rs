@@ -52,6 +52,7 @@ pub use agree::{Agreement, agree};
 pub(crate) use cut::{Cut, Cuts, resume_limit};
 pub(crate) use defined::{says_units, stray};
 pub(crate) use explain::COMPARES;
+pub(crate) use habits::ONE_WORD;
 pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use number::parse as parse_number;
 pub(crate) use parse::{

@@ -1,0 +1,111 @@
+//! Mistakes beside and behind brackets that are wrong.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use luxel_core::diag::{Diagnostic, SourceId, Sources, Span};
+
+use super::line_of;
+use super::nearby::is_unread;
+use crate::syntax::{TokenKind, tokens};
+use crate::words::BEFORE_NAMES;
+
+/// Bytes of an expression in which a name is looked for.
+const LINE: usize = 1000;
+
+/// Bytes between what stands in one list over some lines.
+const NEAR: u32 = 500;
+
+/// Takes out what is told on the line of a bracket that is wrong, unless its mend is sure, it is a name that
+/// nothing stands for, or what an object lacks: without the bracket it is not known what belongs together there.
+/// Of two such brackets the first is told, and of several of which one was taken for what another is, it alone.
+/// Nor is it told that a value does not fit which a line gives to a name in which something cannot be read.
+pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+    let mut lines: BTreeMap<_, Span> = BTreeMap::new();
+    let wrong = diagnostics.iter().filter(|it| is_bracket(it, sources));
+    for at in wrong.filter_map(Diagnostic::span) {
+        let first = lines.entry((at.source, line_of(at, sources))).or_insert(at);
+        *first = at.min(*first);
+    }
+    let is_unsure = |found: &&Diagnostic| is_unread(found) && found.sure().is_none();
+    let unread = diagnostics.iter().filter(is_unsure);
+    let names: BTreeSet<_> = unread.filter_map(|found| defined(found, sources)).collect();
+    let of_name = |at: Span| {
+        let mut words = tokens(sources.text(at.source), at.range());
+        at.range().len() <= LINE && words.any(|word| names.contains(&(at.source, word.text)))
+    };
+    let displaced = displaced(diagnostics, sources);
+    diagnostics.retain(|found| {
+        let Some(at) = found.span() else { return true };
+        let is_judged = found.is_error() && found.sure().is_none();
+        let first = lines.get(&(at.source, line_of(at, sources)));
+        let is_beside =
+            !matches!(found.code, "E0101" | "E0403") && first.is_some_and(|first| *first != at);
+        let is_of_one = found.code.starts_with("E02") && !names.is_empty() && of_name(at);
+        let is_displaced = displaced.contains(&(at, found.code));
+        !is_displaced && !(is_judged && (is_beside || is_of_one))
+    });
+}
+
+/// What is told behind a bracket that closed one of another kind, each near the last, because what follows stands
+/// outside: brackets that close nothing, or one further out, and values that nothing uses. So are those before a
+/// bracket that closes nothing.
+fn displaced(diagnostics: &[Diagnostic], sources: &Sources) -> BTreeSet<(Span, &'static str)> {
+    let is_one = |found: &&Diagnostic| found.code == "E0114" || is_bracket(found, sources);
+    let mut all: Vec<(Span, &Diagnostic)> = diagnostics
+        .iter()
+        .filter(is_one)
+        .filter_map(|found| Some((found.span()?, found)))
+        .collect();
+    all.sort_by_key(|(at, _)| *at);
+    let is_near = |at: Span, next: Span| {
+        at.source == next.source && next.start.saturating_sub(at.end) <= NEAR
+    };
+    let (mut out, mut last) = (BTreeSet::new(), None);
+    for (at, found) in &all {
+        let open = found.labels.get(1).map(|open| open.span);
+        let near = last.filter(|(last, _)| is_near(*last, *at));
+        last = match (found.code, near) {
+            ("E0010" | "E0114", Some((_, open))) => Some((*at, open)),
+            ("E0009", Some((_, outer))) if open < outer => Some((*at, open)),
+            ("E0009", _) => {
+                last = Some((*at, open));
+                continue;
+            }
+            _ => None,
+        };
+        if last.is_some() {
+            out.insert((*at, found.code));
+        }
+    }
+    let mut next = None;
+    for (at, found) in all.iter().rev() {
+        let is_before = next.is_some_and(|next| is_near(*at, next));
+        if found.code == "E0114" && is_before {
+            out.insert((*at, found.code));
+        }
+        let begins = found.code == "E0010" || found.code == "E0114" && is_before;
+        next = begins.then_some(*at);
+    }
+    out
+}
+
+/// The name to which the line before a place gives a value.
+fn defined<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a str)> {
+    let at = found.span()?;
+    let mut line = tokens(sources.text(at.source), line_of(at, sources)..at.range().start);
+    line.next().filter(|word| BEFORE_NAMES.contains(&word.text))?;
+    let name = line.next().filter(|name| name.kind == TokenKind::Word)?;
+    Some((at.source, name.text))
+}
+
+/// Whether a bracket is wrong, and how that is mended not sure. What stands in a brace that never closes is known,
+/// but for one that is written twice.
+fn is_bracket(found: &Diagnostic, sources: &Sources) -> bool {
+    let opens_block = || {
+        let at = found.span().map(|at| sources.text(at.source).as_bytes().get(at.range().start));
+        let is_brace = found.code == "E0008" && at == Some(Some(&b'{'));
+        is_brace && !found.fixes.iter().any(|fix| fix.replacement.is_empty())
+    };
+    let is_one = matches!(found.code, "E0008" | "E0009" | "E0010");
+    is_one && found.sure().is_none() && !opens_block()
+}

@@ -150,9 +150,7 @@ fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> boo
     if before.source != at.source || !is_stray {
         return false;
     }
-    // The place of a name reaches to what follows where a bracket that was left out stands.
-    let end = before.range().end.min(at.range().start);
-    let between = text.get(end..at.range().start).filter(|it| it.len() <= LINE);
+    let between = text.get(before.range().end..at.range().start).filter(|it| it.len() <= LINE);
     let is_line = || between.is_some_and(|it| !it.contains('\n'));
     // With which the next line begins.
     let is_next = || between.is_some_and(|it| !it.trim_end().contains('\n'));

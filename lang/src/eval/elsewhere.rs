@@ -3,7 +3,7 @@
 use luxel_core::diag::{Grade, Near, near};
 
 /// Their word and ours. Ours counts only where it is known: whether it is, plugins decide.
-const WORDS: [(&str, &str); 72] = [
+const WORDS: [(&str, &str); 78] = [
     ("albedo", "reflectance"),
     ("color", "reflectance"),
     ("kd", "reflectance"),
@@ -16,6 +16,12 @@ const WORDS: [(&str, &str); 72] = [
     ("pos", "position"),
     ("res", "resolution"),
     ("rad", "radius"),
+    ("r", "radius"),
+    ("centre", "center"),
+    ("major_radius", "radius"),
+    ("minor_radius", "tube"),
+    ("center", "point"),
+    ("center", "base"),
     ("mat", "material"),
     ("distant", "directional"),
     ("infinite", "environment"),
@@ -80,8 +86,20 @@ const WORDS: [(&str, &str); 72] = [
 
 /// What is one thing here and several elsewhere, or has another form: ours with how it is written, and
 /// their words.
-const FORMS: [(&str, &str, &[&str]); 5] = [
+const FORMS: [(&str, &str, &[&str]); 9] = [
     ("resolution", "resolution = (640, 480)", &["width", "height", "xresolution", "yresolution"]),
+    (
+        "size",
+        "center = (0, 0.5, 0) m, size = (2, 1, 1) m",
+        &["min", "max", "lower", "upper", "from", "to", "width", "height", "depth", "length"],
+    ),
+    (
+        "base",
+        "base = (0, 0, 0) m, axis = (0, 1, 0), height = 1 m",
+        &["from", "to", "start", "end", "bottom", "top", "p0", "p1", "p2"],
+    ),
+    ("v", "u = (1, 0, 0) m, v = (0, 0, 1) m", &["size", "width", "height", "length", "normal"]),
+    ("radius", "radius = 20 cm / 2", &["diameter", "d"]),
     (
         "look",
         "look = look_at(from = (0, 1, 5) m, to = (0, 1, 0) m, up = (0, 1, 0))",

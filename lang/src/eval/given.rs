@@ -6,7 +6,7 @@ use std::sync::Arc;
 use luxel_core::diag::{Diagnostic, Span};
 use luxel_core::scene::{self, Given, Misfit, NodeId};
 use luxel_sdk::kind::Kind;
-use luxel_sdk::params::{Dimension, Param, Type};
+use luxel_sdk::params::{Dimension, Param, Type, Unit};
 
 use super::Evaluator;
 use super::env::File;
@@ -30,6 +30,11 @@ impl Evaluator<'_> {
             Err(misfit) => {
                 let mut found = self.misfit(&misfit, field.span);
                 found = self.with_unquoted(found, param, field);
+                let is_wanted = |dimension| {
+                    let mut units = param.unit.split('|').filter_map(|unit| Unit::parse(unit).ok());
+                    units.any(|unit| unit.dimension == dimension)
+                };
+                found = self.with_part(found, field.span, is_wanted);
                 found = self.with_matt(found, param, field);
                 if is_heat {
                     let body = format!("blackbody({})", self.written(field.span));

@@ -124,7 +124,10 @@ impl Evaluator<'_> {
         }
         if !found.is_none() {
             let message = format!("{} is wanted, {} is given", wanted.name(), found.name());
-            return self.poison("E0202", span, message);
+            let found = Diagnostic::error("E0202", span, message);
+            let found = self.with_part(found, span, |dimension| dimension == wanted);
+            self.tell(found);
+            return Value::Poison;
         }
         let message = format!("{} is wanted, the number has no unit", wanted.name());
         let found = Diagnostic::error("E0201", span, message).help(scene::bare_help(wanted));

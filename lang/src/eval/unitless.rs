@@ -1,6 +1,7 @@
 //! How a number without a unit is given one.
 
 use luxel_core::diag::{Diagnostic, Span};
+use luxel_sdk::params::{Dimension, Unit};
 
 use super::Evaluator;
 use crate::syntax::parse_number;
@@ -47,6 +48,30 @@ impl Evaluator<'_> {
         }
         diagnostic
     }
+
+    /// Offers a part of a unit, if what is written is a number over one with that unit, which is wanted.
+    pub(super) fn with_part(
+        &self,
+        diagnostic: Diagnostic,
+        span: Span,
+        is_wanted: impl Fn(Dimension) -> bool,
+    ) -> Diagnostic {
+        let Some((number, divisor, unit)) = quotient(self.written(span)) else { return diagnostic };
+        if !Unit::parse(unit).is_ok_and(|unit| is_wanted(unit.dimension)) {
+            return diagnostic;
+        }
+        let help = format!("a unit belongs to the number before it: {number} / ({divisor} {unit})");
+        diagnostic.help(help).guess(span, format!("{number} {unit} / {divisor}"))
+    }
+}
+
+/// A number, what it is divided by, and the unit of that: `1/2 m`.
+fn quotient(written: &str) -> Option<(&str, &str, &str)> {
+    let (number, divisor) = written.split_once('/')?;
+    let (divisor, unit) = divisor.trim().split_once(' ')?;
+    let number = number.trim();
+    let are_numbers = [number, divisor].iter().all(|it| parse_number(it.as_bytes()).is_some());
+    are_numbers.then_some((number, divisor, unit.trim()))
 }
 
 impl Written {

@@ -40,8 +40,10 @@ impl Edits {
 
     /// The bytes that were written where these stand now.
     pub(super) fn written(&self, now: Range<usize>) -> Range<usize> {
-        let start = self.place(now.start).start;
-        start..self.place(now.end).end.max(start)
+        let start = self.place(now.start, |edit| edit.new.end <= now.start).start;
+        // What was taken out behind it is none of it.
+        let is_before = |edit: &Edit| edit.new.end <= now.end && edit.new.start < now.end;
+        start..self.place(now.end, is_before).end.max(start)
     }
 
     /// The same of a place.
@@ -57,9 +59,10 @@ impl Edits {
         found
     }
 
-    /// What was written where a byte stands now: no byte, or what a mend has replaced.
-    fn place(&self, at: usize) -> Range<usize> {
-        let i = self.edits.partition_point(|edit| edit.new.end <= at);
+    /// What was written where a byte stands now: no byte, or what a mend has replaced. Which mends stand before
+    /// it is given.
+    fn place(&self, at: usize, is_before: impl Fn(&Edit) -> bool) -> Range<usize> {
+        let i = self.edits.partition_point(is_before);
         if let Some(within) = self.edits.get(i).filter(|edit| edit.new.start < at) {
             return within.old.clone();
         }
@@ -76,14 +79,14 @@ impl Edits {
         if !is_apart || self.edits.len() >= MENDS {
             return None;
         }
-        // What is put around what stays leaves it in its place.
         let (old, end) = (self.written(now.clone()), now.start + new.len());
-        let around = match new.find(&text[now.clone()]).filter(|_| !now.is_empty()) {
-            Some(before) => {
-                let (start, after) = (now.start + before, now.start + before + now.len());
+        let around = match kept(&text[now.clone()], new) {
+            Some(kept) => {
+                let stays = now.start + kept.old..now.start + kept.old + kept.length;
+                let (stays, start) = (self.written(stays), now.start + kept.new);
                 vec![
-                    Edit { old: old.start..old.start, new: now.start..start },
-                    Edit { old: old.end..old.end, new: after..end },
+                    Edit { old: old.start..stays.start, new: now.start..start },
+                    Edit { old: stays.end..old.end, new: start + kept.length..end },
                 ]
             }
             None => vec![Edit { old, new: now.start..end }],
@@ -96,6 +99,27 @@ impl Edits {
         edits.splice(i..i, around);
         Some(Self { edits, ..*self })
     }
+}
+
+/// Where in a text and in what replaces it something stands that stays in its place.
+struct Kept {
+    old: usize,
+    new: usize,
+    length: usize,
+}
+
+/// What stays of a text: all, if something is put around it, or what stands behind another first word.
+fn kept(old: &str, new: &str) -> Option<Kept> {
+    if old.is_empty() {
+        return None;
+    }
+    let all = || new.find(old).map(|at| Kept { old: 0, new: at, length: old.len() });
+    let rest = || {
+        let (_, rest) = new.split_once(' ').filter(|(_, rest)| !rest.is_empty())?;
+        let (at, length) = (old.find(rest)?, rest.len());
+        Some(Kept { old: at, new: new.len() - length, length })
+    };
+    all().or_else(rest)
 }
 
 /// A statement as it was written, or with mends that are sure.
@@ -150,6 +174,13 @@ mod tests {
         assert_eq!(around.text, "(0 1 0) **, x =");
         assert_eq!(around.edits.written(11..13), 110..112, "what stays is where it was");
         assert_eq!(around.edits.written(13..15), 112..112);
+        let behind = fixed(&begun, 0..7, "= 0 1 0").unwrap();
+        assert_eq!(behind.text, "= 0 1 0 ** x");
+        for (now, written) in
+            [(0..1, 100..101), (2..3, 101..102), (6..7, 105..106), (8..10, 108..110)]
+        {
+            assert_eq!(behind.edits.written(now.clone()), written, "{now:?}");
+        }
         assert!(fixed(&three, 6..6, " ").is_none(), "touches a mend");
         assert!(fixed(&three, 9..12, " ").is_none(), "overlaps a mend");
         let mut many = Mended { text: "x".repeat(100), edits: Edits::new(0) };

@@ -121,7 +121,8 @@ impl<'a> Around<'a> {
         let before = self.before(1)?;
         let start = (0..self.at).rev().find(|i| self.begins(*i)).unwrap_or(0);
         let after = self.tokens.get(self.at + 1);
-        let is_on_line = |t: &Token<'_>| t.begins_operand() && !t.first_on_line;
+        let is_on_line =
+            |t: &Token<'_>| t.begins_operand() && !t.first_on_line && !is_category(t.text);
         let is_range = before.ends_operand() && after.is_some_and(is_on_line);
         if current.text == ":" && self.word(start) == "for" && is_range {
             let found = self.error("E0023", current, head::RANGE);

@@ -20,6 +20,7 @@ pub(super) fn foreign(around: &Around<'_>) -> Option<Diagnostic> {
     loops(around)
         .or_else(|| returned(around))
         .or_else(|| steps(around))
+        .or_else(|| value_in_block(around))
         .or_else(|| typed_before(around))
         .or_else(|| if_behind(around))
         .or_else(|| lone_if(around))
@@ -46,6 +47,19 @@ fn returned(around: &Around<'_>) -> Option<Diagnostic> {
     let (word, _) = beginning(around, &["return"])?;
     let found = told(around.span(word), "what a function gives stands behind its `=`");
     Some(found.help("it is written `fn f(x: float) = x + 1`"))
+}
+
+/// `y + 1` at the end of a function's block.
+fn value_in_block(around: &Around<'_>) -> Option<Diagnostic> {
+    let (sign, name) = (around.current()?, around.before(1)?);
+    let first = around.tokens.iter().find(|t| t.kind != TokenKind::Doc)?;
+    let in_body = matches!(&around.open[..], [open] if around.word(*open) == "{");
+    let is_value = sign.is_operator() && sign.text != "=" && around.begins(around.at - 1);
+    let found =
+        told(around.span(name).to(around.span(sign)), "a function with a block gives no value");
+    let found =
+        found.help("a value is written `fn f(x: float) = x + 1`, each step a function of its own");
+    (first.text == "fn" && in_body && is_value && !sign.first_on_line).then_some(found)
 }
 
 /// The brace that stands where the value of a function does, if what is in it are no fields.

@@ -334,10 +334,26 @@ impl Evaluator<'_> {
         }
     }
 
+    /// Tells of a loop over a list of one range, `[0..3]`.
+    fn bracketed_range(&mut self, span: Span) {
+        let found = Diagnostic::error("E0214", span, "a loop runs over a range without brackets");
+        let written = self.written(span);
+        let bare = written.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
+        let bare = bare.map(|bare| bare.trim().to_owned());
+        self.tell(match bare {
+            Some(bare) => found.guess(span, bare),
+            None => found,
+        });
+    }
+
     /// What a loop runs over; `None` after a mistake.
     pub(super) fn elements(&mut self, over: Value, span: Span) -> Option<Elements> {
         match over {
             Value::Numbers(n) => Some(Elements::Numbers(n)),
+            Value::Items(items) if matches!(&items.items[..], [Value::Range(_)]) => {
+                self.bracketed_range(span);
+                None
+            }
             Value::Items(items) => Some(Elements::Items(items)),
             Value::Range(range) if range.dimension.is_none() => {
                 if range.start.fract().abs() > 0.0 || range.end.fract().abs() > 0.0 {

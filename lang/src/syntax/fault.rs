@@ -73,8 +73,12 @@ fn is_of_choice(text: &str, brackets: Range<usize>) -> bool {
     is_behind || before.is_some_and(|before| before.ends_with(['}', ' ', '\n']))
 }
 
-/// The second of two braces of which one never closes: nothing that may stand in braces begins with one.
+/// The second of two braces of which one never closes: nothing that may stand in braces begins with one. Nor does
+/// anything in a table.
 fn doubled(text: &str, open: usize) -> Option<usize> {
+    if text[..open].ends_with('#') && text[open..].starts_with("[[") {
+        return Some(open + 1);
+    }
     let blanks = |text: &str| text.len() - text.trim_start_matches([' ', '\t']).len();
     let rest = text[open..].strip_prefix('{')?;
     let next = open + 1 + blanks(rest);
@@ -220,7 +224,8 @@ fn unclosed(text: &str, source: SourceId, open: usize, closes: &[(usize, usize)]
     let span = |range: Range<usize>| Span::new(source, range.start, range.end);
     if let Some(again) = doubled(text, open) {
         let place = span(again..again + 1);
-        return Diagnostic::error("E0008", place, "`{` is written twice").guess(place, "");
+        let message = format!("`{}` is written twice", &text[again..=again]);
+        return Diagnostic::error("E0008", place, message).guess(place, "");
     }
     let bracket = &text[open..=open];
     let message = format!("this `{bracket}` is never closed");

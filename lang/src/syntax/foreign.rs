@@ -139,6 +139,9 @@ fn lone_if(around: &Around<'_>) -> Option<Diagnostic> {
     if around.word(end + 1) == "else" || !(end..=end + 1).contains(&around.at) {
         return None;
     }
+    if let Some(found) = around.tokens.get(end + 1).and_then(|next| branch(around, next)) {
+        return Some(found);
+    }
     // What begins a line is a statement of its own.
     let below = tokens(around.text, around.end..around.text.len()).next();
     if let Some(found) = below.and_then(|next| branch(around, &next)) {

@@ -52,9 +52,16 @@ fn hash(around: &Around<'_>) -> Option<Diagnostic> {
         return Some(found);
     }
     let gap = rest.len() - rest.trim_start_matches([' ', '\t']).len();
+    let span = Span::new(around.source, mark.start, mark.end() + gap + 1);
+    let found = told(span, "a table of numbers stands between `#[` and `]`");
     if rest[gap..].starts_with('[') && !mark.first_on_line {
-        let span = Span::new(around.source, mark.start, mark.end() + gap + 1);
-        return Some(told(span, "a table of numbers begins with `#[`").guess(span, "#["));
+        return Some(found.guess(span, "#["));
+    }
+    if rest[gap..].starts_with(['{', '(', '<']) && !mark.first_on_line {
+        return Some(found);
+    }
+    if rest.starts_with("#[") && !mark.first_on_line {
+        return Some(found.guess(around.span(mark), ""));
     }
     if mark.first_on_line || !matches!(digits, 3 | 6) {
         let found = told(around.span(mark), COMMENTS);

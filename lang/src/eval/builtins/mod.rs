@@ -14,7 +14,7 @@ mod transform;
 
 use std::sync::Arc;
 
-use luxel_core::diag::{Diagnostic, Grade, Span, near};
+use luxel_core::diag::{Diagnostic, Grade, Span};
 use luxel_sdk::params::Dimension;
 
 pub(super) use self::color::SpectrumFile;
@@ -23,6 +23,7 @@ pub(crate) use self::numbers::OfNumbers;
 use super::Evaluator;
 use super::arithmetic::scale;
 use super::call::takes_only;
+use super::elsewhere;
 use super::env::Env;
 use super::ops::with_zeros;
 use super::value::Value;
@@ -319,7 +320,8 @@ impl Evaluator<'_> {
         let (at, message, near) = match &given.name {
             Some(name) => {
                 let message = format!("`{}` has no parameter `{}`", builtin.name, name.text);
-                (name.span, message, near(&name.text, builtin.arguments()))
+                let known: Vec<&str> = builtin.arguments().collect();
+                (name.span, message, elsewhere::meant(&name.text, &known))
             }
             None => (given.span, takes_only(builtin.name, builtin.args.len()), None),
         };

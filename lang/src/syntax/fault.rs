@@ -73,6 +73,15 @@ fn is_of_choice(text: &str, brackets: Range<usize>) -> bool {
     is_behind || before.is_some_and(|before| before.ends_with(['}', ' ', '\n']))
 }
 
+/// The end of an `else` that lacks the brace which another one closes on its line.
+fn bare_else(text: &str, close: usize) -> Option<usize> {
+    let near = (close.saturating_sub(REST)..close).find(|near| text.is_char_boundary(*near))?;
+    let line = text[near..close].rfind('\n').map_or(near, |end| near + end + 1);
+    let word = tokens(text, line..close).filter(|token| token.text == "else").last()?;
+    let has_brace = tokens(text, word.end()..close).any(|token| matches!(token.text, "{" | "if"));
+    (text[close..].starts_with('}') && !has_brace).then(|| word.end())
+}
+
 /// The second of two braces of which one never closes: nothing that may stand in braces begins with one. Nor does
 /// anything in a table.
 fn doubled(text: &str, open: usize) -> Option<usize> {
@@ -286,7 +295,11 @@ pub(super) fn told(
             let shown = &rest[..n.min(SHOWN)];
             let message = format!("{this} `{shown}{more}` {closes} nothing");
             let place = span(*at..at + n);
-            Diagnostic::error("E0010", place, message).guess(place, "")
+            let found = Diagnostic::error("E0010", place, message);
+            match bare_else(text, *at) {
+                Some(end) => found.guess(span(end..end), " {"),
+                None => found.guess(place, ""),
+            }
         }
         Fault::String { at } => {
             let message = "a string ends on its line with `\"`";

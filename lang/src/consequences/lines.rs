@@ -46,47 +46,54 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     });
 }
 
-/// What is told behind a bracket that closed one of another kind, each near the last, because what follows stands
-/// outside: brackets that close nothing, or one further out, and values that nothing uses. So are those before a
-/// bracket that closes nothing.
+/// What is told near a wrong bracket because what stands there belongs to something else than was meant, by place
+/// and code.
 fn displaced(diagnostics: &[Diagnostic], sources: &Sources) -> BTreeSet<(Span, &'static str)> {
     let is_one = |found: &&Diagnostic| found.code == "E0114" || is_bracket(found, sources);
-    let mut all: Vec<(Span, &Diagnostic)> = diagnostics
-        .iter()
-        .filter(is_one)
-        .filter_map(|found| Some((found.span()?, found)))
-        .collect();
+    let placed = |found| Some((Diagnostic::span(found)?, found));
+    let mut all: Vec<_> = diagnostics.iter().filter(is_one).filter_map(placed).collect();
     all.sort_by_key(|(at, _)| *at);
-    let is_near = |at: Span, next: Span| {
-        at.source == next.source && next.start.saturating_sub(at.end) <= NEAR
-    };
-    let (mut out, mut last) = (BTreeSet::new(), None);
-    for (at, found) in &all {
+    let out = behind(&all).into_iter().chain(unused_before(&all));
+    out.map(|(at, found)| (at, found.code)).collect()
+}
+
+/// Brackets and values, and where they stand, in order.
+type Placed<'a> = (Span, &'a Diagnostic);
+
+/// Those that follow, each near the last, on a bracket that closed one of another kind: brackets that close
+/// nothing, or one further out, and values that nothing uses.
+fn behind<'a>(all: &[Placed<'a>]) -> Vec<Placed<'a>> {
+    let mut out = vec![];
+    // The last of them, and which bracket was closed.
+    let mut last: Option<(Span, Option<Span>)> = None;
+    for (at, found) in all {
         let open = found.labels.get(1).map(|open| open.span);
-        let near = last.filter(|(last, _)| is_near(*last, *at));
-        last = match (found.code, near) {
-            ("E0010" | "E0114", Some((_, open))) => Some((*at, open)),
-            ("E0009", Some((_, outer))) if open < outer => Some((*at, open)),
-            ("E0009", _) => {
-                last = Some((*at, open));
-                continue;
-            }
-            _ => None,
+        let outer = last.filter(|(last, _)| is_near(*last, *at)).map(|(_, outer)| outer);
+        let (is_one, closed) = match (found.code, outer) {
+            ("E0010" | "E0114", Some(outer)) => (true, Some(outer)),
+            ("E0009", outer) => (outer.is_some_and(|outer| open < outer), Some(open)),
+            _ => (false, None),
         };
-        if last.is_some() {
-            out.insert((*at, found.code));
-        }
-    }
-    let mut next = None;
-    for (at, found) in all.iter().rev() {
-        let is_before = next.is_some_and(|next| is_near(*at, next));
-        if found.code == "E0114" && is_before {
-            out.insert((*at, found.code));
-        }
-        let begins = found.code == "E0010" || found.code == "E0114" && is_before;
-        next = begins.then_some(*at);
+        last = closed.map(|closed| (*at, closed));
+        out.extend(is_one.then_some((*at, *found)));
     }
     out
+}
+
+/// Values that nothing uses before a bracket that closes nothing, each near the next.
+fn unused_before<'a>(all: &[Placed<'a>]) -> Vec<Placed<'a>> {
+    let (mut out, mut next) = (vec![], None);
+    for (at, found) in all.iter().rev() {
+        let is_one = found.code == "E0114" && next.is_some_and(|next| is_near(*at, next));
+        next = (is_one || found.code == "E0010").then_some(*at);
+        out.extend(is_one.then_some((*at, *found)));
+    }
+    out
+}
+
+/// Whether two places, in order, may be of one list.
+fn is_near(at: Span, next: Span) -> bool {
+    at.source == next.source && next.start.saturating_sub(at.end) <= NEAR
 }
 
 /// The name to which the line before a place gives a value.

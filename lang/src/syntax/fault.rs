@@ -73,6 +73,14 @@ fn is_of_choice(text: &str, brackets: Range<usize>) -> bool {
     is_behind || before.is_some_and(|before| before.ends_with(['}', ' ', '\n']))
 }
 
+/// What mends brackets that close nothing: the brace that an `else` before them lacks, or that they are none.
+fn without(text: &str, strays: Range<usize>) -> (Range<usize>, &'static str) {
+    match bare_else(text, strays.start) {
+        Some(end) => (end..end, " {"),
+        None => (strays, ""),
+    }
+}
+
 /// The end of an `else` that lacks the brace which another one closes on its line.
 fn bare_else(text: &str, close: usize) -> Option<usize> {
     let near = (close.saturating_sub(REST)..close).find(|near| text.is_char_boundary(*near))?;
@@ -294,12 +302,8 @@ pub(super) fn told(
             let more = if n > SHOWN { "…" } else { "" };
             let shown = &rest[..n.min(SHOWN)];
             let message = format!("{this} `{shown}{more}` {closes} nothing");
-            let place = span(*at..at + n);
-            let found = Diagnostic::error("E0010", place, message);
-            match bare_else(text, *at) {
-                Some(end) => found.guess(span(end..end), " {"),
-                None => found.guess(place, ""),
-            }
+            let (place, with) = without(text, *at..at + n);
+            Diagnostic::error("E0010", span(*at..at + n), message).guess(span(place), with)
         }
         Fault::String { at } => {
             let message = "a string ends on its line with `\"`";

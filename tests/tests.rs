@@ -73,6 +73,8 @@ mod seeded;
 #[cfg(test)]
 mod side_by_side;
 #[cfg(test)]
+mod skies;
+#[cfg(test)]
 mod slips;
 #[cfg(test)]
 mod solids;

@@ -98,10 +98,10 @@ fn a_material_that_fails_ends_the_render() {
         ("zero", "gave a sample"),
     ];
     let floor = FLOOR.replace(" }", ", material = material bad { wrong = \"WRONG\" } }");
-    check_all(&[CAMERA, FILM, LIGHT, &floor].concat(), "material", &cases);
+    check_all(&[CAMERA, FILM, POINT, &floor].concat(), "material", &cases);
     let grey = "grey = texture checker { a = 0.2, b = 0.8 }";
     let floor = floor.replace("bad {", &["bad { ", grey, ","].concat());
-    let template = [CAMERA, FILM, LIGHT, &floor].concat().replace("rgb {", "spectral {");
+    let template = [CAMERA, FILM, POINT, &floor].concat().replace("rgb {", "spectral {");
     check_all(&template, "material", &cases[1..4]);
 }
 
@@ -328,7 +328,7 @@ fn a_failure_in_a_later_stage_does_not_end_an_earlier_render() {
     let registry = registry();
     let text = |wrong: &str| {
         let material = format!(", material = material bad {{ wrong = \"{wrong}\" }} }}");
-        format!("scene 1\n{}", [CAMERA, FILM, LIGHT, &FLOOR.replace(" }", &material)].concat())
+        format!("scene 1\n{}", [CAMERA, FILM, POINT, &FLOOR.replace(" }", &material)].concat())
     };
     let sound = stage_after(&registry, &text("nothing"), None).unwrap();
     let (control, endless) =

@@ -76,6 +76,10 @@ impl<'s> Worker<'s> {
         output: Output,
     ) -> Self {
         let at = SampleAt { stream: 0, index: 0, dimension: 0 };
+        let mut wants = Wants(integrator.wants().0 & most.0);
+        if !stage.lights.is_sought() {
+            wants.0 &= !Wants::DIRECT.0;
+        }
         let lane =
             Lane { at: Arrival::default(), l: Spectrum::ZERO, glow: Spectrum::ZERO, numbers: at };
         Self {
@@ -83,7 +87,7 @@ impl<'s> Worker<'s> {
             processor: Processor::widest(),
             seed,
             sampler: stage.sampler.fixed().sampler(),
-            wants: Wants(integrator.wants().0 & most.0),
+            wants,
             states: integrator.lanes(LANES),
             job: Job::of_camera(Ray::new(DVec3::ZERO, DVec3::Z)),
             lanes: vec![lane; LANES],

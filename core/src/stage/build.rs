@@ -186,8 +186,13 @@ impl Maker<'_> {
 
     fn light(&mut self, flat: &Flat) {
         let Some(object) = self.builder.build(flat.node) else { return };
-        self.requires(Feature::LightChoice, flat.node);
-        if object.fixed().light().form() == LightForm::Surface {
+        let form = object.fixed().light().form();
+        if form == LightForm::Everywhere {
+            self.made.everywhere.push(flat.node);
+        } else {
+            self.requires(Feature::LightChoice, flat.node);
+        }
+        if form == LightForm::Surface {
             match self.child(flat.node, "shape") {
                 Some(shape) => self.shape(flat, shape, Some(object)),
                 None => self.shapeless(flat, &object),

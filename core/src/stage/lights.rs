@@ -2,22 +2,23 @@
 
 mod emission;
 mod quad;
+mod sought;
 mod triangle;
 
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
 use luxel_sdk::color::{Palette, Spectrum, Wavelengths};
-use luxel_sdk::kind::{Arrival, Hit, Light, LightQuery, Output, ShapeSample, Surface};
+use luxel_sdk::kind::{Arrival, Hit, Light, LightForm, LightQuery, Output, ShapeSample, Surface};
 use luxel_sdk::num::{Ray, Transform, offset_origin, unit_and_length};
 use luxel_sdk::sampling::Alias;
 
+use self::sought::Sought;
 use self::triangle::Lit;
 use super::{Geometry, Mesh, Moment, Place, Placement};
 use crate::accel::Watch;
 use crate::cast::{index, narrow};
 use crate::object::{ColorMode, Object, Scratch, Site};
-use crate::scene::Feature;
 
 pub use emission::{EmissionNumbers, Emitted, Emitters, Lamp};
 pub use quad::Quad;
@@ -54,6 +55,15 @@ impl LightSource {
             Self::Surface { object, .. } | Self::Free { object, .. } => object,
         }
     }
+
+    fn form(&self) -> LightForm {
+        self.object().fixed().light().form()
+    }
+
+    /// Whether it is in one piece, not in triangles to choose from.
+    fn is_whole(&self) -> bool {
+        !matches!(self, Self::Surface { triangles: Some(_), .. })
+    }
 }
 
 /// Every source of light and how one is chosen.
@@ -67,7 +77,10 @@ pub struct Lights {
     pub groups: Vec<Arc<str>>,
     /// Which of them each source is of.
     pub group_of: Vec<Option<u32>>,
-    choice: Option<Alias>,
+    /// By which paths choose where to begin.
+    choice: Option<Arc<Alias>>,
+    /// Those that are looked for.
+    sought: Option<Sought>,
 }
 
 /// Light that was found from a point.
@@ -85,9 +98,12 @@ pub struct FoundLight {
 
 impl Lights {
     /// Lights of no group, chosen about in proportion to their power; of no use once the watch is cancelled.
+    /// Light from everywhere is looked for where there are media alone: elsewhere what scatters finds it
+    /// at least as well.
     pub(super) fn new(
         sources: Vec<LightSource>,
         (stage_radius, mode): (f64, ColorMode),
+        has_media: bool,
         watch: &Watch,
     ) -> Self {
         let power = |light| f64::from(power(light, stage_radius, mode));
@@ -96,13 +112,15 @@ impl Lights {
         // A floor of 1 % of the mean: a texture that was looked up where it is dark, or an estimate
         // that is wrong, must not leave a light without a chance.
         let weights: Vec<f64> = power.iter().map(|p| p + 0.01 * mean).collect();
-        let infinite = (0..index(sources.len())).filter(|i| {
-            let object = sources[*i as usize].object();
-            object.fixed().light().form() == luxel_sdk::kind::LightForm::Infinite
-        });
-        let infinite = infinite.collect();
+        let is_infinite = |form| matches!(form, LightForm::Infinite | LightForm::Everywhere);
+        let infinite = (0..index(sources.len()))
+            .filter(|i| is_infinite(sources[*i as usize].form()))
+            .collect();
+        let choice = Alias::new(&weights).ok().map(Arc::new);
+        let is_sought = |light: &LightSource| has_media || light.form() != LightForm::Everywhere;
+        let sought = Sought::new(&sources, is_sought, &weights, choice.as_ref());
         let (groups, group_of) = (vec![], vec![None; sources.len()]);
-        Self { infinite, choice: Alias::new(&weights).ok(), groups, group_of, sources }
+        Self { sources, infinite, groups, group_of, choice, sought }
     }
 
     /// The same in groups.
@@ -120,46 +138,25 @@ impl Lights {
         self.sources.len()
     }
 
-    /// Whether there are several to choose from: sources, or triangles of a source.
+    /// Whether any is looked for.
+    pub fn is_sought(&self) -> bool {
+        self.sought.is_some()
+    }
+
+    /// Whether there are several to choose from when one is looked for: sources, or triangles of a source.
     pub fn is_choice(&self) -> bool {
-        self.sources.len() > 1 || !self.sources.is_empty() && !self.is_first_whole()
+        self.sought.as_ref().is_some_and(|it| it.is_choice(&self.sources))
     }
 
-    /// Whether there is a first one, in one piece.
+    /// Whether the first that is looked for is in one piece.
     pub(super) fn is_first_whole(&self) -> bool {
-        match self.sources.first() {
-            Some(LightSource::Surface { triangles, .. }) => triangles.is_none(),
-            Some(LightSource::Free { .. }) => true,
-            None => false,
-        }
+        self.sought.as_ref().is_some_and(|it| it.first(&self.sources).is_whole())
     }
 
+    /// The chance with which a light is looked for.
     fn chance(&self, light: u32) -> f64 {
-        self.choice.as_ref().map_or(0.0, |choice| choice.pmf(light as usize))
+        self.sought.as_ref().map_or(0.0, |it| it.chance(light))
     }
-
-    /// A source and its chance; `None` if there is none. `u` uniform in [0, 1). Compiled for scenes with a
-    /// choice among lights, and for others.
-    #[inline(always)]
-    fn choose<const CHOICE: bool>(&self, u: f32) -> Option<Chosen<'_>> {
-        let choice = self.choice.as_ref()?;
-        let is_one = !CHOICE || !Feature::LightChoice.is_compiled() || self.sources.len() == 1;
-        if let (true, Some(source)) = (is_one, self.sources.first()) {
-            return Some(Chosen { source, light: 0, chance: 1.0, u: f64::from(u) });
-        }
-        let drawn = choice.sample(f64::from(u));
-        let (source, chance) = (&self.sources[drawn.index], narrow(drawn.pmf));
-        Some(Chosen { source, light: index(drawn.index), chance, u: drawn.u })
-    }
-}
-
-/// A source that was chosen.
-struct Chosen<'a> {
-    source: &'a LightSource,
-    light: u32,
-    chance: f32,
-    /// What is left of the random number.
-    u: f64,
 }
 
 /// Places along each texture coordinate at which a light's power is asked for.
@@ -205,7 +202,7 @@ impl Moment<'_> {
         u: [f32; 3],
         scratch: &Scratch,
     ) -> Option<FoundLight> {
-        let chosen = self.lights.choose::<CHOICE>(u[0])?;
+        let chosen = self.lights.sought.as_ref()?.choose::<CHOICE>(&self.lights.sources, u[0]);
         let u = [u[1], u[2]];
         let found = match chosen.source {
             LightSource::Surface { object, placement, area, triangles, quad } => {

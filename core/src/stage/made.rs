@@ -46,6 +46,8 @@ pub(super) struct Made {
     pub(super) media: Vec<Arc<Object>>,
     pub(super) medium_of: BTreeMap<NodeId, u32>,
     pub(super) lights: Vec<LightSource>,
+    /// Those whose light is everywhere.
+    pub(super) everywhere: Vec<NodeId>,
     /// Groups of lights by name, and which of them each light is of.
     pub(super) group_names: Vec<Arc<str>>,
     pub(super) group_of: Vec<Option<u32>>,
@@ -77,7 +79,8 @@ impl Made {
         }
         let sphere = around(&boxes);
         let groups = (std::mem::take(&mut self.group_names), std::mem::take(&mut self.group_of));
-        let lights = Lights::new(std::mem::take(&mut self.lights), (sphere.1, mode), watch);
+        let sources = std::mem::take(&mut self.lights);
+        let lights = Lights::new(sources, (sphere.1, mode), !self.media.is_empty(), watch);
         let lights = lights.in_groups(groups.0, groups.1);
         let needed = self.needed(scene, &boxes, &lights, watch);
         watch.name("the scene");
@@ -180,6 +183,8 @@ impl Made {
         for (feature, id) in watch.until(found.chain(within.map(|it| (Feature::Nested, it.node)))) {
             self.reasons.add(feature, id, scene.node(id).span);
         }
+        let everywhere = std::mem::take(&mut self.everywhere).into_iter().filter(|_| media);
+        everywhere.for_each(|id| self.reasons.add(Feature::LightChoice, id, scene.node(id).span));
         let light_choice = lights.is_choice();
         if !light_choice {
             self.reasons.clear(Feature::LightChoice);

@@ -43,7 +43,7 @@ pub(crate) fn judge(subject: &Subject<'_>, judge: &mut Judge) {
                     view.surface(&mut rng, judge);
                 }
                 LightForm::Point => view.point(&mut rng, judge),
-                LightForm::Infinite => view.infinite(&mut rng, judge),
+                LightForm::Infinite | LightForm::Everywhere => view.infinite(&mut rng, judge),
             }
         });
     }

@@ -8,7 +8,8 @@ use luxel_sdk::kind::{Escaped, Light, LightForm, LightQuery, LightSample};
 use luxel_sdk::params::Emission;
 use luxel_sdk::sampling::{SPHERE_PDF, uniform_sphere};
 
-/// Even light from everywhere: an overcast world, or the white furnace that tests materials.
+/// Even light from everywhere: an overcast world, or the white furnace that tests materials. It is met by
+/// what surfaces scatter, and looked for only in scenes with media.
 ///
 /// ```scene
 /// light constant { spectrum = illuminant("D65"), radiance = 1 W/m^2/sr }
@@ -23,7 +24,7 @@ pub(crate) struct Constant {
 
 impl Light for Constant {
     fn form(&self) -> LightForm {
-        LightForm::Infinite
+        LightForm::Everywhere
     }
 
     fn sample(&self, query: &LightQuery) -> Option<LightSample> {

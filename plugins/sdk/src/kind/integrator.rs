@@ -22,7 +22,8 @@ impl Wants {
     pub const POSITION: Self = Self(0);
     /// Emission, and the density with which light sampling would have found it.
     pub const EMISSION: Self = Self(1);
-    /// One light sample with the material's answer to it.
+    /// One light sample with the material's answer to it: of those lights that are looked for, which
+    /// `LightForm::Everywhere` is in media alone. The others are met by chance, with a density of 0.
     pub const DIRECT: Self = Self(2);
     /// One scattering sample.
     pub const SCATTER: Self = Self(4);
@@ -131,7 +132,7 @@ pub struct Arrival {
     pub steps: u32,
     /// Emitted radiance towards `wo`.
     pub le: Spectrum,
-    /// Density with which light sampling at the last point would have found it, sr⁻¹.
+    /// Density with which light sampling at the last point would have found it, sr⁻¹; 0 if it could not.
     pub le_pdf: f32,
     /// Radiance of the media that the last ray flew through, dimmed by them: see [`Ask::add_glow`].
     pub glow: Spectrum,

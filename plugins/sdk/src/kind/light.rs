@@ -17,6 +17,9 @@ pub enum LightForm {
     Point,
     /// Light from far away, from directions that a ray may escape to: `sample` and `escaped`.
     Infinite,
+    /// The same, of about the same radiance in all directions: what scatters finds it at least as well
+    /// as who looks for it, so it is looked for in scenes with media alone.
+    Everywhere,
 }
 
 /// For which point light is looked for.

@@ -44,6 +44,7 @@ impl Light for RemoteLight {
             Some(0) => LightForm::Surface,
             Some(1) => LightForm::Point,
             Some(2) => LightForm::Infinite,
+            Some(3) => LightForm::Everywhere,
             _ => {
                 self.0.wrong("gave a form of light that is none");
                 LightForm::Point

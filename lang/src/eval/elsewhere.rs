@@ -103,26 +103,44 @@ const WORDS: [(&str, &str); 97] = [
     ("triangles", "indices"),
 ];
 
-/// What is one thing here and several elsewhere, or has another form: ours with how it is written, and
-/// their words.
-const FORMS: [(&str, &str, &[&str]); 9] = [
-    ("resolution", "resolution = (640, 480)", &["width", "height", "xresolution", "yresolution"]),
-    (
-        "size",
-        "center = (0, 0.5, 0) m, size = (2, 1, 1) m",
-        &["min", "max", "lower", "upper", "from", "to", "width", "height", "depth", "length"],
-    ),
-    (
-        "base",
-        "base = (0, 0, 0) m, axis = (0, 1, 0), height = 1 m",
-        &["from", "to", "start", "end", "bottom", "top", "p0", "p1", "p2"],
-    ),
-    ("v", "u = (1, 0, 0) m, v = (0, 0, 1) m", &["size", "width", "height", "length", "normal"]),
-    ("radius", "radius = 20 cm / 2", &["diameter", "d"]),
-    (
-        "look",
-        "look = look_at(from = (0, 1, 5) m, to = (0, 1, 0) m, up = (0, 1, 0))",
-        &[
+/// What is one thing here and several elsewhere, or has another form.
+pub(super) struct Form {
+    /// Our words.
+    pub(super) ours: &'static [&'static str],
+    /// How it is written.
+    pub(super) written: &'static str,
+    /// Their words.
+    theirs: &'static [&'static str],
+}
+
+const FORMS: [Form; 9] = [
+    Form {
+        ours: &["resolution"],
+        written: "resolution = (640, 480)",
+        theirs: &["width", "height", "xresolution", "yresolution"],
+    },
+    Form {
+        ours: &["size", "center"],
+        written: "center = (0, 0.5, 0) m, size = (2, 1, 1) m",
+        theirs: &[
+            "min", "max", "lower", "upper", "from", "to", "width", "height", "depth", "length",
+        ],
+    },
+    Form {
+        ours: &["base", "axis", "height"],
+        written: "base = (0, 0, 0) m, axis = (0, 1, 0), height = 1 m",
+        theirs: &["from", "to", "start", "end", "bottom", "top", "p0", "p1", "p2"],
+    },
+    Form {
+        ours: &["u", "v"],
+        written: "u = (1, 0, 0) m, v = (0, 0, 1) m",
+        theirs: &["size", "width", "height", "length", "normal"],
+    },
+    Form { ours: &["radius"], written: "radius = 20 cm / 2", theirs: &["diameter", "d"] },
+    Form {
+        ours: &["look"],
+        written: "look = look_at(from = (0, 1, 5) m, to = (0, 1, 0) m, up = (0, 1, 0))",
+        theirs: &[
             "position",
             "pos",
             "location",
@@ -137,21 +155,29 @@ const FORMS: [(&str, &str, &[&str]); 9] = [
             "direction",
             "up",
         ],
-    ),
-    ("transform", "transform = move((1, 0, 0) m)", &["translate", "translation", "move"]),
-    (
-        "material",
-        "material = material diffuse { reflectance = rgb.srgb(0.8, 0.4, 0.2) }",
-        &["albedo", "color", "colour", "diffuse", "reflectance", "rgb"],
-    ),
-    ("transform", "transform = rotate((0, 1, 0), 20 deg)", &["rotate", "rotation"]),
+    },
+    Form {
+        ours: &["transform"],
+        written: "transform = move((1, 0, 0) m)",
+        theirs: &["translate", "translation", "move"],
+    },
+    Form {
+        ours: &["material"],
+        written: "material = material diffuse { reflectance = rgb.srgb(0.8, 0.4, 0.2) }",
+        theirs: &["albedo", "color", "colour", "diffuse", "reflectance", "rgb"],
+    },
+    Form {
+        ours: &["transform"],
+        written: "transform = rotate((0, 1, 0), 20 deg)",
+        theirs: &["rotate", "rotation"],
+    },
 ];
 
-/// The known word that is meant by another renderer's, which wants more than that word, and how it is
+/// What is meant by another renderer's word, which wants more than one of the known words, and how it is
 /// written.
-pub(super) fn form(found: &str, known: &[&'static str]) -> Option<(&'static str, &'static str)> {
-    let of = FORMS.iter().find(|(ours, _, theirs)| theirs.contains(&found) && known.contains(ours));
-    of.map(|(ours, form, _)| (*ours, *form))
+pub(super) fn form(found: &str, known: &[&'static str]) -> Option<&'static Form> {
+    let is_known = |form: &Form| form.ours.iter().all(|ours| known.contains(ours));
+    FORMS.iter().find(|form| form.theirs.contains(&found) && is_known(form))
 }
 
 /// The known word that is meant: another's word for it, which is a guess, or the nearest.
@@ -169,12 +195,14 @@ mod tests {
     #[test]
     fn a_word_of_another_renderer_is_understood_where_ours_is_known() {
         let name = |found, known: &[&'static str]| meant(found, known).map(|near| near.name);
+        let ours = |found, known: &[&'static str]| form(found, known).map(|form| form.ours);
         assert_eq!(name("distant", &["point", "directional"]), Some("directional"));
         assert_eq!(name("irradiance", &["illuminance", "radiance"]), Some("illuminance"));
         assert_eq!(name("distant", &["point", "spot"]), None);
         assert_eq!(name("radus", &["center", "radius"]), Some("radius"));
-        assert_eq!(form("height", &["exposure", "resolution"]).map(|it| it.0), Some("resolution"));
-        assert_eq!(form("position", &["center", "transform"]), None);
+        assert_eq!(ours("height", &["exposure", "resolution"]), Some(&["resolution"][..]));
+        assert_eq!(ours("width", &["center", "u", "v"]), Some(&["u", "v"][..]));
+        assert_eq!(ours("position", &["center", "transform"]), None);
         assert_eq!(name("position", &["center", "transform"]), Some("center"));
     }
 }

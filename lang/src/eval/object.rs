@@ -11,7 +11,7 @@ use luxel_sdk::abi::Class;
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Param, Type};
 
-use super::elsewhere::{form, meant};
+use super::elsewhere::{self, form, meant};
 use super::env::Env;
 use super::exec::{Body, Place};
 use super::value::{FieldValue, Head, ObjectValue, Value, What};
@@ -237,7 +237,7 @@ impl Evaluator<'_> {
                     "materials" if class.kind == Kind::Importer => {
                         out.overrides = self.materials(field, &mut out.is_placed);
                     }
-                    _ => out.meant.push(self.unknown_param(class, field, fields)),
+                    _ => out.meant.extend(self.unknown_param(class, field, fields)),
                 }
                 continue;
             };
@@ -359,13 +359,14 @@ impl Evaluator<'_> {
         });
     }
 
-    /// Tells of a field that the class does not have; gives the parameter that was probably meant.
+    /// Tells of a field that the class does not have; gives the parameters that were probably meant, `None`
+    /// for any.
     pub(super) fn unknown_param(
         &mut self,
         class: &Class,
         field: &FieldValue,
         all: &[FieldValue],
-    ) -> Option<&'static str> {
+    ) -> Vec<Option<&'static str>> {
         let mut known: Vec<&'static str> =
             Registry::params(class).filter(|p| p.deprecated.is_empty()).map(|p| p.name).collect();
         if stands_somewhere(class.kind) {
@@ -377,29 +378,53 @@ impl Evaluator<'_> {
         self.unknown(field, &format!("{} {}", class.kind, class.name), &known, all)
     }
 
-    /// Tells of a name that is no parameter; gives the one that was probably meant. What is given
-    /// among `all` is not offered again.
+    /// Tells of a name that is no parameter; gives those that were probably meant. What is given
+    /// among `all` is not offered again, and what others among them also mean is told once.
     fn unknown(
         &mut self,
         field: &FieldValue,
         what: &str,
         known: &[&'static str],
         all: &[FieldValue],
-    ) -> Option<&'static str> {
+    ) -> Vec<Option<&'static str>> {
         let name = &field.name;
-        let message = format!("`{what}` has no parameter `{}`", name.text);
         let (form, near) = (form(&name.text, known), meant(&name.text, known));
-        let meant = form.map(|(ours, _)| ours).or(near.map(|near| near.name));
-        let is_given = |other: &&FieldValue| {
-            meant.is_some_and(|meant| *other.name.text == *meant)
-                && self.is_beside(other.name.span, name.span)
+        let meant: Vec<_> = match form {
+            Some(form) => form.ours.iter().copied().map(Some).collect(),
+            None => vec![near.map(|near| near.name)],
         };
-        let given = all.iter().find(is_given);
-        let found = Diagnostic::error("E0402", name.span, message);
-        let found = match (given, form) {
-            (Some(given), _) => found.label(given.name.span, "this one is given already"),
-            (None, Some((_, form))) => found.help(format!("it is written `{form}`")),
-            (None, None) => found.meant(name.span, near),
+        let is_beside = |other: &&FieldValue| {
+            other.name.span == name.span || self.is_beside(other.name.span, name.span)
+        };
+        let is_same = |other: &&FieldValue| {
+            let other = elsewhere::form(&other.name.text, known);
+            form.zip(other).is_some_and(|(form, other)| std::ptr::eq(form, other))
+        };
+        let same: Vec<&Name> =
+            all.iter().filter(is_same).filter(is_beside).map(|field| &field.name).collect();
+        if same.first().is_some_and(|first| first.span != name.span) {
+            return meant;
+        }
+        let names: Vec<_> = same.iter().map(|name| format!("`{}`", name.text)).collect();
+        let message = match &names[..] {
+            [] | [_] => format!("`{what}` has no parameter `{}`", name.text),
+            [several @ .., last] => {
+                format!("`{what}` has no parameters {} and {last}", several.join(", "))
+            }
+        };
+        let given = |ours: Option<&str>| {
+            let is_ours = |other: &&FieldValue| ours == Some(&*other.name.text);
+            all.iter().filter(is_ours).find(is_beside)
+        };
+        let all_given: Option<Vec<_>> = meant.iter().map(|ours| given(*ours)).collect();
+        let mut found = Diagnostic::error("E0402", name.span, message);
+        for other in same.iter().skip(1) {
+            found = found.label(other.span, "and this one");
+        }
+        let found = match (all_given.as_deref(), form) {
+            (Some([given, ..]), _) => found.label(given.name.span, "this one is given already"),
+            (_, Some(form)) => found.help(format!("it is written `{}`", form.written)),
+            (_, None) => found.meant(name.span, near),
         };
         self.tell(found.help(format!("known are {}", known.join(", "))));
         meant

@@ -185,7 +185,10 @@ impl Evaluator<'_> {
             Err(Unjoined::Zero) => self.poison("E0209", span, "division by zero"),
             Err(Unjoined::Exponent) => {
                 let message = "an exponent is a plain number, whole where the base has a unit";
-                self.poison("E0203", span, message)
+                let found = Diagnostic::error("E0203", span, message);
+                let found = self.with_base(found, span);
+                self.tell(found);
+                Value::Poison
             }
             Err(Unjoined::Infinite) => self.infinite(span),
             Err(Unjoined::Operator) => {

@@ -49,19 +49,57 @@ impl Evaluator<'_> {
         diagnostic
     }
 
-    /// Offers a part of a unit, if what is written is a number over one with that unit, which is wanted.
+    /// Offers parts of a unit, if what is written is a number over one with that unit, which is wanted, or a
+    /// vector of such.
     pub(super) fn with_part(
         &self,
         diagnostic: Diagnostic,
         span: Span,
         is_wanted: impl Fn(Dimension) -> bool,
     ) -> Diagnostic {
-        let Some((number, divisor, unit)) = quotient(self.written(span)) else { return diagnostic };
-        if !Unit::parse(unit).is_ok_and(|unit| is_wanted(unit.dimension)) {
+        let written = self.written(span);
+        let is_wanted = |unit: &str| Unit::parse(unit).is_ok_and(|unit| is_wanted(unit.dimension));
+        let part = |written| quotient(written).filter(|(.., unit)| is_wanted(unit));
+        let whole = |(number, divisor, unit)| format!("{number} {unit} / {divisor}");
+        if let Some((number, divisor, unit)) = part(written) {
+            let help =
+                format!("a unit belongs to the number before it: {number} / ({divisor} {unit})");
+            return diagnostic.help(help).guess(span, whole((number, divisor, unit)));
+        }
+        let items = written.strip_prefix('(').and_then(|it| it.strip_suffix(')'));
+        let Some(items) = items.filter(|items| !items.contains(['(', '[', '"', '\n'])) else {
+            return diagnostic;
+        };
+        let Some(first) = items.split(',').find_map(part) else { return diagnostic };
+        let (number, divisor, unit) = first;
+        let help = format!("a unit belongs to the number before it: {number} / ({divisor} {unit})");
+        let mended = items.split(',').map(|item| part(item).map_or(item.trim().to_owned(), whole));
+        let mended: Vec<_> = mended.collect();
+        diagnostic.help(help).guess(span, format!("({})", mended.join(", ")))
+    }
+}
+
+impl Evaluator<'_> {
+    /// Offers a power times a unit, if what is written is a power whose exponent has that unit: `10^-2 m`.
+    pub(super) fn with_base(&self, diagnostic: Diagnostic, span: Span) -> Diagnostic {
+        let written = self.written(span);
+        let of_unit = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_' | ' ');
+        let Some((base, exponent)) = written.split_once('^') else { return diagnostic };
+        let unit = exponent.trim_start_matches(of_unit);
+        let power = exponent[..exponent.len() - unit.len()].trim();
+        let are_numbers =
+            [base.trim(), power.trim_start_matches('-')].map(|it| parse_number(it.as_bytes()));
+        if are_numbers.iter().any(Option::is_none) || Unit::parse(unit).is_err() {
             return diagnostic;
         }
-        let help = format!("a unit belongs to the number before it: {number} / ({divisor} {unit})");
-        diagnostic.help(help).guess(span, format!("{number} {unit} / {divisor}"))
+        let help = "a unit belongs to the number before it, here the exponent";
+        let is_ten = base.trim() == "10" && !power.contains('.');
+        let mended = if is_ten {
+            format!("1e{power} {unit}")
+        } else {
+            format!("{}^{power} * 1 {unit}", base.trim())
+        };
+        diagnostic.help(help).guess(span, mended)
     }
 }
 

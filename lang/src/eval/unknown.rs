@@ -222,7 +222,24 @@ impl Resolver<'_> {
 
     /// A power, a turn or a unit as other languages write them.
     fn written_otherwise(&self, name: &Name) -> Option<Diagnostic> {
-        self.power(name.span).or_else(|| self.turn(name)).or_else(|| self.product(name))
+        let of_unit = || self.product(name).or_else(|| self.grouped_unit(name));
+        self.power(name.span).or_else(|| self.turn(name)).or_else(of_unit)
+    }
+
+    /// A unit whose parts stand in brackets: `15 W/(m^2*sr)`.
+    fn grouped_unit(&self, name: &Name) -> Option<Diagnostic> {
+        let start = name.span.range().start;
+        let before = self.text.get(..start)?.strip_suffix("/(")?;
+        let digits = before.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+        Unit::named(&before[digits.len()..])?;
+        let (inner, _) = self.text.get(start..)?.split_once(')')?;
+        let parts: Vec<_> = inner.split('*').map(str::trim).collect();
+        if !parts.iter().all(|part| Unit::parse(part).is_ok()) {
+            return None;
+        }
+        let all = Span::new(name.span.source, start - 2, start + inner.len() + 1);
+        let found = Diagnostic::error("E0204", all, "a unit has no brackets");
+        Some(found.fix(all, format!("/{}", parts.join("/"))))
     }
 
     /// A turn whose name says its axis: `rotate_y(20 deg)`.

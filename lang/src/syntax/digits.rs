@@ -12,7 +12,9 @@ impl Around<'_> {
         if let Some(found) = self.other_base() {
             return Some(found);
         }
-        let near = [self.current(), self.before(1)];
+        // Of `1e m` the letter was read as a unit.
+        let begun = self.before(2).filter(|t| t.text.ends_with(['e', 'E']));
+        let near = [self.current(), self.before(1), begun];
         let bad = near
             .into_iter()
             .flatten()

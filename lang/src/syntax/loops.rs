@@ -3,19 +3,34 @@
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, told};
-use super::lex::TokenKind;
+use super::lex::{TokenKind, tokens};
 
 /// Why the head of a loop near the place cannot be read, if it is another language's.
 pub(super) fn loops(around: &Around<'_>) -> Option<Diagnostic> {
     let first = around.at.saturating_sub(2);
     let starts = (first..=around.at).rev().filter(|i| around.begins(*i) && around.is_word(*i));
-    starts.filter(|i| around.word(i + 1) != "=").find_map(|start| {
-        endless(around, start)
-            .or_else(|| each(around, start))
-            .or_else(|| bracketed(around, start))
-            .or_else(|| over_nothing(around, start))
-            .or_else(|| given(around, start))
-    })
+    starts
+        .filter(|i| around.word(i + 1) != "=")
+        .find_map(|start| {
+            endless(around, start)
+                .or_else(|| each(around, start))
+                .or_else(|| bracketed(around, start))
+                .or_else(|| over_nothing(around, start))
+                .or_else(|| given(around, start))
+        })
+        .or_else(|| several(around))
+}
+
+/// `for x in xs, y in ys { … }`
+fn several(around: &Around<'_>) -> Option<Diagnostic> {
+    let comma = around.current().filter(|comma| comma.text == ",")?;
+    let start = (0..around.at).rev().find(|i| around.begins(*i) && *i < around.at)?;
+    // A comma ends what was read, not what was meant.
+    let mut rest = tokens(around.text, comma.end()..around.text.len());
+    let is_next = rest.nth(1).is_some_and(|word| word.text == "in");
+    let found = told(around.span(comma), "a loop runs over one range or list");
+    let help = "loops stand in one another: `for x in 0..3 { for y in 0..3 { … } }`";
+    (around.word(start) == "for" && is_next).then(|| found.help(help))
 }
 
 /// `while true { … }`

@@ -2,7 +2,9 @@
 //! read.
 
 mod agree;
+mod amounts;
 mod around;
+mod calls;
 mod borrowed;
 mod build;
 #[cfg(any(test, feature = "fuzz"))]

@@ -3,7 +3,9 @@
 use luxel_core::diag::{Diagnostic, Span};
 use luxel_sdk::params::Unit;
 
+use super::amounts::amount;
 use super::around::{Around, Place, is_category, told};
+use super::calls::call;
 use super::defined::stem;
 use super::lex::{Token, TokenKind};
 use super::peers::is_pbrt;
@@ -27,6 +29,9 @@ pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| quoted_name(around))
         .or_else(|| suffixed(around))
         .or_else(|| parted_unit(around))
+        .or_else(|| amount(around))
+        .or_else(|| call(around))
+        .or_else(|| bare_choice(around))
         .or_else(|| signed(around))
         .or_else(|| commented_unit(around))
         .or_else(|| unquoted_path(around))
@@ -211,6 +216,36 @@ fn parted_at(around: &Around<'_>, i: usize) -> Option<Diagnostic> {
     let gap = Span::new(around.source, first.end(), second.start);
     Some(Diagnostic::error("E0204", both, "a unit is one word").guess(gap, ""))
 }
+
+/// `if a then 1 m else 2 m` and `if (a) (1 m) else (2 m)`
+fn bare_choice(around: &Around<'_>) -> Option<Diagnostic> {
+    let back = around.at.saturating_sub(LINE)..=around.at;
+    let start = back.rev().find(|i| around.word(*i) == "if")?;
+    let is_on_line = |i: &usize| !around.tokens[*i].first_on_line;
+    let rest = || (start + 1..around.tokens.len()).take_while(is_on_line);
+    let is_bare = rest().all(|i| around.word(i) != "{");
+    let then = rest().find(|i| around.word(*i) == "then");
+    let otherwise = rest().find(|i| around.word(*i) == "else");
+    let found = told(around.span(&around.tokens[then.or(otherwise)?]), BRACES);
+    let found = found.help(super::wrapped::CHOICE);
+    let Some((then, otherwise)) = then.zip(otherwise).filter(|_| is_bare) else {
+        return is_bare.then_some(found);
+    };
+    let ends = |i: &usize| matches!(around.word(*i), "," | ";" | "}" | ")" | "]");
+    let end = rest().skip_while(|i| *i <= otherwise).find(ends);
+    let last = end.or(rest().last().map(|last| last + 1))? - 1;
+    let between = |from: usize, to: usize| {
+        around.text[around.tokens[from].end()..around.tokens[to].start].trim()
+    };
+    let all = around.span(&around.tokens[then]).to(around.span(&around.tokens[last]));
+    let given = &around.text[around.tokens[otherwise].end()..around.tokens[last].end()];
+    let mended = format!("{{ {} }} else {{ {} }}", between(then, otherwise), given.trim());
+    Some(if given.contains('(') { found } else { found.guess(all, mended) })
+}
+
+/// Tokens of a choice on a line that are looked at.
+const LINE: usize = 32;
+const BRACES: &str = "what a choice gives stands in braces";
 
 /// `+3` and `+/- 3`
 fn signed(around: &Around<'_>) -> Option<Diagnostic> {

@@ -47,10 +47,14 @@ pub(super) fn choice(around: &Around<'_>) -> Option<usize> {
     })
 }
 
+/// How a choice is written.
+pub(super) const CHOICE: &str =
+    "a choice is written `if x == 1 { … } else if x == 2 { … } else { … }`";
+
 fn chosen(around: &Around<'_>) -> Option<Diagnostic> {
     let word = &around.tokens[choice(around)?];
     let found = told(around.span(word), format!("there is no `{}`", word.text));
-    Some(found.help("a choice is written `if x == 1 { … } else if x == 2 { … } else { … }`"))
+    Some(found.help(CHOICE))
 }
 
 /// `material.diffuse { … }`

@@ -239,6 +239,13 @@ impl Evaluator<'_> {
             self.tell(found);
             return Value::Poison;
         }
+        let n_wanted = builtin.args.iter().filter(|arg| !arg.ends_with('?')).count();
+        if let Run::Color(_) = builtin.run
+            && let Some(found) = self.bracketed(&builtin.usage(), n_wanted, &given)
+        {
+            self.tell(found);
+            return Value::Poison;
+        }
         let n_mistakes = self.mistakes();
         let n_unnamed = given.iter().filter(|given| given.name.is_none()).count();
         let args = self.arrange(builtin, given, span);

@@ -19,6 +19,28 @@ pub(super) fn unbracketed(given: &[Given]) -> Option<Diagnostic> {
 }
 
 impl Evaluator<'_> {
+    /// `rgb.srgb((1, 0, 0))`: one vector of what a colour is made of.
+    pub(super) fn bracketed(
+        &self,
+        usage: &str,
+        n_wanted: usize,
+        given: &[Given],
+    ) -> Option<Diagnostic> {
+        let [Given { name: None, value: Value::Numbers(numbers), span }] = given else {
+            return None;
+        };
+        let found =
+            Diagnostic::error("E0402", *span, "the numbers of a colour stand by themselves");
+        let found = found.help(format!("it is called as `{usage}`"));
+        let written = self.written(*span);
+        let inner = written.strip_prefix(['(', '[']).and_then(|it| it.strip_suffix([')', ']']));
+        let found = match inner {
+            Some(inner) if numbers.data.len() == n_wanted => found.fix(*span, inner.trim()),
+            _ => found,
+        };
+        (n_wanted > 1).then_some(found)
+    }
+
     /// `look_at((0, 1, 0), (0, 1, 5) m, (0, 0, 0) m)`: what is up before what has a place.
     pub(super) fn up_first(&self, given: &[Given]) -> Option<Diagnostic> {
         let measure = |given: &Given| match &given.value {

@@ -71,7 +71,7 @@ impl Feature {
             Self::OpenSurfaces => "no surface is only the boundary of a medium",
             Self::Nested => "no refracting shape overlaps another one",
             Self::Motion => "nothing moves while the shutter is open",
-            Self::LightChoice => "there is one light at most, in one piece",
+            Self::LightChoice => "one light at most is looked for, in one piece",
             Self::Layers => "nothing is recorded beside colour",
         }
     }

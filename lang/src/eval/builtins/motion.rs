@@ -4,7 +4,6 @@ use luxel_core::diag::Span;
 use luxel_core::scene::{Key, Pose, Step};
 use luxel_sdk::params::Dimension;
 
-use super::transform::direction;
 use super::{Call, Evaluator, Value};
 use crate::syntax::Form;
 
@@ -81,13 +80,9 @@ impl Evaluator<'_> {
 
     /// `spin(axis, rate)`.
     pub(super) fn spin(&mut self, call: &Call<'_>) -> Option<Pose> {
-        let axis = self.vector_arg(call, 0);
+        let axis = self.axis(call, 0);
         let rate = self.number_arg(call, 1, Dimension::ANGULAR_SPEED);
-        let ((axis, _, span), rate) = (axis?, rate?);
-        let Some(axis) = direction(axis.into()) else {
-            self.poison("E0412", span, "the axis of a rotation has no direction");
-            return None;
-        };
+        let (axis, rate) = (axis?, rate?);
         Some(Pose::of(Step::Spin { axis, rate }))
     }
 }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DMat4, DVec3};
-use luxel_core::diag::Span;
+use luxel_core::diag::{Diagnostic, Span};
 use luxel_core::scene::Pose;
 use luxel_sdk::params::{Dimension, Look};
 
@@ -32,7 +32,7 @@ const JOINED: u64 = 2;
 const VIEWS: RangeInclusive<f64> = 1e-150..=1e150;
 
 /// A vector made unit, whatever its length; `None` without a direction.
-pub(super) fn direction(v: DVec3) -> Option<DVec3> {
+fn direction(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     let scaled = || (largest > 0.0 && v.is_finite()).then(|| (v / largest).normalize());
     v.try_normalize().or_else(scaled)
@@ -57,15 +57,25 @@ impl Evaluator<'_> {
     }
 
     fn rotate(&mut self, call: &Call<'_>) -> Option<DAffine3> {
-        let axis = self.vector_arg(call, 0);
+        let axis = self.axis(call, 0);
         let angle = self.number_arg(call, 1, Dimension::ANGLE);
-        let ((axis, _, span), angle) = (axis?, angle?);
-        if let Some(axis) = direction(DVec3::from_array(axis)) {
-            Some(DAffine3::from_axis_angle(axis, angle))
-        } else {
-            self.poison("E0412", span, "the axis of a rotation has no direction");
-            None
+        Some(DAffine3::from_axis_angle(axis?, angle?))
+    }
+
+    /// The axis of a rotation, of any length.
+    pub(super) fn axis(&mut self, call: &Call<'_>, i: usize) -> Option<DVec3> {
+        let (axis, dimension, span) = self.vector_arg(call, i)?;
+        if dimension == Dimension::ANGLE {
+            let found = Diagnostic::error("E0202", span, "an axis is a direction, not angles");
+            let help = "an angle about each axis is a turn each: `[rotate((1, 0, 0), 10 deg), …]`";
+            self.tell(found.help(help));
+            return None;
         }
+        let axis = direction(axis.into());
+        if axis.is_none() {
+            self.poison("E0412", span, "the axis of a rotation has no direction");
+        }
+        axis
     }
 
     fn scale(&mut self, call: &Call<'_>) -> Option<DAffine3> {

@@ -20,6 +20,8 @@ use crate::syntax::{Name, Object};
 
 /// Bytes between two parameters of one object that are looked through.
 const BESIDE: usize = 1 << 12;
+/// Fields before and behind one that are told with it.
+const NEIGHBOURS: usize = 8;
 
 /// What the fields of an object came to.
 struct Taken {
@@ -116,7 +118,7 @@ impl Evaluator<'_> {
     pub(super) fn group_fields(&mut self, fields: &[FieldValue]) -> (Pose, Option<NodeId>) {
         let (mut pose, mut material) = (Pose::IDENTITY, None);
         self.given_twice(fields.iter().map(|field| &field.name));
-        for field in fields {
+        for (i, field) in fields.iter().enumerate() {
             match &*field.name.text {
                 "transform" => {
                     pose = self.transform(&field.value, field.span).unwrap_or_default();
@@ -124,7 +126,7 @@ impl Evaluator<'_> {
                 "material" => material = self.node_of(field, Kind::Material),
                 _ => {
                     let known = ["transform", "material"];
-                    let _ = self.unknown(field, "a group or placement", &known, fields);
+                    let _ = self.unknown((fields, i), "a group or placement", &known);
                 }
             }
         }
@@ -226,7 +228,7 @@ impl Evaluator<'_> {
         if self.given_twice(fields.iter().map(|field| &field.name)) {
             out.meant.push(None);
         }
-        for field in fields {
+        for (i, field) in fields.iter().enumerate() {
             let Some(param) = Registry::params(class).find(|p| p.name == &*field.name.text) else {
                 match &*field.name.text {
                     "transform" if stands_somewhere(class.kind) => {
@@ -237,7 +239,7 @@ impl Evaluator<'_> {
                     "materials" if class.kind == Kind::Importer => {
                         out.overrides = self.materials(field, &mut out.is_placed);
                     }
-                    _ => out.meant.extend(self.unknown_param(class, field, fields)),
+                    _ => out.meant.extend(self.unknown_param(class, fields, i)),
                 }
                 continue;
             };
@@ -359,13 +361,13 @@ impl Evaluator<'_> {
         });
     }
 
-    /// Tells of a field that the class does not have; gives the parameters that were probably meant, `None`
-    /// for any.
+    /// Tells of a field, by its number, that the class does not have; gives the parameters that were
+    /// probably meant, `None` for any.
     pub(super) fn unknown_param(
         &mut self,
         class: &Class,
-        field: &FieldValue,
         all: &[FieldValue],
+        i: usize,
     ) -> Vec<Option<&'static str>> {
         let mut known: Vec<&'static str> =
             Registry::params(class).filter(|p| p.deprecated.is_empty()).map(|p| p.name).collect();
@@ -375,36 +377,35 @@ impl Evaluator<'_> {
         if class.kind == Kind::Importer {
             known.push("materials");
         }
-        self.unknown(field, &format!("{} {}", class.kind, class.name), &known, all)
+        self.unknown((all, i), &format!("{} {}", class.kind, class.name), &known)
     }
 
-    /// Tells of a name that is no parameter; gives those that were probably meant. What is given
-    /// among `all` is not offered again, and what others among them also mean is told once.
+    /// Tells of the name of a field among others that is no parameter; gives those that were probably
+    /// meant. What is given is not offered again, and what neighbours also mean is told once.
     fn unknown(
         &mut self,
-        field: &FieldValue,
+        (all, i): (&[FieldValue], usize),
         what: &str,
         known: &[&'static str],
-        all: &[FieldValue],
     ) -> Vec<Option<&'static str>> {
-        let name = &field.name;
+        let name = &all[i].name;
         let (form, near) = (form(&name.text, known), meant(&name.text, known));
         let meant: Vec<_> = match form {
             Some(form) => form.ours.iter().copied().map(Some).collect(),
             None => vec![near.map(|near| near.name)],
         };
-        let is_beside = |other: &&FieldValue| {
-            other.name.span == name.span || self.is_beside(other.name.span, name.span)
-        };
+        let is_beside = |other: &&FieldValue| self.is_beside(other.name.span, name.span);
         let is_same = |other: &&FieldValue| {
             let other = elsewhere::form(&other.name.text, known);
             form.zip(other).is_some_and(|(form, other)| std::ptr::eq(form, other))
         };
-        let same: Vec<&Name> =
-            all.iter().filter(is_same).filter(is_beside).map(|field| &field.name).collect();
-        if same.first().is_some_and(|first| first.span != name.span) {
+        let before = &all[i.saturating_sub(NEIGHBOURS)..i];
+        if before.iter().rev().filter(is_same).any(|other| is_beside(&other)) {
             return meant;
         }
+        let after = &all[i + 1..all.len().min(i + 1 + NEIGHBOURS)];
+        let others: Vec<_> = after.iter().filter(is_same).filter(is_beside).collect();
+        let same: Vec<&Name> = [&all[i]].into_iter().chain(others).map(|it| &it.name).collect();
         let names: Vec<_> = same.iter().map(|name| format!("`{}`", name.text)).collect();
         let message = match &names[..] {
             [] | [_] => format!("`{what}` has no parameter `{}`", name.text),

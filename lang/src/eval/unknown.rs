@@ -17,6 +17,8 @@ const LOOKED_AT: usize = 30_000;
 
 /// Bytes behind a name that are looked at for the end of its call.
 const CALL: usize = 1 << 10;
+/// Bytes of a unit in brackets.
+const UNIT: usize = 64;
 /// Bytes of a function's name that may have lost its bracket.
 const FUNCTION: usize = 64;
 
@@ -232,7 +234,8 @@ impl Resolver<'_> {
         let before = self.text.get(..start)?.strip_suffix("/(")?;
         let digits = before.trim_end_matches(|c: char| c.is_ascii_alphabetic());
         Unit::named(&before[digits.len()..])?;
-        let (inner, _) = self.text.get(start..)?.split_once(')')?;
+        let rest = self.text.get(start..)?;
+        let inner = &rest[..rest.bytes().take(UNIT).position(|byte| byte == b')')?];
         let parts: Vec<_> = inner.split('*').map(str::trim).collect();
         if !parts.iter().all(|part| Unit::parse(part).is_ok()) {
             return None;

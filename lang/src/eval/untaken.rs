@@ -56,9 +56,9 @@ impl Evaluator<'_> {
         let Some(class) = self.class_of(object) else { return };
         let fields = fields(object).map(|field| valued(field, Value::Poison, &env.file));
         let fields: Vec<_> = fields.collect();
-        for field in &fields {
+        for (i, field) in fields.iter().enumerate() {
             if !has_param(&class, &field.name.text) {
-                self.unknown_param(&class, field, &fields);
+                self.unknown_param(&class, &fields, i);
             }
         }
     }

@@ -2,11 +2,14 @@
 
 use luxel_core::diag::{Diagnostic, Span};
 
-use super::around::{Around, stands_behind, told};
+use super::around::{Around, told};
 use super::lex::TokenKind;
 
 /// Functions of other languages that what stands behind them is moved by.
 const MOVING: [&str; 6] = ["translate", "move", "rotate", "scale", "mirror", "multmatrix"];
+
+/// Bytes before a call that are looked at for its function.
+const NEAR: usize = 1 << 15;
 
 /// Why the place cannot be read, if it is of such a call.
 pub(super) fn call(around: &Around<'_>) -> Option<Diagnostic> {
@@ -48,9 +51,14 @@ fn bare(around: &Around<'_>) -> Option<Diagnostic> {
     is_call.then(|| found.guess(all, format!("({given})")))
 }
 
-/// Whether a function of the name at a place is defined somewhere.
+/// Whether a function of the name at a place is defined before, not far from it.
 fn is_function(around: &Around<'_>, name: usize) -> bool {
-    stands_behind(around.word(name), "fn", around.text.as_bytes())
+    let start = around.tokens[name].start;
+    let text = &around.text.as_bytes()[start.saturating_sub(NEAR)..start];
+    let head = format!("fn {}", around.word(name));
+    let is_of_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+    memchr::memmem::find_iter(text, &head)
+        .any(|at| text.get(at + head.len()).is_none_or(|byte| !is_of_word(byte)))
 }
 
 /// `translate((0, 1, 0) m) sphere { … }`

@@ -228,7 +228,8 @@ fn bare_choice(around: &Around<'_>) -> Option<Diagnostic> {
     let otherwise = rest().find(|i| around.word(*i) == "else");
     let found = told(around.span(&around.tokens[then.or(otherwise)?]), BRACES);
     let found = found.help(super::wrapped::CHOICE);
-    let Some((then, otherwise)) = then.zip(otherwise).filter(|_| is_bare) else {
+    let ordered = then.zip(otherwise).filter(|(then, otherwise)| is_bare && then < otherwise);
+    let Some((then, otherwise)) = ordered else {
         return is_bare.then_some(found);
     };
     let ends = |i: &usize| matches!(around.word(*i), "," | ";" | "}" | ")" | "]");

@@ -50,6 +50,7 @@ fn a_floor_under_an_even_sky_has_no_noise() {
     // Every direction that the floor scatters to shows the same sky: each sample is the albedo.
     for (_, pixel) in film(&[FLOOR, SKY, SEEING], 16).pixels() {
         let (mean, deviation) = (pixel.mean, pixel.variance().max_element().sqrt());
+        // The throughput, the sky and the way to linear sRGB round once each for each of its sums and products.
         let rounding = 8.0 * f64::from(f32::EPSILON);
         assert!((mean - 0.5).abs().max_element() <= rounding, "{mean}");
         assert!(deviation <= rounding, "{deviation}");
@@ -62,6 +63,7 @@ fn looking_for_the_other_lights_alone_gives_the_same_picture() {
         let with = |integrator, samples| film(&[parts, &[integrator]].concat(), samples).mean();
         let ((a, da), (b, db)) = (with(SEEING, 1024), with(BLIND, 8192));
         let noise = da.y.hypot(db.y);
+        // By chance once in 16,000 pictures; a light that counts twice or not at all is tens of them off.
         assert!((a.y - b.y).abs() <= 4.0 * noise, "{parts:?}: {a} {b}");
         assert!(noise <= 0.005 * b.y, "{parts:?}: {noise} is too noisy to tell");
     }

@@ -113,6 +113,7 @@ pub(super) struct Form {
     theirs: &'static [&'static str],
 }
 
+/// Every one that is told; of several the first counts whose words are known.
 const FORMS: [Form; 9] = [
     Form {
         ours: &["resolution"],

@@ -59,33 +59,25 @@ impl Evaluator<'_> {
     ) -> Diagnostic {
         let written = self.written(span);
         let is_wanted = |unit: &str| Unit::parse(unit).is_ok_and(|unit| is_wanted(unit.dimension));
-        let part = |written| quotient(written).filter(|(.., unit)| is_wanted(unit));
-        let whole = |(number, divisor, unit)| format!("{number} {unit} / {divisor}");
-        if let Some((number, divisor, unit)) = part(written) {
-            let help =
-                format!("a unit belongs to the number before it: {number} / ({divisor} {unit})");
-            return diagnostic.help(help).guess(span, whole((number, divisor, unit)));
-        }
-        let items = written.strip_prefix('(').and_then(|it| it.strip_suffix(')'));
-        let Some(items) = items.filter(|items| !items.contains(['(', '[', '"', '\n'])) else {
-            return diagnostic;
-        };
-        let Some(first) = items.split(',').find_map(part) else { return diagnostic };
-        let (number, divisor, unit) = first;
+        let part = |item| quotient(item).filter(|(.., unit)| is_wanted(unit));
+        let inner = written.strip_prefix('(').and_then(|it| it.strip_suffix(')'));
+        let inner = inner.filter(|inner| !inner.contains(['(', '[', '"', '\n']));
+        let items = || inner.unwrap_or(written).split(',');
+        let Some((number, divisor, unit)) = items().find_map(part) else { return diagnostic };
         let help = format!("a unit belongs to the number before it: {number} / ({divisor} {unit})");
-        let mended = items.split(',').map(|item| part(item).map_or(item.trim().to_owned(), whole));
-        let mended: Vec<_> = mended.collect();
-        diagnostic.help(help).guess(span, format!("({})", mended.join(", ")))
+        let whole = |(number, divisor, unit)| format!("{number} {unit} / {divisor}");
+        let mended = items().map(|item| part(item).map_or(item.trim().to_owned(), whole));
+        let mended = mended.collect::<Vec<_>>().join(", ");
+        let mended = if inner.is_some() { format!("({mended})") } else { mended };
+        diagnostic.help(help).guess(span, mended)
     }
-}
 
-impl Evaluator<'_> {
     /// Offers a power times a unit, if what is written is a power whose exponent has that unit: `10^-2 m`.
     pub(super) fn with_base(&self, diagnostic: Diagnostic, span: Span) -> Diagnostic {
         let written = self.written(span);
-        let of_unit = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_' | ' ');
+        let of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | '_' | ' ');
         let Some((base, exponent)) = written.split_once('^') else { return diagnostic };
-        let unit = exponent.trim_start_matches(of_unit);
+        let unit = exponent.trim_start_matches(of_number);
         let power = exponent[..exponent.len() - unit.len()].trim();
         let are_numbers =
             [base.trim(), power.trim_start_matches('-')].map(|it| parse_number(it.as_bytes()));

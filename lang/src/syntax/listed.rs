@@ -26,8 +26,7 @@ fn comprehension(around: &Around<'_>) -> Option<Diagnostic> {
     let Some(inside) = inside.filter(|inside| inside.len() <= SHORT) else {
         return Some(found.help("it is written `[for x in 0..4 => x * 2]`"));
     };
-    let is_again = |i: usize| around.word(i) == "for";
-    if (around.at + 1..around.tokens.len()).take_while(|i| around.word(*i) != "]").any(is_again) {
+    if around.held(open).filter(|token| token.text == "for").count() > 1 {
         let help = "a list for each is written `[for x in 0..4 => [for y in 0..4 => x * y]]`";
         return Some(found.help(help));
     }

@@ -24,7 +24,7 @@ pub(super) fn loops(around: &Around<'_>) -> Option<Diagnostic> {
 /// `for x in xs, y in ys { … }`
 fn several(around: &Around<'_>) -> Option<Diagnostic> {
     let comma = around.current().filter(|comma| comma.text == ",")?;
-    let start = (0..around.at).rev().find(|i| around.begins(*i) && *i < around.at)?;
+    let start = (0..around.at).rev().find(|i| around.begins(*i))?;
     // A comma ends what was read, not what was meant.
     let mut rest = tokens(around.text, comma.end()..around.text.len());
     let is_next = rest.nth(1).is_some_and(|word| word.text == "in");

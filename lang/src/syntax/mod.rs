@@ -4,9 +4,9 @@
 mod agree;
 mod amounts;
 mod around;
-mod calls;
 mod borrowed;
 mod build;
+mod calls;
 #[cfg(any(test, feature = "fuzz"))]
 pub(crate) mod check;
 mod closing;

@@ -9,6 +9,7 @@ use super::calls::call;
 use super::defined::stem;
 use super::lex::{Token, TokenKind};
 use super::peers::is_pbrt;
+use super::wrapped::CHOICE;
 use crate::words::RESERVED;
 
 /// Words with which other languages end something.
@@ -217,36 +218,37 @@ fn parted_at(around: &Around<'_>, i: usize) -> Option<Diagnostic> {
     Some(Diagnostic::error("E0204", both, "a unit is one word").guess(gap, ""))
 }
 
+/// Tokens before the place among which a choice begins.
+const CHOICE_HEAD: usize = 32;
+
 /// `if a then 1 m else 2 m` and `if (a) (1 m) else (2 m)`
 fn bare_choice(around: &Around<'_>) -> Option<Diagnostic> {
-    let back = around.at.saturating_sub(LINE)..=around.at;
+    let back = around.at.saturating_sub(CHOICE_HEAD)..=around.at;
     let start = back.rev().find(|i| around.word(*i) == "if")?;
     let is_on_line = |i: &usize| !around.tokens[*i].first_on_line;
     let rest = || (start + 1..around.tokens.len()).take_while(is_on_line);
-    let is_bare = rest().all(|i| around.word(i) != "{");
-    let then = rest().find(|i| around.word(*i) == "then");
-    let otherwise = rest().find(|i| around.word(*i) == "else");
-    let found = told(around.span(&around.tokens[then.or(otherwise)?]), BRACES);
-    let found = found.help(super::wrapped::CHOICE);
-    let ordered = then.zip(otherwise).filter(|(then, otherwise)| is_bare && then < otherwise);
-    let Some((then, otherwise)) = ordered else {
-        return is_bare.then_some(found);
-    };
-    let ends = |i: &usize| matches!(around.word(*i), "," | ";" | "}" | ")" | "]");
-    let end = rest().skip_while(|i| *i <= otherwise).find(ends);
-    let last = end.or(rest().last().map(|last| last + 1))? - 1;
-    let between = |from: usize, to: usize| {
-        around.text[around.tokens[from].end()..around.tokens[to].start].trim()
-    };
-    let all = around.span(&around.tokens[then]).to(around.span(&around.tokens[last]));
-    let given = &around.text[around.tokens[otherwise].end()..around.tokens[last].end()];
-    let mended = format!("{{ {} }} else {{ {} }}", between(then, otherwise), given.trim());
-    Some(if given.contains('(') { found } else { found.guess(all, mended) })
+    if rest().any(|i| around.word(i) == "{") {
+        return None;
+    }
+    let [then, otherwise] = ["then", "else"].map(|word| rest().find(|i| around.word(*i) == word));
+    let word = around.span(&around.tokens[then.or(otherwise)?]);
+    let found = told(word, "what a choice gives stands in braces").help(CHOICE);
+    let mend = then.zip(otherwise).and_then(|(then, otherwise)| {
+        let ends = |i: &usize| matches!(around.word(*i), "," | ";" | "}" | ")" | "]");
+        let last = rest().skip_while(|i| *i <= otherwise).take_while(|i| !ends(i)).last()?;
+        let [then, otherwise, last] = [then, otherwise, last].map(|i| &around.tokens[i]);
+        let one = around.text.get(then.end()..otherwise.start)?.trim();
+        let other = around.text[otherwise.end()..last.end()].trim();
+        // A bracket that opens there may hold what seems to be the end.
+        let is_plain = !other.contains(['(', '[']);
+        let all = around.span(then).to(around.span(last));
+        is_plain.then(|| (all, format!("{{ {one} }} else {{ {other} }}")))
+    });
+    Some(match mend {
+        Some((all, mended)) => found.guess(all, mended),
+        None => found,
+    })
 }
-
-/// Tokens of a choice on a line that are looked at.
-const LINE: usize = 32;
-const BRACES: &str = "what a choice gives stands in braces";
 
 /// `+3` and `+/- 3`
 fn signed(around: &Around<'_>) -> Option<Diagnostic> {

@@ -80,7 +80,7 @@ impl Evaluator<'_> {
 
     /// `spin(axis, rate)`.
     pub(super) fn spin(&mut self, call: &Call<'_>) -> Option<Pose> {
-        let axis = self.axis(call, 0);
+        let axis = self.axis(call);
         let rate = self.number_arg(call, 1, Dimension::ANGULAR_SPEED);
         let (axis, rate) = (axis?, rate?);
         Some(Pose::of(Step::Spin { axis, rate }))

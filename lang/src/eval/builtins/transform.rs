@@ -57,14 +57,14 @@ impl Evaluator<'_> {
     }
 
     fn rotate(&mut self, call: &Call<'_>) -> Option<DAffine3> {
-        let axis = self.axis(call, 0);
+        let axis = self.axis(call);
         let angle = self.number_arg(call, 1, Dimension::ANGLE);
         Some(DAffine3::from_axis_angle(axis?, angle?))
     }
 
-    /// The axis of a rotation, of any length.
-    pub(super) fn axis(&mut self, call: &Call<'_>, i: usize) -> Option<DVec3> {
-        let (axis, dimension, span) = self.vector_arg(call, i)?;
+    /// The axis of a rotation, which is given first, of any length.
+    pub(super) fn axis(&mut self, call: &Call<'_>) -> Option<DVec3> {
+        let (axis, dimension, span) = self.vector_arg(call, 0)?;
         if dimension == Dimension::ANGLE {
             let found = Diagnostic::error("E0202", span, "an axis is a direction, not angles");
             let help = "an angle about each axis is a turn each: `[rotate((1, 0, 0), 10 deg), …]`";

@@ -222,6 +222,7 @@ impl Scanner<'_> {
                         return self.out;
                     }
                 }
+                b'#' if self.begins_table_otherwise() => {}
                 b'(' | b'[' | b'{' => {
                     if !self.open_bracket(byte) {
                         return self.out;

@@ -1,8 +1,11 @@
 //! Mistakes of which the cause is told already, or of which another says more.
 
+mod calls;
+mod closed;
 mod lines;
 mod names;
 mod nearby;
+mod uses;
 
 use std::collections::BTreeSet;
 
@@ -15,10 +18,21 @@ use crate::words::BEFORE_NAMES;
 /// Bytes before a place that are looked at: of a line before a bracket that closes nothing, and of a call.
 const LOOKED_AT: usize = 1 << 10;
 
+/// Takes out what is said only because of something else that is told.
+pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+    unread(diagnostics, sources);
+    names::sift(diagnostics, sources);
+    nearby::sift(diagnostics, sources);
+    lines::sift(diagnostics, sources);
+    calls::sift(diagnostics);
+    closed::sift(diagnostics, sources);
+    uses::sift(diagnostics, sources);
+}
+
 /// Takes out what is said of the value of an expression in which something cannot be read, as of a call that
 /// lacks what stands behind a missing bracket; of names that nothing stands for, where a definition lacks its
 /// own; and of two mistakes of one place the one that says less.
-pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+fn unread(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let is_cause = |found: &&Diagnostic| found.is_error() && found.code.starts_with("E00");
     let causes = diagnostics.iter().filter(is_cause);
     let of = |found: &Diagnostic| {
@@ -80,9 +94,6 @@ pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
                 || found.code == "E0113" && bodies.iter().any(|body| lies_in(span, body))
         })
     });
-    names::sift(diagnostics, sources);
-    nearby::sift(diagnostics, sources);
-    lines::sift(diagnostics, sources);
 }
 
 /// Where it is not known which values stand in which brackets: between one and another that closes it, on the
@@ -139,10 +150,18 @@ fn is_given_in(found: &Diagnostic, doubt: Span, sources: &Sources) -> bool {
     leaves_brace(head) && names.any(is_given)
 }
 
-/// From a name of two words to where its value may begin: the second may be a name by itself.
+/// From a name of two words to where its value may begin: the second may be a name by itself. And what stands on
+/// its line behind a value that is missing: `radius = ,3 height = 1 m`.
 fn joined(found: &Diagnostic, sources: &Sources) -> Option<Span> {
-    let at = found.span().filter(|_| found.code == "E0023" && found.message == ONE_WORD)?;
+    let at = found.span()?;
     let rest = sources.text(at.source).get(at.range().end..)?;
+    if found.code == "E0015" {
+        let line = rest.bytes().take(LOOKED_AT).take_while(|byte| *byte != b'\n').count();
+        return Some(Span::new(at.source, at.range().end, at.range().end + line));
+    }
+    if found.code != "E0023" || found.message != ONE_WORD {
+        return None;
+    }
     let value = rest.find(|c: char| c != ' ').filter(|equals| rest[*equals..].starts_with('='))?;
     Some(Span::new(at.source, at.range().start, at.range().end + value + 1))
 }
@@ -379,7 +398,7 @@ mod tests {
     fn of_two_slips_on_a_line_both_are_told_where_their_mends_are_sure() {
         assert_eq!(codes("let a = (1 2, 3 4)"), ["E0014", "E0014", "E0409"]);
         assert_eq!(codes("let a = (1.5. 2, 3)"), ["E0014", "E0409"]);
-        assert_eq!(codes("let a = { b = 1. c = 2 }"), ["E0016", "E0409"]);
+        assert_eq!(codes("let a = { b = 1. c = 2 }"), ["E0014", "E0409"]);
         assert_eq!(codes("let a = max(1, min1, 2))"), ["E0101", "E0409"]);
     }
 

@@ -9,8 +9,8 @@ use memchr::memmem;
 use crate::syntax::{Token, TokenKind, tokens};
 use crate::words::BEFORE_NAMES;
 
-use super::line_of;
 use super::nearby::is_unread;
+use super::{lacks_name, line_of};
 
 /// Words beside something that cannot be read that may be what was to be defined there, on each side.
 const WORDS: usize = 3;
@@ -34,7 +34,8 @@ type Word<'a> = (SourceId, &'a str, u32);
 /// Takes out what is told of names that stand beside something that cannot be read: their definition may be
 /// what stands there. Of other names each is told once, with the places where it stands.
 pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
-    let is_cause = |found: &&Diagnostic| is_unread(found) && found.sure().is_none();
+    let is_cause =
+        |found: &&Diagnostic| found.code == "E0001" || is_unread(found) && found.sure().is_none();
     let causes = diagnostics.iter().filter(is_cause).filter_map(Diagnostic::span);
     let defined = |at| words_beside(at, sources).chain(parameters(at, sources));
     let unread: BTreeSet<Word<'_>> = causes.flat_map(defined).collect();
@@ -45,7 +46,15 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             places.entry(name).or_default().extend(found.span());
         }
     }
+    let is_nameless = diagnostics.iter().any(|found| lacks_name(found, sources));
     diagnostics.retain_mut(|found| {
+        if is_of_builtin(found) {
+            let at = found.span().map(|at| (at.source, sources.text(at.source).get(at.range())));
+            let is_one = |(source, word): (_, Option<&str>)| {
+                unread.iter().any(|one| one.0 == source && Some(one.1) == word)
+            };
+            return !is_nameless && !at.is_some_and(is_one);
+        }
         let Some(name) = name(found, sources) else { return true };
         if found.code == WORD {
             return told_once(found, name, &places[&name], sources);
@@ -55,6 +64,12 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         }
         told_once(found, name, &places[&name], sources)
     });
+}
+
+/// Whether a function stands where a value is wanted: one that every scene has, where a definition of the same name
+/// cannot be read.
+fn is_of_builtin(found: &Diagnostic) -> bool {
+    found.code == "E0214" && found.sure().is_none() && found.message.ends_with("not a function")
 }
 
 /// Where an object may be given a label or a name, only what fits its uses is offered: a name where something
@@ -178,7 +193,8 @@ fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
     let first = all.len().saturating_sub(WORDS);
     let is_end = |end: &usize| text.is_char_boundary(*end);
     let end = (start + BYTES..text.len()).find(is_end).unwrap_or(text.len());
-    all.extend(tokens(text, start..end).take(WORDS + 1));
+    let words = tokens(text, start..end).filter(|token| token.kind != TokenKind::Doc);
+    all.extend(words.take(WORDS + 1));
     let defines = |i: usize| all.get(i).is_some_and(|token| BEFORE_NAMES.contains(&token.text));
     let may_be = |i: &usize| {
         let token = &all[*i];

@@ -1,10 +1,13 @@
 //! Mistakes that stand so near to one another that they are one.
 
-use luxel_core::diag::{Diagnostic, Grade, Sources, Span};
+use luxel_core::diag::{Diagnostic, Fix, Grade, Sources, Span};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Unit;
 
-use crate::syntax::tokens;
+use super::line_of;
+use crate::eval::BARE;
+use crate::syntax::{QUOTED, tokens};
+use crate::words::BEFORE_NAMES;
 
 /// Tokens that stand between two mistakes of one slip at most.
 const TOKENS: usize = 3;
@@ -38,6 +41,18 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             }
             let out = if opens(&diagnostics[*i]) { *j } else { *i };
             is_out[out] = true;
+            continue;
+        }
+        if is_swallowed(&diagnostics[*i], &diagnostics[*j], sources) {
+            is_out[*i] = true;
+            continue;
+        }
+        if is_within(&diagnostics[*i], &diagnostics[*j], sources) {
+            is_out[*j] = true;
+            if diagnostics[*i].code == "E0008" && is_alike(*before, *span, sources) {
+                let again = Fix { span: *span, replacement: String::new(), grade: Grade::Guess };
+                diagnostics[*i].fixes = vec![again];
+            }
             continue;
         }
         let n = tokens_between(*before, *span, sources);
@@ -82,7 +97,9 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         // `radius = 6 material m = gold`
         ("E0402", "E0204") => n == 0 && is_unit(),
         // `material = radius`, and on the next line `gold = 1 m`
-        ("E0402", "E0101") | ("E0023", "E0001") => n == 0 && found.sure().is_none(),
+        ("E0402", "E0101") => n == 0 && found.sure().is_none(),
+        // `scene let`, and below it `1 gold = metal("Au")`
+        ("E0023", "E0001") => n <= 1 && found.sure().is_none(),
         // `material diffuse { { reflectance = 1 }`
         ("E0403", "E0008") => n <= 1,
         // `wall((1, 0, 0) (0, 0, 1), c)`
@@ -90,17 +107,29 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         // `chance(3 b)`, and `shape: sphere { radius = 1 m }` in a file
         ("E0403", "E0204") | ("E0017", "E0113") => true,
         // `[for for i in 0..3 => i]`, `(2 *q a, 3)`, `[0, 1. 2]`, `f(1. i)`, `rgb.srgb rgb.srgb(1, 1, 1)`
-        ("E0014", "E0019" | "E0016") | ("E0204", "E0016") | ("E0114", "E0014" | "E0214") => n == 0,
+        // `group box "a" {`, and `move(x) cmshape`, below which `cone {` stands
+        ("E0014", "E0019" | "E0016")
+        | ("E0204", "E0016")
+        | ("E0114", "E0014" | "E0214")
+        | ("E0401", "E0401" | "E0204") => n == 0,
         ("E0014", "E0101") => n == 0 && cause.sure().is_none(),
+        // `spectrum = scale`, and on the next line `plain = glow`; and `place box ball {`
+        ("E0402", "E0214") | ("E0401", "E0101") => n == 0 && is_unsure,
         ("E0101", "E0012" | "E0013" | "E0014" | "E0015" | "E0016" | "E0017" | "E0023") => {
             n == 0 && is_unsure
         }
         ("E0401", "E0019" | "E0023") => found.sure().is_none(),
+        // `"flat" = smooth`
+        ("E0214" | "E0416", "E0023") if cause.message == QUOTED => true,
+        // `ring(30 ,mm i)`, and `let = ball wide(1 m)`
+        ("E0201", "E0012") | ("E0114", "E0019") => n <= 2,
         // `f[3)`
         ("E0214", "E0009") => is_unsure && touches(found, cause),
         // Vectors in which several numbers have a unit already, `(30 cm - 45) cm`, and `wall(-275, 275, 0)`.
         ("E0203", "E0203") => {
-            found.sure().is_none() && (found.message == cause.message || holds(found, cause))
+            let is_of_unit = n <= 1 && cause.message.starts_with(BARE);
+            let is_one = found.message == cause.message || is_of_unit || holds(found, cause);
+            found.sure().is_none() && is_one
         }
         ("E0214", "E0214") => found.sure().is_none() && found.message == cause.message,
         // `reach(bk ,)`
@@ -110,6 +139,54 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         }
         _ => false,
     }
+}
+
+/// Whether what cannot be read is a part of something before it that cannot be read either: a line below a
+/// definition that is indented further, a brace in one that does not close, or what stands where such a one may end.
+fn is_within(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> bool {
+    let (Some(before), Some(at)) = (cause.span(), found.span()) else { return false };
+    if !is_unread(found) || found.sure().is_some() || before.source != at.source {
+        return false;
+    }
+    let text = sources.text(at.source);
+    if cause.code == "E0008" && found.code == "E0023" {
+        let end = cause.labels.get(1).map(|label| label.span);
+        let is_end = end.and_then(|end| tokens_between(end, at, sources)).is_some_and(|n| n <= 1);
+        return is_end
+            || is_alike(before, at, sources) && line_of(before, sources) == line_of(at, sources);
+    }
+    let is_opened_there = found.labels.get(1).is_some_and(|open| open.span == before);
+    if found.code == "E0009" && is_unread(cause) && is_opened_there {
+        return true;
+    }
+    let is_below = || {
+        let between = text.get(before.range().end..line_of(at, sources)).unwrap_or_default();
+        let is_next =
+            !between.is_empty() && between.len() <= LINE && !between.trim_end().contains('\n');
+        let line = text.get(line_of(before, sources)..).unwrap_or_default().trim_start();
+        let defines = BEFORE_NAMES.iter().any(|word| line.starts_with(word));
+        is_next && defines && indent(text, before, sources) < indent(text, at, sources)
+    };
+    is_unread(cause) && cause.sure().is_none() && is_below()
+}
+
+/// Whether the same is written in two places.
+fn is_alike(one: Span, other: Span, sources: &Sources) -> bool {
+    let written = |at: Span| sources.text(at.source).get(at.range());
+    written(one) == written(other)
+}
+
+/// Whether the bracket that closes an open one stands in a text behind it on its line that does not end.
+fn is_swallowed(open: &Diagnostic, text: &Diagnostic, sources: &Sources) -> bool {
+    let (Some(before), Some(at)) = (open.span(), text.span()) else { return false };
+    let is_line = before.source == at.source && line_of(before, sources) == line_of(at, sources);
+    (open.code, text.code) == ("E0008", "E0005") && is_line
+}
+
+/// Bytes before the first word of the line of a place.
+fn indent(text: &str, at: Span, sources: &Sources) -> usize {
+    let line = text.get(line_of(at, sources)..).unwrap_or_default();
+    line.len() - line.trim_start_matches([' ', '\t']).len()
 }
 
 /// Whether what is told holds something else that is.
@@ -126,7 +203,10 @@ fn touches(found: &Diagnostic, cause: &Diagnostic) -> bool {
 
 /// Whether a mistake tells by itself what a bracket behind it closes: of a name, only where its bracket is.
 fn opens(cause: &Diagnostic) -> bool {
-    cause.code != "E0101" || cause.fixes.iter().any(|fix| fix.replacement.contains(['(', '[']))
+    let is_misread = matches!(cause.code, "E0101" | "E0014");
+    !is_misread
+        || cause.code == "E0101"
+            && cause.fixes.iter().any(|fix| fix.replacement.contains(['(', '[']))
 }
 
 /// What a name may be which begins as one that is surely meant and lacks the bracket that another closes: `lean(b`
@@ -159,6 +239,8 @@ fn closes_what(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> boo
             let is_open = cause.sure().is_none() || call(cause, found, sources).is_some();
             is_open && !bracket.starts_with('}') && is_next()
         }
+        // `if a 2 m } else { 1 m }`
+        "E0014" => bracket == "}" && is_line(),
         "E0023" => cause.sure().is_none() && (bracket.starts_with('}') || is_line()),
         _ => false,
     }

@@ -46,7 +46,7 @@ impl Evaluator<'_> {
                     return self.poison("E0214", span, message);
                 };
                 match self.bind(function, args, span, env) {
-                    Some(inner) => self.eval(body, &inner),
+                    Some(inner) => self.within(span, |evaluator| evaluator.eval(body, &inner)),
                     None => Value::Poison,
                 }
             }
@@ -69,6 +69,14 @@ impl Evaluator<'_> {
                 Value::Poison
             }
         }
+    }
+
+    /// Evaluates the body of a function that is called there.
+    pub(super) fn within<T>(&mut self, call: Span, run: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = self.called.replace(call);
+        let result = run(self);
+        self.called = outer;
+        result
     }
 
     /// The environment of a function's body; `None` after a mistake.

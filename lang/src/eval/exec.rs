@@ -282,7 +282,9 @@ impl Evaluator<'_> {
                 self.unseen.block = true;
                 return;
             };
-            self.block(block, &inner, &mut Body::new(Place::File));
+            self.within(call.span, |evaluator| {
+                evaluator.block(block, &inner, &mut Body::new(Place::File));
+            });
             return;
         }
         let value = self.apply(&function, args, call.span, env);

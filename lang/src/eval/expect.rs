@@ -5,10 +5,10 @@ use luxel_core::film::Rect;
 use luxel_core::scene::{Area, Claim, Color, Expectation, Expected};
 use luxel_core::stage::Film;
 
-use super::Evaluator;
 use super::env::Env;
 use super::exec::Place;
 use super::value::Value;
+use super::{Evaluator, OUTSIDE};
 use crate::syntax::{Arg, Expect, Expr, Field, Name};
 
 /// What can be expected, and how it is written.
@@ -232,7 +232,7 @@ impl Evaluator<'_> {
         };
         let found: Vec<_> = self.scene.expectations.iter().filter_map(outside).collect();
         for (span, area) in found {
-            let message = format!("{area} is outside the picture");
+            let message = format!("{area} {OUTSIDE}");
             let help =
                 format!("the picture has {} x {} pixels, counted from (0, 0)", size.x, size.y);
             self.tell(Diagnostic::error("E0603", span, message).help(help));

@@ -5,11 +5,11 @@ use std::rc::Rc;
 use luxel_core::diag::{Diagnostic, Span, near};
 use luxel_sdk::params::{Dimension, Unit};
 
-use super::Evaluator;
 use super::arithmetic::measured;
 use super::builtins;
 use super::env::Env;
 use super::value::{FieldValue, Mixed, Range, Value};
+use super::{BARE, Evaluator};
 use crate::syntax::{Comp, Expr, ExprNode, Field, Form, Name};
 
 impl Evaluator<'_> {
@@ -215,8 +215,7 @@ impl Evaluator<'_> {
             }
             Value::Poison => Value::Poison,
             other => {
-                let message =
-                    format!("a unit after brackets wants bare numbers, not {}", other.describe());
+                let message = format!("{BARE}, not {}", other.describe());
                 self.poison("E0203", span, message)
             }
         }

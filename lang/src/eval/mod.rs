@@ -132,6 +132,8 @@ struct Evaluator<'a> {
     chain: Vec<(PathBuf, Option<Span>)>,
     /// The loops that are running.
     loops: Vec<Span>,
+    /// The call whose body is being evaluated, the innermost.
+    called: Option<Span>,
     labels: Labels,
     /// The names of the classes that objects have.
     classes: BTreeMap<&'static str, Arc<str>>,
@@ -155,6 +157,15 @@ struct Evaluator<'a> {
     /// What each statement of a large root file came to, if that is wanted.
     record: Option<again::Record>,
 }
+
+/// What is said of a call in whose body a mistake was found.
+pub(crate) const CALLED: &str = "in this call";
+
+/// What is said of pixels that another picture may have.
+pub(crate) const OUTSIDE: &str = "is outside the picture";
+
+/// What is said of a unit after brackets in which values have units of their own.
+pub(crate) const BARE: &str = "a unit after brackets wants bare numbers";
 
 /// Steps that a mistake counts that had been told: it is put into words all the same.
 const TOLD: u64 = 50;
@@ -206,6 +217,7 @@ impl<'a> Evaluator<'a> {
             spectra: BTreeMap::new(),
             chain: vec![],
             loops: vec![],
+            called: None,
             labels: Labels::default(),
             classes: BTreeMap::new(),
             last_label: Arc::default(),
@@ -238,9 +250,12 @@ impl<'a> Evaluator<'a> {
         self.files.read(path)
     }
 
-    /// Keeps a diagnostic; too many end the evaluation.
-    fn tell(&mut self, diagnostic: Diagnostic) {
+    /// Keeps a diagnostic, with the call in whose body it was found; too many end the evaluation.
+    fn tell(&mut self, mut diagnostic: Diagnostic) {
         let is_error = diagnostic.is_error();
+        if let Some(call) = self.called {
+            diagnostic = diagnostic.label(call, CALLED);
+        }
         if !self.sink.push(diagnostic) {
             self.repeats += usize::from(is_error);
             self.steps = self.steps.saturating_add(TOLD);

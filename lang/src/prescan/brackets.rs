@@ -3,7 +3,7 @@
 use luxel_sdk::kind::Kind;
 use memchr::{memchr, memrchr};
 
-use super::{Before, Fault, LOOKED_AT, Scanner, closing};
+use super::{Before, Fault, LOOKED_AT, Scanner, closing, table};
 
 /// Bytes of a line before a bracket that are looked at, and behind one that was taken for one of another kind.
 const FAR: usize = 1 << 12;
@@ -36,7 +36,22 @@ pub(crate) fn opens_object(bytes: &[u8], open: usize) -> bool {
     kind < head.len() && before.len() < kind && Kind::of_word(category).is_some()
 }
 
+/// Bytes of a table that are looked at where it begins with a bracket that begins none.
+const SMALL: usize = 1 << 12;
+
 impl Scanner<'_> {
+    /// Passes a small table that begins with another bracket: `#{ 1 2 ]`.
+    pub(super) fn begins_table_otherwise(&mut self) -> bool {
+        let near = &self.bytes[self.at..self.bytes.len().min(self.at + SMALL)];
+        let is_other = self.next_is(b'{') || self.next_is(b'(');
+        let Some(length) = is_other.then(|| table(near)).flatten() else { return false };
+        let (open, at) = (self.at + 1, self.at + length - 1);
+        self.out.faults.push(Fault::Mismatch { open, at, left: 0 });
+        self.at += length;
+        (self.before, self.newline, self.doc) = (Before::Operand, false, None);
+        true
+    }
+
     fn rest_of_line(&self) -> &[u8] {
         let rest = &self.bytes[self.at + 1..];
         let rest = &rest[..rest.len().min(LOOKED_AT)];

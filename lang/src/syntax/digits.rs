@@ -29,15 +29,20 @@ impl Around<'_> {
         })
     }
 
-    /// `(0.1. 0.2)`
+    /// `(0.1. 0.2)`, `(0. -2)`, `{ radius = 3. height = 1 m }`
     fn dotted(&self, bad: &Token<'_>) -> Option<Diagnostic> {
         let at = self.tokens.iter().position(|token| token.start == bad.start)?;
-        let next = self.tokens.get(at + 1).filter(|next| next.begins_operand());
-        let is_inside = !self.open.is_empty() && next.is_some_and(|next| !next.first_on_line);
-        let whole = bad.text.strip_suffix('.').filter(|whole| is_inside && whole.contains('.'))?;
+        let next = self.tokens.get(at + 1).filter(|next| !next.first_on_line)?;
+        let whole = bad.text.strip_suffix('.').filter(|_| !self.open.is_empty())?;
         number::parse(whole.as_bytes())?;
         let dot = Span::new(self.source, bad.end() - 1, bad.end());
-        Some(comma_for(dot))
+        let found = comma_for(dot);
+        let is_field = next.kind == TokenKind::Word && self.word(at + 2) == "=";
+        if whole.contains('.') || is_field {
+            return next.begins_operand().then(|| found.fix(dot, ","));
+        }
+        let is_apart = matches!(next.text, "-" | "(" | "[") && next.start > bad.end();
+        is_apart.then(|| found.guess(dot, ","))
     }
 
     /// `center = (0, 1, 0) m. radius = 1 m`
@@ -45,7 +50,7 @@ impl Around<'_> {
         let (dot, end) = (self.before(1).filter(|dot| dot.text == ".")?, self.before(2)?);
         let is_field = self.is_word(self.at) && self.word(self.at + 1) == "=";
         let is_it = is_field && end.ends_operand() && self.inner() == Place::Fields;
-        is_it.then(|| comma_for(self.span(dot)))
+        is_it.then(|| comma_for(self.span(dot)).fix(self.span(dot), ","))
     }
 
     /// `0. 75` and `0. .75`
@@ -87,5 +92,5 @@ impl Around<'_> {
 
 /// A dot where a comma is meant.
 fn comma_for(dot: Span) -> Diagnostic {
-    Diagnostic::error("E0014", dot, "a comma is missing: a `.` stands in its place").fix(dot, ",")
+    Diagnostic::error("E0014", dot, "a comma is missing: a `.` stands in its place")
 }

@@ -44,7 +44,14 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
                 Some((end..end, closing(*open)))
             })
         }
-        Fault::Mismatch { open, at, left: 0 } if is_call(text, *open..*at) => {
+        Fault::Mismatch { open, .. }
+            if text[..*open].ends_with('#') && !text[*open..].starts_with('[') =>
+        {
+            Some((*open..open + 1, "["))
+        }
+        Fault::Mismatch { open, at, left: 0 }
+            if is_call(text, *open..*at) || is_among_vectors(text, *open..*at) =>
+        {
             Some((*open..open + 1, "("))
         }
         Fault::Mismatch { open, at, left: 0 }
@@ -63,6 +70,16 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
         }
         _ => None,
     }
+}
+
+/// Whether what two brackets hold, of which the second is round, stands next to a vector: `(1, 0, 0), [0, 1, 0)`.
+fn is_among_vectors(text: &str, brackets: Range<usize>) -> bool {
+    let comma =
+        |text: &str| text.trim_end().strip_suffix(',').map(|it| it.trim_end().ends_with(')'));
+    let next = text[brackets.end + 1..].trim_start().strip_prefix(',').unwrap_or_default();
+    let is_beside =
+        comma(&text[..brackets.start]) == Some(true) || next.trim_start().starts_with('(');
+    text[brackets.end..].starts_with(')') && is_beside
 }
 
 /// Whether `else` stands right before or behind two brackets: what they hold is one of two values or blocks.
@@ -307,8 +324,8 @@ pub(super) fn told(
         }
         Fault::String { at } => {
             let message = "a string ends on its line with `\"`";
-            let end = span(at.end..at.end);
-            Diagnostic::error("E0005", span(at.clone()), message).guess(end, "\"")
+            let end = unopened(text, at.start).unwrap_or(at.end);
+            Diagnostic::error("E0005", span(at.clone()), message).guess(span(end..end), "\"")
         }
         Fault::Comment { at } => {
             let message = "this comment is never closed by `*/`";
@@ -322,4 +339,16 @@ pub(super) fn told(
             )
         }
     }
+}
+
+/// Where a text most likely begins whose end was taken for its beginning, on a line with one that does not end:
+/// `illuminant(D65")`.
+fn unopened(text: &str, end: usize) -> Option<usize> {
+    let line = text[..end].rsplit('\n').next()?;
+    let close = line.find('"')?;
+    let is_written = |c: char| c.is_ascii_alphanumeric() || "_-./".contains(c);
+    let before = line[..close].trim_end_matches(is_written);
+    let begins = before.ends_with(['(', '[', ',', '=', ' ']) && before.len() < close;
+    let ends = line[close + 1..].starts_with([')', ']', ',', ' ']);
+    (begins && ends).then(|| end - line.len() + before.len())
 }

@@ -186,6 +186,20 @@ fn two_words(around: &Around<'_>) -> Option<Diagnostic> {
     Some(told(around.span(first).to(around.span(second)), ONE_WORD).guess(gap, "_"))
 }
 
+/// `let room group = { … }`
+fn value_before_sign(
+    around: &Around<'_>,
+    name: &Token<'_>,
+    value: &Token<'_>,
+) -> Option<Diagnostic> {
+    let sign = around.tokens.get(around.at + 1).filter(|sign| sign.text == "=")?;
+    let is_object = value.text == "group" && around.word(around.at + 2) == "{";
+    let message = format!("`=` stands between `{}` and its value", name.text);
+    let gap = Span::new(around.source, name.end(), sign.end());
+    let found = around.error("E0012", value, message);
+    is_object.then(|| found.fix(gap, format!(" = {}", value.text)))
+}
+
 /// `let x int = 3`, `let go ld = 3`, `param x = 3`, `import "a.scene"`
 fn definition(around: &Around<'_>) -> Option<Diagnostic> {
     let (last, before) = (around.before(1)?, around.before(2));
@@ -201,6 +215,9 @@ fn definition(around: &Around<'_>) -> Option<Diagnostic> {
             if is_object {
                 let message = format!("`=` is missing between `{}` and its value", last.text);
                 return Some(around.error("E0012", second, message).fix(gap, " = "));
+            }
+            if let Some(found) = value_before_sign(around, last, second) {
+                return Some(found);
             }
             let is_type = |word: &Token<'_>| type_names::names().any(|known| known == word.text);
             if is_type(second) {

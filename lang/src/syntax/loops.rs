@@ -19,6 +19,22 @@ pub(super) fn loops(around: &Around<'_>) -> Option<Diagnostic> {
                 .or_else(|| given(around, start))
         })
         .or_else(|| several(around))
+        .or_else(|| nameless(around))
+}
+
+/// `for in xs { … }` and `[for in xs => 1]`
+fn nameless(around: &Around<'_>) -> Option<Diagnostic> {
+    let first = around.at.saturating_sub(2);
+    let start = (first..=around.at).find(|i| around.word(*i) == "for")?;
+    let (word, next) = (&around.tokens[start], around.tokens.get(start + 1)?);
+    let value = around.tokens.get(start + 2)?;
+    let goes_on = value.begins_operand() && !value.first_on_line && value.text != "in";
+    if next.text != "in" || !goes_on {
+        return None;
+    }
+    let both = around.span(word).to(around.span(next));
+    let found = told(both, "a name is missing between `for` and `in`");
+    Some(found.help("of each turn it is the value: `for i in 0..10`"))
 }
 
 /// `for x in xs, y in ys { … }`

@@ -62,6 +62,7 @@ pub(crate) use parse::{
     read_at, read_head, read_piece,
 };
 pub(crate) use paths::path_around;
+pub(crate) use statement::QUOTED;
 pub(crate) use strays::EARLY;
 pub(crate) use strays::{STRAYS_LOOKED_AT, looked_at_again};
 pub(crate) use tree::{

@@ -18,6 +18,9 @@ const ENDING: [&str; 8] = ["break", "continue", "done", "end", "endif", "fi", "p
 /// Words that other languages put before a statement.
 const MODIFIERS: [&str; 7] = ["async", "export", "extern", "inline", "private", "pub", "public"];
 
+/// What is told of a text for the name of a parameter.
+pub(crate) const QUOTED: &str = "the name of a parameter has no quotes";
+
 /// Why the place cannot be read, if such a statement stands there.
 pub(super) fn statement(around: &Around<'_>) -> Option<Diagnostic> {
     placed_call(around)
@@ -184,7 +187,7 @@ fn quoted_name(around: &Around<'_>) -> Option<Diagnostic> {
         return None;
     }
     let both = around.span(text).to(around.span(sign));
-    let found = told(around.span(text), "the name of a parameter has no quotes");
+    let found = told(around.span(text), QUOTED);
     Some(found.fix(both, format!("{name} =")))
 }
 

@@ -36,9 +36,8 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let displaced = displaced(diagnostics, sources);
     diagnostics.retain(|found| {
         let Some(at) = found.span() else { return true };
-        // `fn f a: vec3, b: vec3) = a`
-        let is_unsure = found.sure().is_none() || found.code == "E0017";
-        let is_judged = found.is_error() && is_unsure;
+        // What is surely `=` for `:` is none in `fn f a: vec3, b: vec3) = a`.
+        let is_judged = found.is_error() && (found.sure().is_none() || found.code == "E0017");
         let first = lines.get(&(at.source, line_of(at, sources)));
         let is_beside =
             !matches!(found.code, "E0101" | "E0403") && first.is_some_and(|first| *first != at);

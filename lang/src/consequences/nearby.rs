@@ -201,12 +201,14 @@ fn touches(found: &Diagnostic, cause: &Diagnostic) -> bool {
     cause.labels.iter().any(|label| Some((label.span.source, label.span.start)) == end)
 }
 
-/// Whether a mistake tells by itself what a bracket behind it closes: of a name, only where its bracket is.
+/// Whether a mistake tells by itself what a bracket behind it closes: of a name, only where its
+/// bracket is, and of a comma never.
 fn opens(cause: &Diagnostic) -> bool {
-    let is_misread = matches!(cause.code, "E0101" | "E0014");
-    !is_misread
-        || cause.code == "E0101"
-            && cause.fixes.iter().any(|fix| fix.replacement.contains(['(', '[']))
+    match cause.code {
+        "E0101" => cause.fixes.iter().any(|fix| fix.replacement.contains(['(', '['])),
+        "E0014" => false,
+        _ => true,
+    }
 }
 
 /// What a name may be which begins as one that is surely meant and lacks the bracket that another closes: `lean(b`

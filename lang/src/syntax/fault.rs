@@ -74,11 +74,9 @@ pub(super) fn mend(text: &str, fault: &Fault) -> Option<(Range<usize>, &'static 
 
 /// Whether what two brackets hold, of which the second is round, stands next to a vector: `(1, 0, 0), [0, 1, 0)`.
 fn is_among_vectors(text: &str, brackets: Range<usize>) -> bool {
-    let comma =
-        |text: &str| text.trim_end().strip_suffix(',').map(|it| it.trim_end().ends_with(')'));
-    let next = text[brackets.end + 1..].trim_start().strip_prefix(',').unwrap_or_default();
-    let is_beside =
-        comma(&text[..brackets.start]) == Some(true) || next.trim_start().starts_with('(');
+    let before = text[..brackets.start].trim_end().strip_suffix(',').unwrap_or_default();
+    let behind = text[brackets.end + 1..].trim_start().strip_prefix(',').unwrap_or_default();
+    let is_beside = before.trim_end().ends_with(')') || behind.trim_start().starts_with('(');
     text[brackets.end..].starts_with(')') && is_beside
 }
 

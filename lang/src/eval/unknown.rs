@@ -124,6 +124,8 @@ impl Resolver<'_> {
             found = found.help("a unit stands in one piece behind its number: `3 W/m^2/sr`");
         } else if shown == "group" {
             found = found.help("a group is written `group { … }`");
+        } else if let Some(before) = self.before_call(place) {
+            found = found.help(format!("no `{shown}` stands before a call")).guess(before, "");
         } else if Kind::of_word(shown).is_some() {
             found = found.help(format!("an object is written `{shown} NAME {{ … }}`"));
         } else if shown == "rgba" {
@@ -194,6 +196,17 @@ impl Resolver<'_> {
         let is_call = rest.get(name.range().len()..).is_some_and(|rest| rest.starts_with('('));
         let before = before.trim_end_matches([' ', '\t']);
         is_call && (before.is_empty() || before.ends_with(['\n', ';']))
+    }
+
+    /// A category before a call, with the blanks behind it: `material paint(0.5)`.
+    fn before_call(&self, category: Span) -> Option<Span> {
+        let (start, end) = (category.range().start, category.range().end);
+        Kind::of_word(self.text.get(start..end)?)?;
+        let rest = self.text.get(end..)?;
+        let call = rest.trim_start_matches([' ', '\t']);
+        let behind = call.trim_start_matches(|c: char| c.is_ascii_alphanumeric() || c == '_');
+        let is_call = behind.len() < call.len() && behind.starts_with('(');
+        is_call.then(|| Span::new(category.source, start, end + rest.len() - call.len()))
     }
 
     /// Whether a name stands behind `place`.

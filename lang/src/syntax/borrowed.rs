@@ -21,7 +21,8 @@ pub(super) fn borrowed(around: &Around<'_>) -> Option<Diagnostic> {
         .or_else(|| behind_brace(around))
 }
 
-/// With braces for the round or square brackets that open with a token, behind what stands before them.
+/// With braces for the round or square brackets that open with a token, behind what stands before them, and with
+/// `=` for the `:` in them.
 pub(super) fn in_braces(
     around: &Around<'_>,
     found: Diagnostic,
@@ -32,10 +33,24 @@ pub(super) fn in_braces(
     let close = around.closing(open).filter(|close| is_open && *close < around.tokens.len());
     let Some(close) = close.map(|close| &around.tokens[close]) else { return found };
     let all = Span::new(around.source, around.tokens[before].end(), close.end());
-    let inner = around.text[around.tokens[open].end()..close.start].trim();
+    let mut inner = String::new();
+    let mut start = around.tokens[open].end();
+    for colon in around.held(open).filter(|token| token.text == ":") {
+        inner += around.text[start..colon.start].trim_end();
+        inner += " =";
+        start = colon.end();
+    }
+    inner += &around.text[start..close.start];
+    let inner = inner.trim();
     let blank = if inner.is_empty() { "" } else { " " };
     let braces = format!(" {{{blank}{inner}{blank}}}");
     if braces.len() <= SHORT { found.guess(all, braces) } else { found }
+}
+
+/// Whether the bracket that opens with a token holds values without their names.
+pub(super) fn is_nameless(around: &Around<'_>, open: usize) -> bool {
+    let mut held = around.held(open).peekable();
+    held.peek().is_some() && held.all(|token| !matches!(token.text, "=" | ":"))
 }
 
 /// `group [ shape sphere { } ]`

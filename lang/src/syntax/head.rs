@@ -2,8 +2,8 @@
 
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
-use super::around::{Around, Place, SHORT, is_category, stands_behind, told};
-use super::borrowed::in_braces;
+use super::around::{Around, Place, SHORT, is_category, stands_behind, stands_nowhere, told};
+use super::borrowed::{in_braces, is_nameless};
 use super::defined::{is_type, of_list};
 use super::lex::{Token, TokenKind};
 use super::statement;
@@ -278,26 +278,60 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
         return None;
     }
     let on_line = next.filter(|t| !t.first_on_line && t.text != "}");
+    let is_given = start > 0 && around.word(start - 1) == "=";
+    if let Some(found) = defined(around, head, on_line, is_given) {
+        return Some(found);
+    }
     if let Some(next) = on_line {
         let found = around.error("E0023", next, BRACES);
+        if matches!(next.text, "(" | "[") && is_nameless(around, end) {
+            let (category, class) = (head[0].text, head[1].text);
+            let help = format!("each has its name: `{category} {class} {{ NAME = … }}`");
+            return Some(found.help(help));
+        }
         return Some(in_braces(around, found, end - 1, end));
     }
     let last = head.last()?;
-    // `material = material clay`, where `clay` is defined
-    let given = Span::new(around.source, head[0].start, last.start);
-    if start > 0 && around.word(start - 1) == "=" && is_defined(around, last.text) {
-        let message = format!("`{}` names what is given", last.text);
-        return Some(around.error("E0023", &head[0], message).guess(given, ""));
-    }
     let gap = Span::new(around.source, last.end(), last.end());
     Some(around.error("E0023", last, BRACES).guess(gap, " {}"))
 }
 
+/// A category before a name that is defined above: `shape stud(1 m)`, `shape ball`, `material = material clay`.
+/// What is `next` stands on its line; `is_given` if a parameter or name is given it.
+fn defined(
+    around: &Around<'_>,
+    head: &[Token<'_>],
+    next: Option<&Token<'_>>,
+    is_given: bool,
+) -> Option<Diagnostic> {
+    let [category, name] = head else { return None };
+    let is_called = next.is_some_and(|open| open.text == "(");
+    let is_function = || stands_behind(name.text, "fn", above(around));
+    let (what, instead) = if is_called && is_function() {
+        (format!("is a function: no `{}` stands before its call", category.text), "")
+    } else if next.is_some() || !is_defined(around, name.text) {
+        return None;
+    } else if is_given {
+        ("names what is given".into(), "")
+    } else if stands_nowhere(category.text) {
+        return None;
+    } else {
+        ("is defined above, and put here by `place`".into(), "place ")
+    };
+    let before = Span::new(around.source, category.start, name.start);
+    let found = around.error("E0023", category, format!("`{}` {what}", name.text));
+    Some(found.guess(before, instead))
+}
+
+/// The text not far above the statement.
+fn above<'a>(around: &'a Around<'_>) -> &'a [u8] {
+    let above = &around.text.as_bytes()[..around.tokens.first().map_or(0, |first| first.start)];
+    &above[above.len().saturating_sub(LOOKED_AT)..]
+}
+
 /// Whether a `let` not far above defines a name.
 pub(super) fn is_defined(around: &Around<'_>, name: &str) -> bool {
-    let above = &around.text.as_bytes()[..around.tokens.first().map_or(0, |first| first.start)];
-    let above = &above[above.len().saturating_sub(LOOKED_AT)..];
-    stands_behind(name, "let", above)
+    stands_behind(name, "let", above(around))
 }
 
 /// A comment between the words of an object's head, which ends before token `end`.

@@ -3,6 +3,7 @@
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, told};
+use super::defined::is_type;
 use super::head::RANGE;
 use super::lex::{Token, TokenKind};
 
@@ -43,7 +44,7 @@ fn dots(around: &Around<'_>, first: usize) -> Option<Diagnostic> {
     is_it.then(|| told(all, RANGE).help(help).guess(all, "..=").guess(all, ".."))
 }
 
-/// `x := 3`, `2 ** 3`, `x += 1`, `a ? b : c`, `fn f() -> float`, `(x) => x`
+/// `x := 3`, `2 ** 3`, `x += 1`, `a ? b : c`, `fn f() -> float`, `fn f(): float`, `(x) => x`
 pub(super) fn operator(around: &Around<'_>) -> Option<Diagnostic> {
     let current = around.current()?;
     let (at, back) = (around.at, around.at.saturating_sub(1));
@@ -81,6 +82,7 @@ pub(super) fn operator(around: &Around<'_>) -> Option<Diagnostic> {
             told(around.span(current), "a choice is no operator")
                 .help("it is written `if x > 1 { a } else { b }`"),
         ),
+        ":" => of_function(around),
         "=>" if around.inner() == Place::Fields && around.begins(back) => {
             let span = around.span(current);
             Some(told(span, "a value is given with `=`").fix(span, "="))
@@ -96,6 +98,22 @@ pub(super) fn operator(around: &Around<'_>) -> Option<Diagnostic> {
         "=>" => Some(nameless(around.span(current))),
         _ => None,
     }
+}
+
+/// `fn f(x: float): float = x` and `fn f(x: float): x * 2`
+fn of_function(around: &Around<'_>) -> Option<Diagnostic> {
+    let (colon, head) = (around.current()?, around.statement());
+    let close = around.closing(head + 2).filter(|_| around.word(head) == "fn")?;
+    if close + 1 != around.at {
+        return None;
+    }
+    let is_whole = matches!(around.word(around.at + 2), "=" | "{");
+    if is_whole && is_type(around.word(around.at + 1)) {
+        return Some(undeclared(around, around.span(colon), around.at + 1));
+    }
+    let gap = Span::new(around.source, around.tokens[close].end(), colon.end());
+    let found = told(around.span(colon), "what a function gives stands behind `=`");
+    Some(if around.word(around.at + 1) == "{" { found } else { found.guess(gap, " =") })
 }
 
 /// `fn f() -> float`, `radius -> 1 m`, `lib->oak` and `[for x in a -> x]`
@@ -114,10 +132,16 @@ fn arrow(around: &Around<'_>, first: usize) -> Option<Diagnostic> {
     if touches && around.is_word(before) && around.is_word(first + 2) {
         return Some(told(span, "names are joined with `.`").fix(span, "."));
     }
-    let found = told(span, "what a function gives is not declared");
-    let ty = around.tokens.get(first + 2).filter(|ty| ty.kind == TokenKind::Word);
-    let end = ty.map_or(span.range().end, Token::end);
-    Some(found.guess(Span::new(around.source, around.tokens[before].end(), end), ""))
+    Some(undeclared(around, span, first + 2))
+}
+
+/// The type of what a function gives is token `ty`, behind a `sign`.
+fn undeclared(around: &Around<'_>, sign: Span, ty: usize) -> Diagnostic {
+    let ty = around.tokens.get(ty).filter(|ty| ty.kind == TokenKind::Word);
+    let end = ty.map_or(sign.range().end, Token::end);
+    let before = around.text[..sign.range().start].trim_end().len();
+    told(sign, "what a function gives is not declared")
+        .guess(Span::new(around.source, before, end), "")
 }
 
 pub(super) fn nameless(span: Span) -> Diagnostic {

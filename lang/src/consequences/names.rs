@@ -42,7 +42,7 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     named_by_use(diagnostics, sources);
     let mut places: BTreeMap<(SourceId, &str), Vec<Span>> = BTreeMap::new();
     for found in &*diagnostics {
-        if let Some(name) = name(found, sources) {
+        if let Some(name) = name(found, sources).or_else(|| parameter(found, sources)) {
             places.entry(name).or_default().extend(found.span());
         }
     }
@@ -54,6 +54,9 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
                 unread.iter().any(|one| one.0 == source && Some(one.1) == word)
             };
             return !is_nameless && !at.is_some_and(is_one);
+        }
+        if let Some(name) = parameter(found, sources) {
+            return told_once(found, name, &places[&name], sources);
         }
         let Some(name) = name(found, sources) else { return true };
         if found.code == WORD {
@@ -143,9 +146,8 @@ fn told_once(
         found.help.push(format!("it stands in {} places", places.len()));
     }
     if let Some(span) = definition {
-        found.fixes.iter_mut().for_each(|fix| fix.grade = Grade::Guess);
         let replacement = name.1.to_owned();
-        found.fixes.insert(0, Fix { span, replacement, grade: Grade::Guess });
+        found.fixes = vec![Fix { span, replacement, grade: Grade::Guess }];
     }
     true
 }
@@ -155,6 +157,14 @@ fn name<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a s
     let at = found.span().filter(|_| found.code == "E0101" || found.code == WORD)?;
     let name = sources.text(at.source).get(at.range())?;
     Some((at.source, name)).filter(|_| Kind::of_word(name).is_none() || found.code == WORD)
+}
+
+/// What a call gives by a name that its function does not have, where the name that is surely meant stands in its
+/// definition alone: there it may be misspelt.
+fn parameter<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a str)> {
+    let at = found.span().filter(|_| found.code == "E0402" && found.sure().is_some())?;
+    definition(meant(found)?, at.source, sources)?;
+    Some((at.source, sources.text(at.source).get(at.range())?))
 }
 
 /// The name that may be meant, if one is: `vec3` is only too much.
@@ -177,7 +187,8 @@ fn definition(name: &str, source: SourceId, sources: &Sources) -> Option<Span> {
     });
     let at = all.next().filter(|_| all.next().is_none())?;
     let before = text[..at].trim_end_matches([' ', '\t']);
-    let defines = BEFORE_NAMES.iter().any(|word| before.ends_with(word));
+    let is_parameter = before.ends_with(['(', ',']) && text[at + name.len()..].starts_with(':');
+    let defines = is_parameter || BEFORE_NAMES.iter().any(|word| before.ends_with(word));
     defines.then(|| Span::new(source, at, at + name.len()))
 }
 

@@ -383,7 +383,7 @@ mod tests {
         assert_eq!(both.labels.len(), 2);
         // What is meant stands nowhere but where it is defined: that is mended.
         let found = load_of(&format!("let tal = 3\n{uses}")).diagnostics.remove(0);
-        assert_eq!((found.fixes.len(), &*found.fixes[0].replacement), (2, "tall"));
+        assert_eq!((found.fixes.len(), &*found.fixes[0].replacement), (1, "tall"));
         assert_eq!(found.fixes[0].span.range(), 12..15);
         // What stands where a value does defines nothing.
         let told = codes("let a = [tall 1 m]\nlet b = (1, tall,, 2)\nlet c = tall * 3");

@@ -36,8 +36,9 @@ pub(super) fn in_braces(
     let mut inner = String::new();
     let mut start = around.tokens[open].end();
     for colon in around.held(open).filter(|token| token.text == ":") {
-        inner += around.text[start..colon.start].trim_end();
-        inner += " =";
+        let before = &around.text[start..colon.start];
+        inner += before;
+        inner += if before.ends_with(char::is_whitespace) { "=" } else { " =" };
         start = colon.end();
     }
     inner += &around.text[start..close.start];

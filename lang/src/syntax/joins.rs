@@ -100,7 +100,7 @@ pub(super) fn operator(around: &Around<'_>) -> Option<Diagnostic> {
     }
 }
 
-/// `fn f(x: float): float = x` and `fn f(x: float): x * 2`
+/// `fn f(x: float): float = x`, `fn f(x: float): x * 2` and `fn f(x: length): { … }`
 fn of_function(around: &Around<'_>) -> Option<Diagnostic> {
     let (colon, head) = (around.current()?, around.statement());
     let close = around.closing(head + 2).filter(|_| around.word(head) == "fn")?;
@@ -112,8 +112,13 @@ fn of_function(around: &Around<'_>) -> Option<Diagnostic> {
         return Some(undeclared(around, around.span(colon), around.at + 1));
     }
     let gap = Span::new(around.source, around.tokens[close].end(), colon.end());
-    let found = told(around.span(colon), "what a function gives stands behind `=`");
-    Some(if around.word(around.at + 1) == "{" { found } else { found.guess(gap, " =") })
+    let is_block = around.word(around.at + 1) == "{";
+    let (message, instead) = if is_block {
+        ("no sign stands before the braces of a function", "")
+    } else {
+        ("what a function gives stands behind `=`", " =")
+    };
+    Some(told(around.span(colon), message).guess(gap, instead))
 }
 
 /// `fn f() -> float`, `radius -> 1 m`, `lib->oak` and `[for x in a -> x]`

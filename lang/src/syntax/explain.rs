@@ -253,12 +253,13 @@ impl<'a> Around<'a> {
         Some(self.error("E0015", operator, message))
     }
 
-    /// `[scale 2, move (1, 0, 0) m]` and `metal "Au"`
+    /// `[scale 2, move at]` and `metal "Au"`
     fn missing_brackets(&self) -> Option<Diagnostic> {
         let (current, callee) = (self.current()?, self.before(1)?);
         let is_text = current.kind == TokenKind::Text;
         let of_this = if is_text { &OF_A_TEXT[..] } else { &OF_A_NUMBER };
-        let is_callee = of_this.contains(&callee.text);
+        let is_moved = callee.text == "move" && current.kind == TokenKind::Word;
+        let is_callee = of_this.contains(&callee.text) || is_moved;
         let before = self.before(2)?;
         let opens = before.is_operator() || matches!(before.text, "[" | "," | "(");
         let next = self.tokens.get(self.at + 1);

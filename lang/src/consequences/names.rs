@@ -6,6 +6,7 @@ use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
 use luxel_sdk::kind::Kind;
 use memchr::memmem;
 
+use crate::eval::DEFINED;
 use crate::syntax::{Token, TokenKind, tokens};
 use crate::words::BEFORE_NAMES;
 
@@ -42,7 +43,7 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     named_by_use(diagnostics, sources);
     let mut places: BTreeMap<(SourceId, &str), Vec<Span>> = BTreeMap::new();
     for found in &*diagnostics {
-        if let Some(name) = name(found, sources).or_else(|| parameter(found, sources)) {
+        if let Some(name) = name_or_parameter(found, sources) {
             places.entry(name).or_default().extend(found.span());
         }
     }
@@ -55,17 +56,9 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             };
             return !is_nameless && !at.is_some_and(is_one);
         }
-        if let Some(name) = parameter(found, sources) {
-            return told_once(found, name, &places[&name], sources);
-        }
-        let Some(name) = name(found, sources) else { return true };
-        if found.code == WORD {
-            return told_once(found, name, &places[&name], sources);
-        }
-        if is_defined_by_one(name, found, &unread) {
-            return false;
-        }
-        told_once(found, name, &places[&name], sources)
+        let Some(name) = name_or_parameter(found, sources) else { return true };
+        let is_defined = found.code == "E0101" && is_defined_by_one(name, found, &unread);
+        !is_defined && told_once(found, name, &places[&name], sources)
     });
 }
 
@@ -159,12 +152,16 @@ fn name<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a s
     Some((at.source, name)).filter(|_| Kind::of_word(name).is_none() || found.code == WORD)
 }
 
-/// What a call gives by a name that its function does not have, where the name that is surely meant stands in its
-/// definition alone: there it may be misspelt.
-fn parameter<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a str)> {
-    let at = found.span().filter(|_| found.code == "E0402" && found.sure().is_some())?;
-    definition(meant(found)?, at.source, sources)?;
-    Some((at.source, sources.text(at.source).get(at.range())?))
+/// As [`name`], or the parameter that a call gives by a name which its function does not have, where the name that
+/// is surely meant stands in its definition alone: there it may be misspelt.
+fn name_or_parameter<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a str)> {
+    name(found, sources).or_else(|| {
+        let of_function = found.labels.iter().any(|label| label.text == DEFINED);
+        let is_one = found.code == "E0402" && of_function && found.sure().is_some();
+        let at = found.span().filter(|_| is_one)?;
+        definition(meant(found)?, at.source, sources)?;
+        Some((at.source, sources.text(at.source).get(at.range())?))
+    })
 }
 
 /// The name that may be meant, if one is: `vec3` is only too much.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use luxel_core::diag::{Diagnostic, Label, SourceId, Sources, Span};
 use memchr::memmem;
 
-use crate::eval::OUTSIDE;
+use crate::eval::{DEFINED, OUTSIDE};
 use crate::syntax::{TokenKind, tokens};
 
 /// What is said of another place.
@@ -42,7 +42,7 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         let labels = &mut diagnostics[one].labels;
         let label = |span, text: &str| Label { span, text: text.into() };
         if let Some(place) = definition.filter(|at| labels.iter().all(|label| label.span != *at)) {
-            labels.push(label(place, "defined here"));
+            labels.push(label(place, DEFINED));
         }
         let n_shown = labels.iter().filter(|label| label.text == AGAIN).count();
         labels.extend(again.filter(|_| n_shown < SHOWN).map(|at| label(at, AGAIN)));

@@ -4,10 +4,10 @@ use std::rc::Rc;
 
 use luxel_core::diag::{Diagnostic, Span, near};
 
-use super::Evaluator;
 use super::builtins::Given;
 use super::env::Env;
 use super::value::{Function, Value};
+use super::{DEFINED, Evaluator};
 use crate::syntax::{Arg, Expr, ExprNode, FnBody, Stmt};
 
 impl Evaluator<'_> {
@@ -151,7 +151,7 @@ impl Evaluator<'_> {
             let message = takes_only(&def.name.text, def.params.len());
             Diagnostic::error("E0402", arg.value.span, message)
         };
-        self.tell(diagnostic.label(def.name.span, "defined here"));
+        self.tell(diagnostic.label(def.name.span, DEFINED));
     }
 }
 

@@ -161,6 +161,9 @@ struct Evaluator<'a> {
 /// What is said of a call in whose body a mistake was found.
 pub(crate) const CALLED: &str = "in this call";
 
+/// What is said of the place where a name is defined.
+pub(crate) const DEFINED: &str = "defined here";
+
 /// What is said of pixels that another picture may have.
 pub(crate) const OUTSIDE: &str = "is outside the picture";
 

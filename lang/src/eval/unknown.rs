@@ -6,8 +6,8 @@ use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::Unit;
 
-use super::builtins;
 use super::resolve::{Resolver, Scope, follows_fn};
+use super::{DEFINED, builtins};
 use crate::syntax::{Expr, ExprNode, Name, Op, path_around};
 use crate::words::OF_A_TEXT;
 
@@ -79,13 +79,13 @@ impl Resolver<'_> {
             let found = Diagnostic::error("E0105", name.span, message);
             return Some(
                 found
-                    .label(*place, "defined here")
+                    .label(*place, DEFINED)
                     .help("use a loop over a range; a function sees only what stands before it"),
             );
         }
         let message = format!("`{}` is used before it is defined", name.text);
         let found = Diagnostic::error("E0102", name.span, message);
-        Some(found.label(*place, "defined here"))
+        Some(found.label(*place, DEFINED))
     }
 
     pub(super) fn unknown(&self, name: &Name, joined: &str, span: Span) -> Diagnostic {

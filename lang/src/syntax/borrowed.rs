@@ -48,10 +48,10 @@ pub(super) fn in_braces(
     if braces.len() <= SHORT { found.guess(all, braces) } else { found }
 }
 
-/// Whether the bracket that opens with a token holds values without their names.
-pub(super) fn is_nameless(around: &Around<'_>, open: usize) -> bool {
-    let mut held = around.held(open).peekable();
-    held.peek().is_some() && held.all(|token| !matches!(token.text, "=" | ":"))
+/// Whether the bracket that opens with a token holds values, and a name of none.
+pub(super) fn holds_bare_values(around: &Around<'_>, open: usize) -> bool {
+    let is_empty = around.closing(open) == Some(open + 1);
+    !is_empty && around.held(open).all(|token| !matches!(token.text, "=" | ":"))
 }
 
 /// `group [ shape sphere { } ]`

@@ -3,7 +3,7 @@
 use luxel_core::diag::{Diagnostic, Grade, Near, Span, near};
 
 use super::around::{Around, Place, SHORT, is_category, stands_behind, stands_nowhere, told};
-use super::borrowed::{in_braces, is_nameless};
+use super::borrowed::{holds_bare_values, in_braces};
 use super::defined::{is_type, of_list};
 use super::lex::{Token, TokenKind};
 use super::statement;
@@ -284,7 +284,7 @@ fn object(around: &Around<'_>) -> Option<Diagnostic> {
     }
     if let Some(next) = on_line {
         let found = around.error("E0023", next, BRACES);
-        if matches!(next.text, "(" | "[") && is_nameless(around, end) {
+        if matches!(next.text, "(" | "[") && holds_bare_values(around, end) {
             let (category, class) = (head[0].text, head[1].text);
             let help = format!("each has its name: `{category} {class} {{ NAME = … }}`");
             return Some(found.help(help));

@@ -1,5 +1,7 @@
 //! Signs and words between values as other languages have them.
 
+use std::ops::Range;
+
 use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, Place, told};
@@ -109,7 +111,7 @@ fn of_function(around: &Around<'_>) -> Option<Diagnostic> {
     }
     let is_whole = matches!(around.word(around.at + 2), "=" | "{");
     if is_whole && is_type(around.word(around.at + 1)) {
-        return Some(undeclared(around, around.span(colon), around.at + 1));
+        return Some(undeclared(around, around.at..around.at + 1));
     }
     let gap = Span::new(around.source, around.tokens[close].end(), colon.end());
     let is_block = around.word(around.at + 1) == "{";
@@ -137,16 +139,17 @@ fn arrow(around: &Around<'_>, first: usize) -> Option<Diagnostic> {
     if touches && around.is_word(before) && around.is_word(first + 2) {
         return Some(told(span, "names are joined with `.`").fix(span, "."));
     }
-    Some(undeclared(around, span, first + 2))
+    Some(undeclared(around, first..first + 2))
 }
 
-/// The type of what a function gives is token `ty`, behind a `sign`.
-fn undeclared(around: &Around<'_>, sign: Span, ty: usize) -> Diagnostic {
-    let ty = around.tokens.get(ty).filter(|ty| ty.kind == TokenKind::Word);
-    let end = ty.map_or(sign.range().end, Token::end);
-    let before = around.text[..sign.range().start].trim_end().len();
-    told(sign, "what a function gives is not declared")
-        .guess(Span::new(around.source, before, end), "")
+/// The type of what a function gives stands behind a sign of these tokens, which others precede.
+fn undeclared(around: &Around<'_>, sign: Range<usize>) -> Diagnostic {
+    let ty = around.tokens.get(sign.end).filter(|ty| ty.kind == TokenKind::Word);
+    let sign = &around.tokens[sign.start - 1..sign.end];
+    let (before, first, last) = (&sign[0], &sign[1], &sign[sign.len() - 1]);
+    let end = ty.unwrap_or(last).end();
+    told(around.span(first).to(around.span(last)), "what a function gives is not declared")
+        .guess(Span::new(around.source, before.end(), end), "")
 }
 
 pub(super) fn nameless(span: Span) -> Diagnostic {

@@ -1,27 +1,11 @@
 //! Every injected fault is caught.
 
-use std::sync::Mutex;
-use std::{iter, thread};
-
 use luxel_conformance::Options;
-use luxel_conformance::mutants::{Caught, mutants, score};
-
-/// As [`score`], by as many threads as the machine has, each of which takes the next when it has judged one.
-fn scored() -> Vec<Caught> {
-    let all = mutants();
-    let left = Mutex::new(all.chunks(1));
-    let next = || left.lock().expect("none panics").next();
-    let judge = || iter::from_fn(next).flat_map(|one| score(one, &Options::default())).collect();
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| {
-        let running: Vec<_> = (0..threads).map(|_| scope.spawn(judge)).collect();
-        running.into_iter().flat_map(|one| -> Vec<_> { one.join().expect("none panics") }).collect()
-    })
-}
+use luxel_conformance::mutants::{mutants, score};
 
 #[test]
 fn every_mutant_is_caught() {
-    let scores = scored();
+    let scores = score(&mutants(), &Options::default());
     for caught in &scores {
         eprintln!("{:<32} {:<32} {}", caught.class, caught.fault, caught.by.join(", "));
     }

@@ -225,6 +225,9 @@ fn mistakes_of_the_command_line_end_with_code_2() {
         &["render", "a.scene", "--size", "0x4"],
         &["render", "a.scene", "--spp", "0"],
         &["render", "a.scene", "--crop", "99,99,4,4"],
+        &["watch", "a.scene", "--port", "8123"],
+        &["watch", "a.scene", "--no-open"],
+        &["watch", "a.scene", "--allow-host", "box.example"],
     ] {
         let done = folder.luxel(args);
         assert_eq!(done.code, 2, "{args:?}: {done:?}");

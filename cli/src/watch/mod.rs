@@ -36,6 +36,7 @@ pub(crate) use self::tev::with_address;
 /// A save during a render ends that render. A save that changes no byte does nothing. After a
 /// mistake the last good picture stays. Ctrl-C ends with code 0.
 #[derive(clap::Args, Debug)]
+#[command(mut_args(|arg| if is_of_page(&arg) { arg.requires("preview") } else { arg }))]
 #[command(after_help = "\
 Examples:
   luxel watch scenes/cornell.scene
@@ -72,6 +73,13 @@ pub(crate) struct Args {
     /// failures as JSON lines on standard error
     #[arg(long)]
     json: bool,
+}
+
+/// Whether a flag says something of the page, which there is only if it is asked for.
+fn is_of_page(arg: &clap::Arg) -> bool {
+    <PageArgs as clap::Args>::augment_args(clap::Command::new("page"))
+        .get_arguments()
+        .any(|it| it.get_id() == arg.get_id())
 }
 
 /// What is done with pictures beside writing them.

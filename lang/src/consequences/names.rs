@@ -133,14 +133,16 @@ fn told_once(
     if found.span() != Some(places[0]) {
         return false;
     }
+    if let Some(span) = definition {
+        let defined = &sources.text(name.0)[span.range()];
+        found.help = vec![format!("what is defined is `{defined}`: misspelt there?")];
+        let replacement = name.1.to_owned();
+        found.fixes = vec![Fix { span, replacement, grade: Grade::Guess }];
+    }
     let others = places[1..].iter().take(SHOWN - 1);
     found.labels.extend(others.map(|at| Label { span: *at, text: "and here".into() }));
     if places.len() > SHOWN {
         found.help.push(format!("it stands in {} places", places.len()));
-    }
-    if let Some(span) = definition {
-        let replacement = name.1.to_owned();
-        found.fixes = vec![Fix { span, replacement, grade: Grade::Guess }];
     }
     true
 }

@@ -27,6 +27,6 @@ fn the_middle_of_a_pixel_tells_its_surface_and_passes_the_bounds_of_fog() {
     assert_eq!(stage.scene.node(placement.node).label.as_deref(), Some("ball"));
     let Skin::Material(material) = placement.skin else { panic!("{placement:?}") };
     let node = stage.material_nodes[material as usize];
-    assert_eq!(&*stage.scene.node(node).class, "diffuse");
+    assert_eq!(stage.scene.node(node).class, "diffuse");
     assert!(stage.probe(UVec2::ZERO).is_none(), "the corner shows the sky through the fog");
 }

@@ -48,7 +48,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let (Some((a, first)), Some((b, second))) = (a, b) else { return Ok(Exit::Input) };
     let folders = [&args.a, &args.b].map(|file| file.parent().unwrap_or(Path::new("")));
     let known = |node: &Node, name: &str| {
-        let class = plugins.registry.class(node.kind, &node.class)?;
+        let class = plugins.registry.class(node.kind, node.class)?;
         Registry::params(class).find(|param| param.name == name)
     };
     let (found, texts) = (diff_in([&first, &second], folders, &known), [a, b]);

@@ -64,7 +64,7 @@ impl Origin {
 fn libraries(scene: &Scene, registry: &Registry) -> BTreeMap<String, String> {
     let versions: BTreeMap<&str, &str> = registry.libraries().collect();
     let of = |node: &Node| {
-        let origin = &*registry.entry(node.kind, &node.class)?.origin;
+        let origin = &*registry.entry(node.kind, node.class)?.origin;
         versions.get(origin).map(|version| (origin.to_owned(), (*version).to_owned()))
     };
     scene.nodes.iter().filter_map(of).collect()

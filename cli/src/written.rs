@@ -26,7 +26,7 @@ pub(crate) fn value(
         Value::Bool(value) => value.to_string(),
         Value::Number(x, dimension) => number(*x, *dimension),
         Value::Vector(v) => {
-            let class = registry.class(node.kind, &node.class);
+            let class = registry.class(node.kind, node.class);
             let param = class.and_then(|class| {
                 Registry::params(class).find(|param| param.name == argument.name)
             });

@@ -129,8 +129,7 @@ impl Change {
         let Some(setting) = self.dimension.setting() else {
             return scene.leave_out(droppable(value)?).map_err(str::to_owned);
         };
-        let given = scene.setting(setting).map(|node| node.class.clone());
-        let class = given.as_deref().unwrap_or(setting.default_class());
+        let class = scene.setting(setting).map_or(setting.default_class(), |node| node.class);
         if let Some(name) = self.dimension.param() {
             let class = registry.class(setting.kind(), class);
             if !class.is_some_and(|class| class.params.iter().any(|param| param.name == name)) {
@@ -140,10 +139,10 @@ impl Change {
             scene.set_param(setting, name, Value::Number(number, Unit::NONE));
         } else if self.dimension == Dimension::Precision {
             scene.set_param(setting, "precision", Value::Text(value.as_str().into()));
-        } else if registry.class(setting.kind(), value).is_none() {
-            return Err(format!("there is no {} `{value}`", setting.kind()));
+        } else if let Some(class) = registry.class(setting.kind(), value) {
+            scene.set_class(setting, class.name);
         } else {
-            scene.set_class(setting, value);
+            return Err(format!("there is no {} `{value}`", setting.kind()));
         }
         Ok(())
     }

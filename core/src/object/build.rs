@@ -195,7 +195,7 @@ impl<'a> Builder<'a> {
             self.objects.by_content.put(key(hash, mode, &object), object.clone());
             return Some(object);
         }
-        let Some(class) = self.registry.class(node.kind, &node.class) else {
+        let Some(class) = self.registry.class(node.kind, node.class) else {
             let message = format!("there is no {} `{}`", node.kind, node.class);
             self.diagnostics.push(Diagnostic::error("E0401", node.span, message));
             return None;

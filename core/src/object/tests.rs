@@ -213,13 +213,18 @@ impl World {
         Self { registry, scene: Scene::default() }
     }
 
-    fn node(&mut self, kind: Kind, class: &str, params: &[(&'static str, Value)]) -> NodeId {
+    fn node(
+        &mut self,
+        kind: Kind,
+        class: &'static str,
+        params: &[(&'static str, Value)],
+    ) -> NodeId {
         let span = Span::new(SourceId(0), 0, 0);
         let params =
             params.iter().map(|(name, value)| Argument { name, value: value.clone(), span });
         self.scene.add(Node {
             kind,
-            class: class.into(),
+            class,
             label: None,
             params: params.collect(),
             overrides: vec![],

@@ -195,7 +195,7 @@ pub(super) mod tests {
         let value = |id| Argument { name: "base", value: Value::Node(NodeId(id)), span };
         Node {
             kind: Kind::Shape,
-            class: "any".into(),
+            class: "any",
             label: None,
             params: child.map(value).into_iter().collect(),
             overrides: vec![],

@@ -166,7 +166,7 @@ impl Put<'_> {
         let overridden = |(name, id): &(_, NodeId)| (Arc::clone(name), self.id(*id));
         Node {
             kind: node.kind,
-            class: node.class.clone(),
+            class: node.class,
             label: node.label.clone(),
             params,
             overrides: node.overrides.iter().map(overridden).collect(),

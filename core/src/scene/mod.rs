@@ -70,7 +70,7 @@ pub struct Node {
     /// What it is.
     pub kind: Kind,
     /// Which class; it exists in the registry that the scene was evaluated against.
-    pub class: Arc<str>,
+    pub class: &'static str,
     /// Its name, for people; does not count for its hash.
     pub label: Option<Arc<str>>,
     /// The parameters that were given, by name. Each fits its schema.
@@ -320,7 +320,7 @@ mod tests {
         let value = Value::Number(focal, luxel_sdk::params::Dimension::LENGTH);
         let id = scene.add(Node {
             kind: Kind::Camera,
-            class: "perspective".into(),
+            class: "perspective",
             label: Some(label.into()),
             params: vec![Argument { name: "focal_length", value, span }].into(),
             overrides: vec![],

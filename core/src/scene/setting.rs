@@ -94,12 +94,12 @@ impl Scene {
 
     /// Gives a setting another class. Its parameters go with the old one, but for the film, whose
     /// classes have the same.
-    pub fn set_class(&mut self, setting: Setting, class: &str) {
+    pub fn set_class(&mut self, setting: Setting, class: &'static str) {
         let mut node = self.own(setting);
-        if &*node.class == class {
+        if node.class == class {
             return;
         }
-        node.class = class.into();
+        node.class = class;
         if setting != Setting::Film {
             node.params = Arguments::default();
         }
@@ -110,7 +110,7 @@ impl Scene {
     fn own(&self, setting: Setting) -> Node {
         self.setting(setting).cloned().unwrap_or_else(|| Node {
             kind: setting.kind(),
-            class: setting.default_class().into(),
+            class: setting.default_class(),
             label: None,
             params: Arguments::default(),
             overrides: vec![],
@@ -161,13 +161,13 @@ mod tests {
         scene.set_param(Setting::Integrator, "max_depth", depth());
         scene.set_class(Setting::Integrator, "path");
         let path = scene.setting(Setting::Integrator).unwrap();
-        assert!(&*path.class == "path" && path.get("max_depth").unwrap().value == depth());
+        assert!(path.class == "path" && path.get("max_depth").unwrap().value == depth());
         scene.set_class(Setting::Integrator, "direct");
         let direct = scene.setting(Setting::Integrator).unwrap();
-        assert!(&*direct.class == "direct" && direct.params.is_empty());
+        assert!(direct.class == "direct" && direct.params.is_empty());
         scene.set_precision(Precision::Exact);
         scene.set_class(Setting::Film, "rgb");
         let film = scene.setting(Setting::Film).unwrap();
-        assert!(&*film.class == "rgb" && film.get("precision").is_some());
+        assert!(film.class == "rgb" && film.get("precision").is_some());
     }
 }

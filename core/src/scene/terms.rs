@@ -1,8 +1,6 @@
 //! The hash of a node: the sum of the hashes of what it says. Where one of these changes, the others need
 //! not be hashed again.
 
-use std::sync::Arc;
-
 use luxel_sdk::kind::Kind;
 
 use super::hash::{Hashing, hash_value, text};
@@ -44,7 +42,7 @@ impl Sum {
 /// Hashes of nodes that are referred to must be what they are for as long as it is used.
 #[derive(Default)]
 pub(super) struct Terms {
-    class: Option<(Kind, Arc<str>, Sum)>,
+    class: Option<(Kind, &'static str, Sum)>,
     /// By the place among a node's parameters.
     params: Vec<Param>,
 }
@@ -85,9 +83,9 @@ impl Terms {
                 let mut hashing = Hashing::default();
                 hashing.update(b"class");
                 text(&mut hashing, node.kind.word());
-                text(&mut hashing, &node.class);
+                text(&mut hashing, node.class);
                 let term = Sum::of(&hashing.finish_soon(PLAIN));
-                self.class = Some((node.kind, node.class.clone(), term));
+                self.class = Some((node.kind, node.class, term));
                 term
             }
         }
@@ -174,7 +172,7 @@ mod tests {
             |(name, value): &(&'static str, Value)| Argument { name, value: value.clone(), span };
         Node {
             kind: Kind::Shape,
-            class: "sphere".into(),
+            class: "sphere",
             label: None,
             params: params.iter().map(argument).collect(),
             overrides: vec![],

@@ -101,7 +101,7 @@ mod tests {
         let mut scene = Scene::default();
         let node = scene.add(Node {
             kind: Kind::Shape,
-            class: "any".into(),
+            class: "any",
             label: None,
             params: Arguments::default(),
             overrides: vec![],

@@ -230,7 +230,7 @@ impl Import<'_> {
         }
         let mut made = Node {
             kind: node.kind,
-            class: Arc::from(class.name),
+            class: class.name,
             label: (!node.label.is_empty()).then(|| Arc::from(node.label.as_str())),
             params: params.into(),
             overrides: vec![],

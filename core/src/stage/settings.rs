@@ -84,7 +84,7 @@ impl Film {
     pub fn of_node(node: Option<&Node>) -> Self {
         let mut film = Self::default();
         let Some(node) = node else { return film };
-        film.color = match &*node.class {
+        film.color = match node.class {
             "rgb" => ColorChoice::Rgb,
             "spectral" => ColorChoice::Spectral,
             _ => ColorChoice::Auto,

@@ -135,8 +135,6 @@ struct Evaluator<'a> {
     /// The call whose body is being evaluated, the innermost.
     called: Option<Span>,
     labels: Labels,
-    /// The names of the classes that objects have.
-    classes: BTreeMap<&'static str, Arc<str>>,
     /// The label that a node was given last.
     last_label: Arc<str>,
     /// Where the camera, film, … were given.
@@ -222,7 +220,6 @@ impl<'a> Evaluator<'a> {
             loops: vec![],
             called: None,
             labels: Labels::default(),
-            classes: BTreeMap::new(),
             last_label: Arc::default(),
             slots: vec![],
             has_asset: false,

@@ -194,7 +194,7 @@ impl Evaluator<'_> {
         }
         let node = Node {
             kind: class.kind,
-            class: self.shared(class.name),
+            class: class.name,
             label: head.label.as_ref().map(|label| self.label_text(&label.text)),
             params: params.into(),
             overrides,
@@ -274,11 +274,6 @@ impl Evaluator<'_> {
             self.last_label = text.clone();
         }
         self.last_label.clone()
-    }
-
-    /// A class's name, one for all objects of it.
-    fn shared(&mut self, name: &'static str) -> Arc<str> {
-        self.classes.entry(name).or_insert_with(|| Arc::from(name)).clone()
     }
 
     /// `materials = { name = material, … }`: what takes the place of an asset's own.

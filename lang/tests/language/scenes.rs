@@ -153,7 +153,7 @@ fn with_makes_a_changed_copy_and_equal_objects_have_equal_hashes() {
 shape sphere { radius = 1 m, material = a }\nshape sphere { radius = 1 m, material = b }
 shape sphere \"other label\" { radius = 100 cm, material = material dielectric { roughness = 0.1 } }";
     let scene = scene(text, &[]);
-    let spheres: Vec<_> = scene.nodes.iter().filter(|n| &*n.class == "sphere").collect();
+    let spheres: Vec<_> = scene.nodes.iter().filter(|n| n.class == "sphere").collect();
     assert_eq!(spheres[0].hash, spheres[2].hash);
     assert_ne!(spheres[0].hash, spheres[1].hash);
 }
@@ -304,7 +304,7 @@ fn materials_of_an_asset_are_replaced_by_name() {
     let text =
         "asset gltf { file = \"a.glb\", unit = 1 m, materials = { steel = material diffuse {} } }";
     let scene = scene(text, &[]);
-    let asset = scene.nodes.iter().find(|n| &*n.class == "gltf").unwrap();
+    let asset = scene.nodes.iter().find(|n| n.class == "gltf").unwrap();
     assert_eq!(
         (&*asset.overrides[0].0, scene.node(asset.overrides[0].1).kind.word()),
         ("steel", "material")

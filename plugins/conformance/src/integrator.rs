@@ -98,7 +98,7 @@ fn picture(stage: &Stage, seed: u32, threads: usize, spp: u32) -> Film {
 pub(crate) fn stage(
     bench: &Bench,
     fill: &dyn Fn(&mut Scene),
-    integrator: &str,
+    integrator: &'static str,
     given: &Given,
 ) -> Option<Stage> {
     let mut scene = bench.scene();
@@ -217,7 +217,7 @@ fn goes_on(stage: &Stage, one: &Film, set: &Set, judge: &mut Judge) {
 
 /// What shows all bounces shows bright light in fog, as the suite's own path tracer does; and the light of
 /// the fog, but for what owns the picture, whose paths may begin at lamps alone.
-fn sees_in_fog(bench: &Bench, set: &Set, name: &str, judge: &mut Judge) {
+fn sees_in_fog(bench: &Bench, set: &Set, name: &'static str, judge: &mut Judge) {
     let glow = set.ask(|resolved| {
         let owns_picture = resolved.integrator().as_picture().is_some();
         if owns_picture { 0.0 } else { BRIGHT }

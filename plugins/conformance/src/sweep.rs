@@ -246,7 +246,7 @@ pub(crate) fn said(found: &[Diagnostic]) -> String {
 pub(crate) fn node(
     scene: &mut Scene,
     kind: Kind,
-    class: &str,
+    class: &'static str,
     given: &[(&'static str, Value)],
 ) -> NodeId {
     let span = |i: usize| Span::new(SourceId(0), i, i + 1);
@@ -254,7 +254,7 @@ pub(crate) fn node(
     let params = arguments
         .map(|(i, (name, value))| Argument { name, value: value.clone(), span: span(i + 1) })
         .collect();
-    let (class, label, overrides) = (class.into(), None, vec![]);
+    let (label, overrides) = (None, vec![]);
     let (span, hash) = (span(0), [0; 32]);
     scene.add(Node { kind, class, label, params, overrides, span, hash })
 }

@@ -243,7 +243,7 @@ impl State {
         };
         // A number of a vector that fits has been reckoned.
         let fits = fits && wanted.n_items == 0;
-        let class = evaluator.registry.class(wanted.kind, &wanted.class).filter(|_| fits)?;
+        let class = evaluator.registry.class(wanted.kind, wanted.class).filter(|_| fits)?;
         let param = Registry::params(class).find(|param| param.name == wanted.param)?;
         let shown = evaluator.shown_later(&value);
         // Nothing can be told of it: it would be told of every place.

@@ -62,7 +62,7 @@ pub(super) struct Place {
 pub(super) struct Wanted {
     pub(super) formula: u32,
     pub(super) kind: Kind,
-    pub(super) class: Arc<str>,
+    pub(super) class: &'static str,
     pub(super) param: &'static str,
     /// It was an object.
     pub(super) is_node: bool,
@@ -287,7 +287,7 @@ impl Handing {
             let is_node = matches!(argument.value, scene::Value::Node(_));
             for Part { item, n_items, formula } in parts {
                 self.use_names(formula, uses, left);
-                let (kind, class, param) = (it.kind, it.class.clone(), argument.name);
+                let (kind, class, param) = (it.kind, it.class, argument.name);
                 let wanted = self.number(Wanted { formula, kind, class, param, is_node, n_items });
                 let (field, node) = (narrow(before.len()), narrow(node));
                 self.places.push(Place { field, node, argument: k, item, wanted });
@@ -330,7 +330,7 @@ impl Handing {
         written: &Written<'_>,
     ) -> Option<Vec<Part>> {
         let scene::Value::Vector(numbers) = &argument.value else { return None };
-        let class = written.registry.class(node.kind, &node.class)?;
+        let class = written.registry.class(node.kind, node.class)?;
         let param = Registry::params(class).find(|param| param.name == argument.name)?;
         let items = vector::items(text, vector::dimension(param)?)?;
         let n_items = u8::try_from(items.len()).ok().filter(|_| items.len() == numbers.len())?;

@@ -75,7 +75,7 @@ impl<'a> Reckoning<'a> {
             (one.kind, one.param) == (wanted.kind, wanted.param) && one.class == wanted.class
         };
         if !last.as_ref().is_some_and(is_last) {
-            let class = self.registry.class(wanted.kind, &wanted.class)?;
+            let class = self.registry.class(wanted.kind, wanted.class)?;
             let param = Registry::params(class).find(|param| param.name == wanted.param)?;
             *last = Some((wanted, param));
         }

@@ -75,9 +75,17 @@ export async function open(browser, url, { before = () => {}, ...options } = {})
   return { page, complaints, close: () => context.close() };
 }
 
+// The program with these arguments, which ends with the tests at the latest: after one that failed nobody else ends it.
+const programs = [];
+export function started(args, options) {
+  const child = spawn(luxel, args, options);
+  programs.push(child);
+  return child;
+}
+
 // `luxel view` of these pictures.
 export async function view(...args) {
-  const child = spawn(luxel, ["view", ...args, "--no-open"], { stdio: ["ignore", "pipe", "inherit"] });
+  const child = started(["view", ...args, "--no-open"], { stdio: ["ignore", "pipe", "inherit"] });
   const url = await new Promise((done, failed) => {
     child.stdout.once("data", (text) => done(String(text).trim()));
     child.once("exit", (code) => failed(new Error(`luxel view ended with ${code}`)));
@@ -135,7 +143,7 @@ export async function attacked(browser, one) {
   server.close();
 }
 
-// Runs tests by name, those that the command line names a part of, and ends the browser.
+// Runs tests by name, those that the command line names a part of, and ends the browser and every program.
 export async function run(tests, given) {
   const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
@@ -154,6 +162,7 @@ export async function run(tests, given) {
     }
   }
   await browser.close();
+  programs.forEach((child) => child.kill("SIGINT"));
   rmSync(folder, { recursive: true });
   process.exitCode = failed ? 1 : 0;
 }

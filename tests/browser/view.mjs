@@ -333,5 +333,3 @@ const tests = {
 const [a, b] = [render("a", 4, 1), render("b", 8, 2)];
 const [one, two] = [await view(a), await view(a, b)];
 await run(tests, { one, two });
-one.end();
-two.end();

@@ -1,10 +1,10 @@
 // What the tests of `luxel watch --preview` share.
 
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { decoded, folder, isHidden, luxel, open, press, readback, text, until } from "./common.mjs";
+import { decoded, folder, isHidden, luxel, open, press, readback, started, text, until } from "./common.mjs";
 
 export const SIZE = [48, 32];
 // Wide enough for panels beside the picture.
@@ -27,7 +27,7 @@ export async function watch(content, ...args) {
   const save = (text) => writeFileSync(file, text);
   if (content) save(content);
   const words = ["watch", content ? file : args.shift(), "-o", out, "--preview", "--no-open", "-q", ...FEW, ...args];
-  const child = spawn(luxel, words, { stdio: ["ignore", "ignore", "pipe"], cwd: folder });
+  const child = started(words, { stdio: ["ignore", "ignore", "pipe"], cwd: folder });
   let said = "";
   const url = await new Promise((done, failed) => {
     child.stderr.on("data", (text) => {
@@ -95,17 +95,25 @@ export const coarse = (page) => page.addInitScript(() => {
     },
   });
 });
-// Has a browser stay busy with the first picture that is drawn in parts, from when its `isSlow` is set.
+// Has a browser stay busy with what is drawn in parts while its `isSlow` is set, and with nothing that is drawn as a whole.
 export const slow = (page) => page.addInitScript(() => {
   Object.assign(window, { isSlow: false, isBusy: false });
-  const { scissor, getSyncParameter } = WebGL2RenderingContext.prototype;
+  const { drawArrays, fenceSync, getSyncParameter } = WebGL2RenderingContext.prototype;
+  const ofParts = new WeakSet();
+  let isPart = false;
   Object.assign(WebGL2RenderingContext.prototype, {
-    scissor(...box) {
-      window.isBusy = window.isSlow;
-      scissor.apply(this, box);
+    drawArrays(...what) {
+      isPart = this.isEnabled(this.SCISSOR_TEST);
+      drawArrays.apply(this, what);
+    },
+    fenceSync(...when) {
+      const fence = fenceSync.apply(this, when);
+      if (isPart) ofParts.add(fence);
+      window.isBusy ||= isPart && window.isSlow;
+      return fence;
     },
     getSyncParameter(fence, name) {
-      return window.isSlow && window.isBusy ? this.UNSIGNALED : getSyncParameter.call(this, fence, name);
+      return window.isSlow && ofParts.has(fence) ? this.UNSIGNALED : getSyncParameter.call(this, fence, name);
     },
   });
 });

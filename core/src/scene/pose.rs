@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-/// From a thing's frame to the one around it.
-#[derive(Clone, Debug, PartialEq)]
+/// From a thing's frame to the one around it. Small, as a large scene has many and is copied.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Pose {
-    /// It stands.
-    Fixed(DAffine3),
+    /// It stands where it is made.
+    #[default]
+    Here,
+    /// It stands elsewhere.
+    Fixed(Arc<DAffine3>),
     /// It moves: steps that are applied first to last, at least one of which is not `Fixed`.
     Moving(Arc<[Step]>),
 }
@@ -42,26 +45,37 @@ pub struct Key {
 
 impl Pose {
     /// Where it is made.
-    pub const IDENTITY: Self = Self::Fixed(DAffine3::IDENTITY);
+    pub const IDENTITY: Self = Self::Here;
 
     /// A pose of one step.
     pub fn of(step: Step) -> Self {
         match step {
-            Step::Fixed(transform) => Self::Fixed(transform),
+            Step::Fixed(transform) => transform.into(),
             step => Self::Moving(Arc::new([step])),
         }
     }
 
     /// Whether it changes nothing.
     pub fn is_identity(&self) -> bool {
-        *self == Self::IDENTITY
+        self.fixed() == Some(DAffine3::IDENTITY)
+    }
+
+    /// Where it stands, unless it moves.
+    pub fn fixed(&self) -> Option<DAffine3> {
+        match self {
+            Self::Here => Some(DAffine3::IDENTITY),
+            Self::Fixed(transform) => Some(**transform),
+            Self::Moving(_) => None,
+        }
     }
 
     /// This one in a frame that stands so in the next.
     #[must_use]
     pub fn then(&self, outer: &Self) -> Self {
-        if let (Self::Fixed(inner), Self::Fixed(outer)) = (self, outer) {
-            return Self::Fixed(*outer * *inner);
+        match (self, outer) {
+            (Self::Here, one) | (one, Self::Here) => return one.clone(),
+            (Self::Fixed(inner), Self::Fixed(outer)) => return (**outer * **inner).into(),
+            _ => {}
         }
         let mut steps: Vec<Step> = vec![];
         for step in self.steps().into_iter().chain(outer.steps()) {
@@ -77,7 +91,8 @@ impl Pose {
     /// Whether both are the same to the bit, which `==` does not ask of zeros.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Fixed(a), Self::Fixed(b)) => bits(a) == bits(b),
+            (Self::Here, Self::Here) => true,
+            (Self::Fixed(a), Self::Fixed(b)) => Arc::ptr_eq(a, b) || bits(a) == bits(b),
             (Self::Moving(a), Self::Moving(b)) => {
                 Arc::ptr_eq(a, b)
                     || a.len() == b.len() && a.iter().zip(&**b).all(|(a, b)| a.is_same(b))
@@ -89,7 +104,8 @@ impl Pose {
     /// The steps, first to last.
     pub fn steps(&self) -> Vec<Step> {
         match self {
-            Self::Fixed(transform) => vec![Step::Fixed(*transform)],
+            Self::Here => vec![Step::Fixed(DAffine3::IDENTITY)],
+            Self::Fixed(transform) => vec![Step::Fixed(**transform)],
             Self::Moving(steps) => steps.to_vec(),
         }
     }
@@ -119,15 +135,13 @@ fn bits(affine: &DAffine3) -> [u64; 12] {
     affine.to_cols_array().map(f64::to_bits)
 }
 
-impl Default for Pose {
-    fn default() -> Self {
-        Self::IDENTITY
-    }
-}
-
 impl From<DAffine3> for Pose {
     fn from(transform: DAffine3) -> Self {
-        Self::Fixed(transform)
+        if bits(&transform) == bits(&DAffine3::IDENTITY) {
+            Self::Here
+        } else {
+            Self::Fixed(Arc::new(transform))
+        }
     }
 }
 
@@ -138,7 +152,7 @@ mod tests {
     #[test]
     fn poses_join_and_fixed_steps_melt_together() {
         let spin = Pose::of(Step::Spin { axis: DVec3::Y, rate: 1.0 });
-        let by = |x: f64| Pose::Fixed(DAffine3::from_translation(DVec3::X * x));
+        let by = |x: f64| Pose::from(DAffine3::from_translation(DVec3::X * x));
         assert_eq!(by(1.0).then(&by(2.0)), by(3.0));
         let joined = by(1.0).then(&spin).then(&by(2.0)).then(&by(3.0));
         assert_eq!(joined.steps().len(), 3);

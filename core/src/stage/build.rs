@@ -265,13 +265,13 @@ impl Maker<'_> {
         }
         let [open, _] = self.during;
         let place = match pose {
-            Pose::Fixed(affine) => Transform::new(*affine).map(|it| Place::Fixed(Box::new(it))),
             Pose::Moving(steps) => Motion::new(steps, &mut self.splits).and_then(|motion| {
                 if motion.stands(self.during) {
-                    return motion.at(open).map(|it| Place::Fixed(Box::new(it)));
+                    return motion.at(open).map(Place::fixed);
                 }
                 Place::moving(motion, open)
             }),
+            stands => stands.fixed().and_then(Transform::new).map(Place::fixed),
         };
         if place.is_none() {
             let message = "the transform is singular: it flattens space or is not finite";

@@ -37,6 +37,11 @@ pub struct Moving {
 }
 
 impl Place {
+    /// Of something that stands.
+    pub(super) fn fixed(transform: Transform) -> Self {
+        Self::Fixed(Box::new(transform))
+    }
+
     /// Of something that moves, seen from `time` on; `None` where it cannot be undone then.
     pub(super) fn moving(motion: Motion, time: f64) -> Option<Self> {
         let first = motion.at(time)?;

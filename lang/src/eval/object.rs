@@ -314,7 +314,8 @@ impl Evaluator<'_> {
                 if param.ty == Type::Part && !part.pose.is_identity() =>
             {
                 match &part.pose {
-                    Pose::Fixed(transform) => Fitted::Moved(id, Arc::new(*transform)),
+                    Pose::Here => Fitted::Node(id),
+                    Pose::Fixed(transform) => Fitted::Moved(id, Arc::clone(transform)),
                     Pose::Moving(_) => {
                         let message = "a part of a solid does not move in it";
                         let told = Diagnostic::error("E0418", field.span, message);

@@ -313,8 +313,5 @@ fn materials_of_an_asset_are_replaced_by_name() {
 
 /// Of what does not move.
 fn fixed(pose: &luxel_core::scene::Pose) -> glam::DAffine3 {
-    match pose {
-        luxel_core::scene::Pose::Fixed(transform) => *transform,
-        moving @ luxel_core::scene::Pose::Moving(_) => panic!("{moving:?}"),
-    }
+    pose.fixed().unwrap_or_else(|| panic!("{pose:?}"))
 }

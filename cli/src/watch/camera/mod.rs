@@ -123,10 +123,10 @@ fn significant(x: f64) -> f64 {
 /// A view in the world as a camera's parameter in a frame: the world itself, where the frame is as
 /// large as that and stands still.
 fn placed(view: &Look, pose: &Pose, before: Option<&Stage>) -> Option<(Look, Pose)> {
-    let to_world = match pose {
-        Pose::Fixed(pose) if is_rigid(pose) => return Some((*view, Pose::IDENTITY)),
-        Pose::Fixed(pose) => *pose,
-        Pose::Moving(_) => *before?.camera_place.first()?.affine(),
+    let to_world = match pose.fixed() {
+        Some(pose) if is_rigid(&pose) => return Some((*view, Pose::IDENTITY)),
+        Some(pose) => pose,
+        None => *before?.camera_place.first()?.affine(),
     };
     let back = to_world.inverse();
     let up = back.transform_vector3(view.up);

@@ -29,10 +29,10 @@ pub(super) fn block(
         };
         let _ = writeln!(out, "  {} = {value}", argument.name);
     }
-    match pose {
-        Pose::Moving(_) => out.push_str("  // and its `transform`, as it is\n"),
-        pose if pose.is_identity() => {}
-        Pose::Fixed(pose) => {
+    match pose.fixed() {
+        None => out.push_str("  // and its `transform`, as it is\n"),
+        Some(_) if pose.is_identity() => {}
+        Some(pose) => {
             let rows = pose.matrix3.transpose().to_cols_array();
             let t = pose.translation.to_array();
             let row = |i: usize| {

@@ -39,14 +39,11 @@ impl Evaluator<'_> {
         };
         let Value::Number(time, found) = time else { return self.no_motion(span) };
         let time = time * self.unit_scale(call, *found, Dimension::TIME, span)?;
-        match self.transform(transform, span)? {
-            Pose::Fixed(transform) => Some(Key { time, transform }),
-            Pose::Moving(_) => {
-                let message = "a transform at one time does not move itself";
-                self.poison("E0214", span, message);
-                None
-            }
+        let transform = self.transform(transform, span)?.fixed();
+        if transform.is_none() {
+            self.poison("E0214", span, "a transform at one time does not move itself");
         }
+        Some(Key { time, transform: transform? })
     }
 
     /// Whether a key may come after another.

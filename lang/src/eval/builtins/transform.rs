@@ -42,13 +42,13 @@ impl Evaluator<'_> {
     /// Makes a transform or a view.
     pub(super) fn make_transform(&mut self, make: Transform, call: &mut Call<'_>) -> Value {
         let made = match make {
-            Transform::Rotate => self.rotate(call).map(Pose::Fixed),
+            Transform::Rotate => self.rotate(call).map(Pose::from),
             Transform::Move => {
                 let by = self.vector_of(call, 0, Dimension::LENGTH);
-                by.map(|by| Pose::Fixed(DAffine3::from_translation(by)))
+                by.map(|by| DAffine3::from_translation(by).into())
             }
-            Transform::Scale => self.scale(call).map(Pose::Fixed),
-            Transform::Matrix => self.matrix(call).map(Pose::Fixed),
+            Transform::Scale => self.scale(call).map(Pose::from),
+            Transform::Matrix => self.matrix(call).map(Pose::from),
             Transform::Motion => self.motion(call),
             Transform::Spin => self.spin(call),
             Transform::LookAt => return self.look_at(call).unwrap_or(Value::Poison),
@@ -172,9 +172,9 @@ impl Evaluator<'_> {
             }
             other => return self.no_transform(other, span),
         };
-        match made {
-            Pose::Fixed(made) => self.invertible(made, span).map(Pose::Fixed),
-            moving @ Pose::Moving(_) => Some(moving),
+        match made.fixed() {
+            Some(fixed) => self.invertible(fixed, span).map(|_| made),
+            None => Some(made),
         }
     }
 

@@ -147,9 +147,7 @@ impl Resolver<'_> {
     fn of_elsewhere(&self, found: Diagnostic, name: &Name, shown: &str, place: Span) -> Diagnostic {
         if VECTORS.contains(&&*shown.to_lowercase()) {
             let found = found.help("a vector is written without a word: `(0, 1, 0)`");
-            let is_call =
-                self.text.get(place.range().end..).is_some_and(|rest| rest.starts_with('('));
-            if is_call { found.fix(place, "") } else { found }
+            if self.is_called(place) { found.fix(place, "") } else { found }
         } else if self.is_placed(name) {
             found.help(
                 "`place` puts what has a name; an object by itself is written `shape NAME { … }`",
@@ -160,9 +158,11 @@ impl Resolver<'_> {
                 Some((call, range)) => found.guess(call, range),
                 None => found,
             }
-        } else if self.begins_call(place) {
-            let help = "a function comes from `fn` or `import`; an object is written";
-            found.help(format!("{help} `shape {shown} {{ … }}`"))
+        } else if self.is_called(place) {
+            found.help(format!(
+                "a function comes from `fn` or `import`; an object is written with its kind, as \
+                 `shape {shown} {{ … }}` or `material {shown} {{ … }}`"
+            ))
         } else {
             found.help(
                 "names come from `let`, `param`, `fn`, `for` and `import`, not from `include`; text is \
@@ -190,12 +190,9 @@ impl Resolver<'_> {
         Some((Span::new(name.source, name.range().start, end), range))
     }
 
-    /// Whether a call of the name begins a statement.
-    fn begins_call(&self, name: Span) -> bool {
-        let (before, rest) = self.text.split_at_checked(name.range().start).unwrap_or_default();
-        let is_call = rest.get(name.range().len()..).is_some_and(|rest| rest.starts_with('('));
-        let before = before.trim_end_matches([' ', '\t']);
-        is_call && (before.is_empty() || before.ends_with(['\n', ';']))
+    /// Whether the name is called.
+    fn is_called(&self, name: Span) -> bool {
+        self.text.get(name.range().end..).is_some_and(|rest| rest.starts_with('('))
     }
 
     /// A category before a call, with the blanks behind it: `material paint(0.5)`.

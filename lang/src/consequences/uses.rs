@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use luxel_core::diag::{Diagnostic, Label, SourceId, Sources, Span};
 use memchr::memmem;
 
-use crate::eval::{DEFINED, OUTSIDE};
+use crate::eval::{DEFINED, OF_KINDS, OUTSIDE};
 use crate::syntax::{TokenKind, tokens};
 
 /// What is said of another place.
@@ -81,7 +81,12 @@ impl Definitions<'_> {
         let value = Some(at.range()).filter(|value| value.len() <= VALUE).unwrap_or_default();
         let words = tokens(text, value).filter(|token| token.kind == TokenKind::Word);
         let defined = self.of.entry(at.source).or_insert_with(|| definitions(text, at.source));
-        let of_unit = matches!(found.code, "E0201" | "E0202" | "E0203") && found.fixes.is_empty();
+        let of_unit = match found.code {
+            "E0201" | "E0202" | "E0203" => true,
+            "E0214" => found.message.contains(OF_KINDS),
+            _ => false,
+        };
+        let of_unit = of_unit && found.fixes.is_empty();
         let mut all = vec![];
         for place in words.filter_map(|word| defined.get(word.text)) {
             if of_unit && is_unitless(text, *place) {

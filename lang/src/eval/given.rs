@@ -8,10 +8,10 @@ use luxel_core::scene::{self, Given, Misfit, NodeId};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Param, Type, Unit};
 
-use super::Evaluator;
 use super::env::File;
 use super::ops::with_zeros;
 use super::value::{FieldValue, Value, What};
+use super::{Evaluator, OF_KINDS};
 use crate::syntax::Form;
 
 /// Bytes of a mend that is offered for a value as a whole.
@@ -132,7 +132,7 @@ impl Evaluator<'_> {
             return Some(given);
         }
         let message = format!(
-            "`{}` wants {}, not {} values of different kinds",
+            "`{}` wants {}, not {} values {OF_KINDS}",
             param.name,
             scene::wanted(param),
             items.len()

@@ -162,6 +162,9 @@ pub(crate) const CALLED: &str = "in this call";
 /// What is said of the place where a name is defined.
 pub(crate) const DEFINED: &str = "defined here";
 
+/// What is said of numbers in one vector that measure different things.
+pub(crate) const OF_KINDS: &str = "of different kinds";
+
 /// What is said of pixels that another picture may have.
 pub(crate) const OUTSIDE: &str = "is outside the picture";
 

@@ -10,6 +10,7 @@ use luxel_core::scene::{Argument, Color, GroupId, Node, NodeId, Pose};
 use luxel_sdk::kind::Kind;
 use luxel_sdk::params::{Dimension, Look};
 
+use super::OF_KINDS;
 use super::builtins::Builtin;
 use super::env::{Env, File};
 use crate::syntax::{FnDef, Form, Name};
@@ -260,7 +261,11 @@ impl Value {
                 format!("a vector of {} numbers", n.data.len())
             }
             Self::Numbers(n) => format!("a list of {} numbers", n.data.len()),
-            Self::Items(i) if i.form == Form::Tuple => format!("a vector of {}", i.items.len()),
+            Self::Items(i) if i.form == Form::Tuple => {
+                let are_numbers = i.items.iter().all(|item| matches!(item, Self::Number(..)));
+                let kinds = if are_numbers { format!(" {OF_KINDS}") } else { String::new() };
+                format!("a vector of {}{kinds}", i.items.len())
+            }
             Self::Items(i) => format!("a list of {}", i.items.len()),
             Self::Record(_) => "a record".to_owned(),
             Self::Range(_) => "a range".to_owned(),

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use glam::DAffine3;
 use luxel_core::diag::Span;
 use luxel_core::scene::{Argument, Color, GroupId, Node, NodeId, Pose};
 use luxel_sdk::kind::Kind;
@@ -124,7 +125,9 @@ impl Held {
     /// Those of an object with so many fields and of its node, added to those of `all`.
     pub(crate) fn of(n_fields: usize, all: &Rc<Cell<usize>>) -> Self {
         let of_field = size_of::<FieldValue>() + size_of::<Argument>();
-        let bytes = size_of::<ObjectValue>() + size_of::<Node>() + n_fields * of_field;
+        // Most have no transform, but each is several pieces of memory, which take more than they hold.
+        let of_one = size_of::<ObjectValue>() + size_of::<DAffine3>() + size_of::<Node>();
+        let bytes = of_one + n_fields * of_field;
         Self { bytes, all: all.clone() }.counted()
     }
 

@@ -109,10 +109,15 @@ fn copied() -> Vec<Attack> {
         0 => "let m0 = material diffuse { reflectance = 0.5 }\n".to_owned(),
         i => format!("let m{i} = m{} with {{ reflectance = 0.4 }}\n", i - 1),
     };
+    let moved = |i: usize| match i {
+        0 => "let b0 = shape sphere { radius = 1 m }\n".to_owned(),
+        i => format!("let b{i} = b{} with {{ transform = move(({i}, 0, 0) m) }}\n", i - 1),
+    };
     let labelled = "shape sphere \"a\" { radius = 1 m }";
     vec![
         attack("groups of groups", lines(8, place) + "place g7"),
         attack("chained copies", lines(400_000, amended)),
+        attack("chained transforms", lines(400_000, moved)),
         attack("parameters", lines(900_000, |i| format!("param p{i}: int = 1\n"))),
         attack("one label", format!("{labelled}\n").repeat(1_200_000)),
         attack(

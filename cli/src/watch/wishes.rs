@@ -143,7 +143,7 @@ mod tests {
         let (wishes, _wakes) = wishes();
         let look = Look { from: DVec3::ZERO, to: DVec3::X, up: DVec3::Y };
         let look = Wished { look, zoom: None };
-        let written = |hash: u8| (Some([hash; 32]), Pose::IDENTITY);
+        let written = |hash: u8| (Some([hash; 32]), Pose::Here);
         assert_eq!(wishes.view(written(1)), None);
         wishes.change(|wish| wish.view = Some(look));
         assert_eq!(wishes.view(written(1)), Some(look));

@@ -211,7 +211,7 @@ pub(super) mod tests {
         let mut scene = Scene { nodes, ..Scene::default() };
         let placed = |target, at| Placed {
             target,
-            pose: Pose::IDENTITY,
+            pose: Pose::Here,
             material: None,
             span: Span::new(SourceId(0), at, at),
         };

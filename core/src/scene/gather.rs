@@ -214,7 +214,7 @@ mod tests {
 
     fn placed(target: Target, at: usize) -> Placed {
         let span = Span::new(SourceId(0), at, at);
-        Placed { target, pose: Pose::IDENTITY, material: None, span }
+        Placed { target, pose: Pose::Here, material: None, span }
     }
 
     #[test]

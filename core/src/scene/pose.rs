@@ -44,9 +44,6 @@ pub struct Key {
 }
 
 impl Pose {
-    /// Where it is made.
-    pub const IDENTITY: Self = Self::Here;
-
     /// A pose of one step.
     pub fn of(step: Step) -> Self {
         match step {
@@ -157,7 +154,16 @@ mod tests {
         let joined = by(1.0).then(&spin).then(&by(2.0)).then(&by(3.0));
         assert_eq!(joined.steps().len(), 3);
         assert_eq!(joined.steps()[2], by(5.0).steps()[0]);
-        assert_eq!(Pose::IDENTITY.then(&spin), spin);
-        assert_eq!(spin.then(&Pose::IDENTITY), spin);
+        assert_eq!(Pose::Here.then(&spin), spin);
+        assert_eq!(spin.then(&Pose::Here), spin);
+    }
+
+    #[test]
+    fn what_changes_nothing_holds_nothing() {
+        assert_eq!(Pose::from(DAffine3::IDENTITY), Pose::Here);
+        let there_and_back =
+            [1.0, -1.0].map(|x| Pose::from(DAffine3::from_translation(DVec3::X * x)));
+        assert_eq!(there_and_back[0].then(&there_and_back[1]), Pose::Here);
+        assert!(size_of::<Pose>() <= size_of::<Arc<[Step]>>() + size_of::<usize>());
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn flatten(scene: &Scene, watch: &Watch) -> Result<Vec<Flat>, Box<Dia
 /// The same with at most `limit`.
 fn within(limit: usize, scene: &Scene, watch: &Watch) -> Result<Vec<Flat>, Box<Diagnostic>> {
     let mut walk = Walk { scene, limit, watch, out: vec![] };
-    walk.over(&scene.root, &Pose::IDENTITY, None)?;
+    walk.over(&scene.root, &Pose::Here, None)?;
     Ok(walk.out)
 }
 
@@ -108,7 +108,7 @@ mod tests {
             span: at(0),
             hash: [0; 32],
         });
-        let pose = Pose::IDENTITY;
+        let pose = Pose::Here;
         let placed =
             |target, span| Placed { target, pose: pose.clone(), material: None, span: at(span) };
         let pair = [1, 2].map(|place| placed(Target::Node(node), place)).to_vec();

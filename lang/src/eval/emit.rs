@@ -104,11 +104,11 @@ impl Evaluator<'_> {
         };
         match object.what {
             What::Group(id, material) => {
-                self.put(object, Target::Group(id), &Pose::IDENTITY, material, span);
+                self.put(object, Target::Group(id), &Pose::Here, material, span);
             }
             What::Node(id, kind) => match kind {
                 Kind::Shape | Kind::Light | Kind::Importer => {
-                    self.put(object, Target::Node(id), &Pose::IDENTITY, None, span);
+                    self.put(object, Target::Node(id), &Pose::Here, None, span);
                 }
                 Kind::Material | Kind::Texture | Kind::Phase => {
                     let message = format!("a {kind} that stands alone is seen nowhere");

@@ -69,6 +69,6 @@ impl Evaluator<'_> {
 }
 
 fn placed(scene: &Scene, id: NodeId) -> Placed {
-    let (pose, span) = (Pose::IDENTITY, scene.node(id).span);
+    let (pose, span) = (Pose::Here, scene.node(id).span);
     Placed { target: Target::Node(id), pose, material: None, span }
 }

@@ -116,7 +116,7 @@ impl Evaluator<'_> {
 
     /// The transform and material of a group or a placement.
     pub(super) fn group_fields(&mut self, fields: &[FieldValue]) -> (Pose, Option<NodeId>) {
-        let (mut pose, mut material) = (Pose::IDENTITY, None);
+        let (mut pose, mut material) = (Pose::Here, None);
         self.given_twice(fields.iter().map(|field| &field.name));
         for (i, field) in fields.iter().enumerate() {
             match &*field.name.text {
@@ -218,7 +218,7 @@ impl Evaluator<'_> {
         let mut out = Taken {
             params: Vec::with_capacity(fields.len()),
             overrides: vec![],
-            pose: Pose::IDENTITY,
+            pose: Pose::Here,
             depth: 0,
             meant: vec![],
             is_placed: true,
@@ -247,7 +247,7 @@ impl Evaluator<'_> {
             if let Value::Object(inner) = &field.value {
                 out.depth = out.depth.max(inner.depth);
                 if param.ty != Type::Part {
-                    let pose = std::mem::replace(&mut out.pose, Pose::IDENTITY);
+                    let pose = std::mem::replace(&mut out.pose, Pose::Here);
                     out.pose = self.lifted(class, inner, field.span, pose);
                 }
             }
@@ -310,20 +310,16 @@ impl Evaluator<'_> {
     /// What a field gives a parameter. A shape that is a part of another keeps its transform.
     fn in_its_place(&mut self, value: Fitted, param: &Param, field: &FieldValue) -> Argument {
         let value = match (value, &field.value) {
-            (Fitted::Node(id), Value::Object(part))
-                if param.ty == Type::Part && !part.pose.is_identity() =>
-            {
-                match &part.pose {
-                    Pose::Here => Fitted::Node(id),
-                    Pose::Fixed(transform) => Fitted::Moved(id, Arc::clone(transform)),
-                    Pose::Moving(_) => {
-                        let message = "a part of a solid does not move in it";
-                        let told = Diagnostic::error("E0418", field.span, message);
-                        self.tell(told.help("let the whole solid move"));
-                        Fitted::Node(id)
-                    }
+            (Fitted::Node(id), Value::Object(part)) if param.ty == Type::Part => match &part.pose {
+                Pose::Here => Fitted::Node(id),
+                Pose::Fixed(transform) => Fitted::Moved(id, Arc::clone(transform)),
+                Pose::Moving(_) => {
+                    let message = "a part of a solid does not move in it";
+                    let told = Diagnostic::error("E0418", field.span, message);
+                    self.tell(told.help("let the whole solid move"));
+                    Fitted::Node(id)
                 }
-            }
+            },
             (value, _) => value,
         };
         Argument { name: param.name, value, span: field.span }

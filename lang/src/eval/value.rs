@@ -125,7 +125,7 @@ impl Held {
     /// Those of an object with so many fields and of its node, added to those of `all`.
     pub(crate) fn of(n_fields: usize, all: &Rc<Cell<usize>>) -> Self {
         let of_field = size_of::<FieldValue>() + size_of::<Argument>();
-        // Most have no transform, but each is several pieces of memory, which take more than they hold.
+        // A transform is a piece of memory beside an object, of which any may have one.
         let of_one = size_of::<ObjectValue>() + size_of::<DAffine3>() + size_of::<Node>();
         let bytes = of_one + n_fields * of_field;
         Self { bytes, all: all.clone() }.counted()

@@ -124,7 +124,7 @@ fn significant(x: f64) -> f64 {
 /// large as that and stands still.
 fn placed(view: &Look, pose: &Pose, before: Option<&Stage>) -> Option<(Look, Pose)> {
     let to_world = match pose.fixed() {
-        Some(pose) if is_rigid(&pose) => return Some((*view, Pose::IDENTITY)),
+        Some(pose) if is_rigid(&pose) => return Some((*view, Pose::Here)),
         Some(pose) => pose,
         None => *before?.camera_place.first()?.affine(),
     };

@@ -135,7 +135,7 @@ impl Evaluator<'_> {
         let mut slot = |kind: Kind| {
             let id = (*self.scene.slot_mut(kind)?)?;
             let is_camera = kind == Kind::Camera;
-            let pose = if is_camera { self.scene.camera_pose.clone() } else { Pose::IDENTITY };
+            let pose = if is_camera { self.scene.camera_pose.clone() } else { Pose::Here };
             Some(Slot { kind, id, pose })
         };
         let slots: Vec<Slot> = kinds.into_iter().filter_map(&mut slot).collect();

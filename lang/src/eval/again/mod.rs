@@ -213,7 +213,7 @@ impl State {
         let scene = &mut self.scene;
         (scene.camera, scene.film, scene.integrator) = (None, None, None);
         (scene.sampler, scene.filter, scene.medium) = (None, None, None);
-        scene.camera_pose = Pose::IDENTITY;
+        scene.camera_pose = Pose::Here;
         for slot in rare.iter().flat_map(|rare| &rare.slots) {
             if scene.slot_mut(slot.kind)?.replace(slot.id).is_some() {
                 return None;

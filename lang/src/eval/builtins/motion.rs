@@ -39,11 +39,11 @@ impl Evaluator<'_> {
         };
         let Value::Number(time, found) = time else { return self.no_motion(span) };
         let time = time * self.unit_scale(call, *found, Dimension::TIME, span)?;
-        let transform = self.transform(transform, span)?.fixed();
-        if transform.is_none() {
+        let Some(transform) = self.transform(transform, span)?.fixed() else {
             self.poison("E0214", span, "a transform at one time does not move itself");
-        }
-        Some(Key { time, transform: transform? })
+            return None;
+        };
+        Some(Key { time, transform })
     }
 
     /// Whether a key may come after another.

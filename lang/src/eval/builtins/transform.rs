@@ -151,12 +151,12 @@ impl Evaluator<'_> {
     pub(in crate::eval) fn transform(&mut self, value: &Value, span: Span) -> Option<Pose> {
         let made = match value {
             Value::Transform(one) => Pose::clone(one),
-            Value::Numbers(n) if n.data.is_empty() => Pose::IDENTITY,
+            Value::Numbers(n) if n.data.is_empty() => Pose::Here,
             Value::Items(items) => {
                 if !self.tick(items.items.len() as u64 * JOINED, span) {
                     return None;
                 }
-                let mut all = Pose::IDENTITY;
+                let mut all = Pose::Here;
                 for item in &items.items {
                     let Value::Transform(next) = item else {
                         return self.no_transform(item, span);

@@ -17,7 +17,7 @@ impl Scene {
     /// file as `place` has it; `None` once it is over.
     pub fn gathered(
         &self,
-        place: &(dyn Fn(Span) -> Span + Sync),
+        place: &(impl Fn(Span) -> Span + Sync),
         is_over: IsOver<'_>,
     ) -> Option<Self> {
         let order = Order::of(self);
@@ -70,7 +70,7 @@ impl Scene {
     /// and hashes the nodes. `None`, and a scene of no use, once it is over.
     pub fn prepare(
         &mut self,
-        place: &(dyn Fn(Span) -> Span + Sync),
+        place: &(impl Fn(Span) -> Span + Sync),
         is_over: IsOver<'_>,
     ) -> Option<()> {
         let numbers = |n: usize| (0..).take(n).collect::<Vec<u32>>();
@@ -130,13 +130,13 @@ fn met(numbers: &[u32], n_met: u32) -> Vec<u32> {
 }
 
 /// Copies with new numbers, and places in a file.
-struct Put<'a> {
+struct Put<'a, P> {
     nodes: &'a [u32],
     groups: &'a [u32],
-    place: &'a (dyn Fn(Span) -> Span + Sync),
+    place: &'a P,
 }
 
-impl Put<'_> {
+impl<P: Fn(Span) -> Span + Sync> Put<'_, P> {
     fn id(&self, NodeId(old): NodeId) -> NodeId {
         NodeId(self.nodes[old as usize])
     }
@@ -147,19 +147,20 @@ impl Put<'_> {
         let lengths: Vec<u32> = lengths.collect();
         let mut all = Vec::with_capacity(lengths.iter().map(|length| *length as usize).sum());
         for node in nodes.clone() {
-            all.extend(node.params.iter().map(|argument| self.argument(argument)));
+            // Copied as they are, then changed: that takes two thirds of the time of making each anew.
+            let first = all.len();
+            all.extend_from_slice(&node.params);
+            all[first..].iter_mut().for_each(|argument| self.rename(argument));
         }
         let runs = Arguments::runs(all, lengths);
         out.extend(nodes.zip(runs).map(|(node, params)| self.node(node, params)));
     }
 
-    fn argument(&self, argument: &Argument) -> Argument {
-        let value = match &argument.value {
-            Value::Node(id) => Value::Node(self.id(*id)),
-            Value::Moved(id, transform) => Value::Moved(self.id(*id), transform.clone()),
-            value => value.clone(),
-        };
-        Argument { name: argument.name, value, span: (self.place)(argument.span) }
+    fn rename(&self, argument: &mut Argument) {
+        if let Value::Node(id) | Value::Moved(id, _) = &mut argument.value {
+            *id = self.id(*id);
+        }
+        argument.span = (self.place)(argument.span);
     }
 
     fn node(&self, node: &Node, params: Arguments) -> Node {

@@ -6,7 +6,7 @@ use luxel_core::diag::{Diagnostic, SourceId, Sources, Span};
 
 use super::line_of;
 use super::nearby::is_unread;
-use crate::syntax::{TokenKind, tokens};
+use crate::syntax::{ELSE, TokenKind, tokens};
 use crate::words::BEFORE_NAMES;
 
 /// Bytes of an expression in which a name is looked for.
@@ -21,7 +21,8 @@ const NEAR: u32 = 500;
 /// Nor is it told that a value does not fit which a line gives to a name in which something cannot be read.
 pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let mut lines: BTreeMap<_, Span> = BTreeMap::new();
-    let wrong = diagnostics.iter().filter(|it| is_bracket(it, sources));
+    let is_wrong = |it: &&Diagnostic| is_bracket(it, sources) || it.message == ELSE;
+    let wrong = diagnostics.iter().filter(is_wrong);
     for at in wrong.filter_map(Diagnostic::span) {
         let first = lines.entry((at.source, line_of(at, sources))).or_insert(at);
         *first = at.min(*first);
@@ -34,13 +35,17 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         at.range().len() <= LINE && words.any(|word| names.contains(&(at.source, word.text)))
     };
     let displaced = displaced(diagnostics, sources);
+    let branches = diagnostics.iter().filter(|found| found.message == ELSE);
+    let branches = branches.filter_map(Diagnostic::span);
+    let branches: BTreeSet<_> = branches.map(|at| (at.source, line_of(at, sources))).collect();
     diagnostics.retain(|found| {
         let Some(at) = found.span() else { return true };
         // What is surely `=` for `:` is none in `fn f a: vec3, b: vec3) = a`.
         let is_judged = found.is_error() && (found.sure().is_none() || found.code == "E0017");
         let first = lines.get(&(at.source, line_of(at, sources)));
-        let is_beside =
-            !matches!(found.code, "E0101" | "E0403") && first.is_some_and(|first| *first != at);
+        let is_beside = !matches!(found.code, "E0101" | "E0403")
+            && first.is_some_and(|first| *first != at)
+            || branches.contains(&(at.source, line_of(at, sources))) && found.message != ELSE;
         let is_of_one = found.code.starts_with("E02") && !names.is_empty() && of_name(at);
         let is_displaced = displaced.contains(&(at, found.code));
         !is_displaced && !(is_judged && (is_beside || is_of_one))

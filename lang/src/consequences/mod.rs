@@ -1,10 +1,13 @@
 //! Mistakes of which the cause is told already, or of which another says more.
 
+mod blocks;
 mod calls;
 mod closed;
+mod files;
 mod lines;
 mod names;
 mod nearby;
+mod pairs;
 mod uses;
 
 use std::collections::BTreeSet;
@@ -20,8 +23,10 @@ const LOOKED_AT: usize = 1 << 10;
 
 /// Takes out what is said only because of something else that is told.
 pub(crate) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+    blocks::sift(diagnostics, sources);
     unread(diagnostics, sources);
     names::sift(diagnostics, sources);
+    pairs::sift(diagnostics, sources);
     nearby::sift(diagnostics, sources);
     lines::sift(diagnostics, sources);
     calls::sift(diagnostics);
@@ -44,7 +49,7 @@ fn unread(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let bodies: Vec<Span> = causes.clone().filter_map(|found| body(found, sources)).collect();
     let is_unended = causes.clone().any(|found| found.code == "E0005");
     let is_nameless = causes.clone().any(|found| lacks_name(found, sources));
-    let is_unincluded = causes.clone().any(|found| includes(found, sources));
+    let files = files::unread(diagnostics, sources);
     let has_others = diagnostics.iter().any(|found| found.is_error() && found.code != "E0109");
     let is_one_name = is_nameless && n_unknown(diagnostics, sources) == 1;
     let mut causes: Vec<Span> = causes.flat_map(of).collect();
@@ -61,11 +66,13 @@ fn unread(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
         let says_less = match found.code {
             "E0101" => {
-                let is_nobody = is_one_name || is_nameless && found.sure().is_none();
+                let is_hidden =
+                    is_nameless || files.hide_names && !files::reads_one(found, sources);
+                let is_nobody = is_one_name || is_hidden && found.sure().is_none();
                 is_nobody || has_cause(&words) || is_category_behind(found, &braces, sources)
             }
             // A text that does not end may be a label, and a file that is not read may bear it.
-            "E0109" => is_unended || is_unincluded || has_others && is_label(found, sources),
+            "E0109" => is_unended || files.hide_labels || has_others && is_label(found, sources),
             "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.
@@ -113,24 +120,39 @@ fn in_doubt(found: &Diagnostic, sources: &Sources) -> Option<Span> {
             let end = found.fixes.iter().map(|fix| fix.span).find(ends_line).unwrap_or(at);
             found.labels.get(1).map(|open| open.span.to(end))
         }
+        "E0008" if sources.text(at.source).get(at.range()) != Some("{") => {
+            Some(statement_from(at, sources))
+        }
         "E0010" if found.message == EARLY => Some(going_on(at, sources)),
         "E0010" => Some(Span::new(at.source, line_of(at, sources), at.range().end)),
         _ => None,
     }
 }
 
+/// What stands in and below the statement of a bracket that never closes: what is indented further, or closes.
+fn statement_from(bracket: Span, sources: &Sources) -> Span {
+    let closes = |line: &[u8]| b")]}".iter().any(|it| line.trim_ascii().starts_with(&[*it]));
+    lines_from(bracket, sources, &|deeper, line| deeper > 0 || deeper == 0 && closes(line))
+}
+
 /// What goes on below a brace, up to a line that begins with another and is not indented as far.
 fn going_on(brace: Span, sources: &Sources) -> Span {
-    let (text, start) = (sources.text(brace.source).as_bytes(), brace.range().start);
+    lines_from(brace, sources, &|deeper, line| deeper >= 0 || !line.trim_ascii().starts_with(b"}"))
+}
+
+/// From a bracket on, the rest of its line and those below it as long as they belong to it, by how much deeper
+/// than its own they are indented.
+fn lines_from(bracket: Span, sources: &Sources, is_of_it: &dyn Fn(isize, &[u8]) -> bool) -> Span {
+    let (text, start) = (sources.text(bracket.source).as_bytes(), bracket.range().start);
     let indent = |line: &[u8]| line.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
-    let own = indent(text.get(line_of(brace, sources)..).unwrap_or_default());
+    let own = indent(text.get(line_of(bracket, sources)..).unwrap_or_default());
     let below = text.get(start..).unwrap_or_default();
     let below = &below[..below.len().min(LOOKED_AT)];
-    let is_within = |line: &&[u8]| indent(line) >= own || !line.trim_ascii().starts_with(b"}");
+    let is_within = |line: &&[u8]| is_of_it(indent(line).cast_signed() - own.cast_signed(), line);
     let mut lines = below.split_inclusive(|byte| *byte == b'\n');
     let n = lines.next().map_or(0, <[u8]>::len);
     let n = lines.take_while(is_within).fold(n, |n, line| n + line.len());
-    Span::new(brace.source, start, start + n)
+    Span::new(bracket.source, start, start + n)
 }
 
 /// Whether an object is said to lack what stands in brackets in it that another one closes, or that nothing opens.
@@ -207,13 +229,6 @@ fn is_label(found: &Diagnostic, sources: &Sources) -> bool {
         memchr::memmem::find_iter(text.as_bytes(), &label)
             .any(|at| text.as_bytes()[at + label.len()..].trim_ascii_start().starts_with(b"{"))
     })
-}
-
-/// Whether a mistake stands on a line that reads another file.
-fn includes(found: &Diagnostic, sources: &Sources) -> bool {
-    let Some(at) = found.span() else { return false };
-    let line = sources.text(at.source).get(line_of(at, sources)..).unwrap_or_default();
-    line.trim_ascii_start().starts_with("include")
 }
 
 /// Where the line of a place begins, or as far before it as is looked at.
@@ -376,8 +391,10 @@ mod tests {
         let called = "let a = tall(1)\nlet b = tall(2)";
         assert_eq!(codes(&format!("fn talli: int) = i\n{called}")), ["E0010", "E0409"]);
         assert_eq!(codes(&format!("fn talle(i: int) = i\n{called}")), ["E0101", "E0409"]);
-        for head in ["let = tall 3", "tall let = 3", "fn tall x = 3"] {
-            assert_eq!(codes(&format!("{head}\n{uses}")), ["E0023", "E0409"], "{head}");
+        let heads =
+            [("let = tall 3", "E0019"), ("tall let = 3", "E0023"), ("fn tall x = 3", "E0023")];
+        for (head, code) in heads {
+            assert_eq!(codes(&format!("{head}\n{uses}")), [code, "E0409"], "{head}");
         }
         let both = load_of("let a = tall * 2\nlet b = tall * 3").diagnostics.remove(0);
         assert_eq!(both.labels.len(), 2);

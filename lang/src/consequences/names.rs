@@ -15,11 +15,11 @@ use super::{lacks_name, line_of};
 
 /// Words beside something that cannot be read that may be what was to be defined there, on each side.
 const WORDS: usize = 3;
-/// Bytes of its line before it, and of the text behind it, that are looked at.
+/// Bytes of its line before it that are looked at.
 const BYTES: usize = 200;
 /// Letters from which on the beginning of such a word may be meant by it: `fn riseb: int)`.
 const LONG: usize = 3;
-/// Bytes of a line on which parameters are looked for.
+/// Bytes of a line on which parameters are looked for, and of the text behind it, in which comments may stand.
 const LINE: usize = 1000;
 /// Bytes of a text in which a definition is looked for.
 const SEARCHED: usize = 1 << 20;
@@ -28,6 +28,9 @@ const SHOWN: usize = 4;
 
 /// What is told of words of the language that are names.
 const WORD: &str = "E0019";
+
+/// What is told of names that stand before their definition.
+const EARLY: &str = "E0102";
 
 /// A word of a text, and where it begins.
 type Word<'a> = (SourceId, &'a str, u32);
@@ -38,8 +41,9 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let is_cause =
         |found: &&Diagnostic| found.code == "E0001" || is_unread(found) && found.sure().is_none();
     let causes = diagnostics.iter().filter(is_cause).filter_map(Diagnostic::span);
-    let defined = |at| words_beside(at, sources).chain(parameters(at, sources));
-    let unread: BTreeSet<Word<'_>> = causes.flat_map(defined).collect();
+    let causes: BTreeSet<Span> = causes.collect();
+    let defined = |at: &Span| words_beside(*at, sources).chain(parameters(*at, sources));
+    let unread: BTreeSet<Word<'_>> = causes.iter().flat_map(defined).collect();
     named_by_use(diagnostics, sources);
     let mut places: BTreeMap<(SourceId, &str), Vec<Span>> = BTreeMap::new();
     for found in &*diagnostics {
@@ -57,7 +61,10 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             return !is_nameless && !at.is_some_and(is_one);
         }
         let Some(name) = name_or_parameter(found, sources) else { return true };
-        let is_defined = found.code == "E0101" && is_defined_by_one(name, found, &unread);
+        // `rise(b: int) = b * 1 m`, which is read as a call too
+        let is_unread = places[&name].iter().any(|at| causes.contains(at));
+        let is_defined = is_unread || is_defined_by_one(name, found, &unread);
+        let is_defined = found.code == "E0101" && is_defined;
         !is_defined && told_once(found, name, &places[&name], sources)
     });
 }
@@ -149,7 +156,7 @@ fn told_once(
 
 /// The name that nothing stands for, or that is a word of the language.
 fn name<'a>(found: &Diagnostic, sources: &'a Sources) -> Option<(SourceId, &'a str)> {
-    let at = found.span().filter(|_| found.code == "E0101" || found.code == WORD)?;
+    let at = found.span().filter(|_| matches!(found.code, "E0101" | EARLY | WORD))?;
     let name = sources.text(at.source).get(at.range())?;
     Some((at.source, name)).filter(|_| Kind::of_word(name).is_none() || found.code == WORD)
 }
@@ -187,7 +194,8 @@ fn definition(name: &str, source: SourceId, sources: &Sources) -> Option<Span> {
     let at = all.next().filter(|_| all.next().is_none())?;
     let before = text[..at].trim_end_matches([' ', '\t']);
     let is_parameter = before.ends_with(['(', ',']) && text[at + name.len()..].starts_with(':');
-    let defines = is_parameter || BEFORE_NAMES.iter().any(|word| before.ends_with(word));
+    let is_named = BEFORE_NAMES.iter().chain(&["\" as"]).any(|word| before.ends_with(word));
+    let defines = is_parameter || is_named;
     defines.then(|| Span::new(source, at, at + name.len()))
 }
 
@@ -202,7 +210,7 @@ fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
     let mut all: Vec<Token<'_>> = tokens(text, line..start).collect();
     let first = all.len().saturating_sub(WORDS);
     let is_end = |end: &usize| text.is_char_boundary(*end);
-    let end = (start + BYTES..text.len()).find(is_end).unwrap_or(text.len());
+    let end = (start + LINE..text.len()).find(is_end).unwrap_or(text.len());
     let words = tokens(text, start..end).filter(|token| token.kind != TokenKind::Doc);
     all.extend(words.take(WORDS + 1));
     let defines = |i: usize| all.get(i).is_some_and(|token| BEFORE_NAMES.contains(&token.text));
@@ -210,9 +218,9 @@ fn words_beside(at: Span, sources: &Sources) -> impl Iterator<Item = Word<'_>> {
         let token = &all[*i];
         let is_behind = (1..=2).any(|back| i.checked_sub(back).is_some_and(defines));
         let is = |i: usize, sign| all.get(i).is_some_and(|token| token.text == sign);
-        // `let a = b { let` and `} c = d`
+        // `let a = b { let` and `} c = d`, `fn f(x: int) = (x fn` and `) g(y: int) = y`
         let is_closed = *i > 0 && matches!(all[i - 1].text, "}" | ")" | "]");
-        let is_given = is_closed && is(i + 1, "=");
+        let is_given = is_closed && (is(i + 1, "=") || is(i + 1, "("));
         let begins = *i == 0 || token.first_on_line || is_given;
         token.kind == TokenKind::Word && (begins || is_behind)
     };

@@ -60,12 +60,11 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             continue;
         };
         let (first, second) = (&diagnostics[*i], &diagnostics[*j]);
-        if is_unread(first) && is_unread(second) && (first.code, second.code) != ("E0016", "E0014")
-        {
-            if first.sure().is_none() || second.sure().is_none() {
-                is_out[*j] = true;
-                unsure.push(*i);
-            }
+        let is_sure = first.sure().is_some() && second.sure().is_some();
+        let are_unread = is_unread(first) && is_unread(second) && !is_sure;
+        if are_unread && (first.code, second.code) != ("E0016", "E0014") {
+            is_out[*j] = true;
+            unsure.push(*i);
         } else if follows(second, first, n, sources) {
             is_out[*j] = true;
         } else if follows(first, second, n, sources) {
@@ -108,7 +107,8 @@ fn follows(found: &Diagnostic, cause: &Diagnostic, n: usize, sources: &Sources) 
         ("E0403", "E0204") | ("E0017", "E0113") => true,
         // `[for for i in 0..3 => i]`, `(2 *q a, 3)`, `[0, 1. 2]`, `f(1. i)`, `rgb.srgb rgb.srgb(1, 1, 1)`
         // `group box "a" {`, and `move(x) cmshape`, below which `cone {` stands
-        ("E0014", "E0019" | "E0016")
+        // and `assert a < 8 cm"too large",`
+        ("E0014", "E0019" | "E0016" | "E0023")
         | ("E0204", "E0016")
         | ("E0114", "E0014" | "E0214")
         | ("E0401", "E0401" | "E0204") => n == 0,
@@ -167,7 +167,13 @@ fn is_within(cause: &Diagnostic, found: &Diagnostic, sources: &Sources) -> bool 
         let defines = BEFORE_NAMES.iter().any(|word| line.starts_with(word));
         is_next && defines && indent(text, before, sources) < indent(text, at, sources)
     };
-    is_unread(cause) && cause.sure().is_none() && is_below()
+    let is_open = || {
+        text.get(before.range().end..).is_some_and(|behind| {
+            behind.lines().next().is_some_and(|line| line.trim_end().ends_with('='))
+        })
+    };
+    let is_header = cause.code == "E0019" || is_unread(cause) && cause.sure().is_some();
+    (is_unread(cause) && cause.sure().is_none() || is_header && is_open()) && is_below()
 }
 
 /// Whether the same is written in two places.

@@ -170,10 +170,23 @@ impl Evaluator<'_> {
             matches!(stmt.node, StmtNode::Broken { .. } | StmtNode::Object(_))
                 && syntax::says_units(self.written(stmt.span))
         };
-        if !stmts.iter().any(is_meant) {
+        if !stmts.iter().any(is_meant)
+            && !stmts.first().is_some_and(|stmt| self.follows_units(stmt))
+        {
             return BTreeMap::new();
         }
         super::types::measured().filter_map(super::types::dimension).map(one).collect()
+    }
+
+    /// Whether what stands before the first statement, and is none, says units.
+    fn follows_units(&self, first: &Stmt) -> bool {
+        if self.begun.contains_key(&first.span.source) {
+            return false;
+        }
+        let text = self.sources.text(first.span.source);
+        let before = text.get(..first.span.range().start).unwrap_or_default();
+        let mut braces = memchr::memchr_iter(b'{', before.as_bytes());
+        braces.next().is_some_and(|at| syntax::says_units(&before[at..]))
     }
 
     /// Evaluates a file that was read; gives its names.

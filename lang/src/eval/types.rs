@@ -12,6 +12,11 @@ use super::value::Value;
 pub(crate) use crate::syntax::type_names::{dimension, meant, measured, names};
 use crate::syntax::{Form, ListTy, Ty};
 
+/// Whether a type exists.
+fn is_known(ty: &str) -> bool {
+    names().any(|known| known == ty)
+}
+
 impl Evaluator<'_> {
     /// The value if it fits the type; a bare number takes the file's unit. Else poison, and told.
     pub(super) fn fit(&mut self, ty: &Ty, value: Value, span: Span, env: &Env) -> Value {
@@ -38,6 +43,9 @@ impl Evaluator<'_> {
                 let fits = wanted.is_some_and(|d| d == n.dimension) || &*ty.name.text == "any";
                 if fits || n.data.is_empty() {
                     return value;
+                }
+                if !is_known(&ty.name.text) {
+                    return Value::Poison;
                 }
                 self.unfit(&format!("a list of {}", ty.name.text), &value, span)
             }
@@ -90,8 +98,10 @@ impl Evaluator<'_> {
                 let message = format!("a {ty} is wanted, {} is given", value.describe());
                 self.poison("E0408", span, message)
             }
-            // A type that does not exist was told when names were resolved.
-            _ if !names().any(|known| known == ty) => value,
+            // A type that does not exist was told when names were resolved; it may have given a bare number its
+            // unit.
+            (false, Value::Number(_, Dimension::NONE), _) if !is_known(ty) => Value::Poison,
+            _ if !is_known(ty) => value,
             _ => self.unfit(&format!("a {ty}"), &value, span),
         }
     }

@@ -100,13 +100,14 @@ impl Scanner<'_> {
         open.iter().rev().take(n_closed).any(|open| *open < line)
     }
 
-    /// Whether a bracket alone on its line, which is indented as that of an open brace is, stands for the
-    /// end of the block.
+    /// Whether a bracket alone on its line but for an `else`, which is indented as that of an open brace is,
+    /// stands for the end of the block.
     fn ends_block(&self, open: usize) -> bool {
         let lines = before_on_line(self.bytes, self.at).zip(before_on_line(self.bytes, open));
         let Some((before, line)) = lines else { return false };
-        let is_alone =
-            before.trim_ascii().is_empty() && self.rest_of_line().trim_ascii().is_empty();
+        let behind = self.rest_of_line().trim_ascii();
+        let ends = behind.is_empty() || behind.starts_with(b"else ");
+        let is_alone = before.trim_ascii().is_empty() && ends;
         let indent = line.len() - line.trim_ascii_start().len();
         is_alone && indent == before.len() && line.len() > indent
     }

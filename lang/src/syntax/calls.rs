@@ -4,6 +4,7 @@ use luxel_core::diag::{Diagnostic, Span};
 
 use super::around::{Around, told};
 use super::lex::TokenKind;
+use crate::words::RESERVED;
 
 /// Functions of other languages that what stands behind them is moved by.
 const MOVING: [&str; 6] = ["translate", "move", "rotate", "scale", "mirror", "multmatrix"];
@@ -38,6 +39,7 @@ fn bare(around: &Around<'_>) -> Option<Diagnostic> {
     let (name, value) = (around.tokens.get(start)?, around.tokens.get(start + 1)?);
     let is_call = around.begins(start)
         && name.kind == TokenKind::Word
+        && !RESERVED.contains(&name.text)
         && value.begins_operand()
         && !value.first_on_line
         && value.text != "{"

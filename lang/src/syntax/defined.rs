@@ -147,8 +147,13 @@ pub(super) fn stem(path: &str) -> Option<&str> {
     (stem.chars().all(legal) && stem.starts_with(begins)).then_some(stem)
 }
 
-/// Whether a statement begins as one that says what units bare numbers have, or nearly so.
+/// Whether a statement begins as one that says what units bare numbers have, or nearly so, or without its word.
 pub(crate) fn says_units(stmt: &str) -> bool {
+    if let Some(first) = stmt.strip_prefix('{').map(str::trim_start) {
+        return type_names::measured().any(|it| {
+            first.strip_prefix(it).is_some_and(|behind| behind.trim_start().starts_with('='))
+        });
+    }
     let word = stmt.split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or("");
     word.starts_with(['u', 'U']) && nearest(word, ["units"]).is_some()
 }

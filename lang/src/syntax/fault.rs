@@ -106,16 +106,33 @@ fn bare_else(text: &str, close: usize) -> Option<usize> {
 }
 
 /// The second of two braces of which one never closes: nothing that may stand in braces begins with one. Nor does
-/// anything in a table.
+/// anything in a table. Or that of two around one list, behind which no other stands.
 fn doubled(text: &str, open: usize) -> Option<usize> {
     if text[..open].ends_with('#') && text[open..].starts_with("[[") {
         return Some(open + 1);
     }
     let blanks = |text: &str| text.len() - text.trim_start_matches([' ', '\t']).len();
-    let rest = text[open..].strip_prefix('{')?;
-    let next = open + 1 + blanks(rest);
+    let next = open + 1 + blanks(&text[open + 1..]);
+    if !text[open..].starts_with('{') {
+        let is_same = text[open..].starts_with('[') && text[next..].starts_with('[');
+        return is_same.then(|| behind(text, next)).flatten().filter(|c| *c != ',').map(|_| next);
+    }
     let before = text[..open].trim_end_matches([' ', '\t']);
     if text[next..].starts_with('{') { Some(next) } else { before.ends_with('{').then_some(open) }
+}
+
+/// What stands behind the bracket that closes one, on its line.
+fn behind(text: &str, open: usize) -> Option<char> {
+    let near = &text.as_bytes()[open..text.len().min(open + LOOKED_AT)];
+    let end = memchr::memchr(b'\n', near).unwrap_or(near.len());
+    let line = text.get(open..open + end)?;
+    let mut depth = 0_i32;
+    let close = tokens(line, 0..line.len()).find(|token| {
+        depth += i32::from(matches!(token.text, "(" | "[" | "{"));
+        depth -= i32::from(matches!(token.text, ")" | "]" | "}"));
+        depth == 0
+    })?;
+    line[close.end()..].trim_start().chars().next()
 }
 
 /// Where the numbers of a table end, whose bracket opens there.

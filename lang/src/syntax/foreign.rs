@@ -132,7 +132,7 @@ fn if_behind(around: &Around<'_>) -> Option<Diagnostic> {
 fn lone_if(around: &Around<'_>) -> Option<Diagnostic> {
     let word = (0..around.at).rev().find(|i| around.word(*i) == "if")?;
     let before = around.tokens.get(word.checked_sub(1)?)?;
-    let is_value = before.is_operator() || matches!(before.text, "(" | "," | "[" | "=>");
+    let is_value = before.is_operator() || matches!(before.text, "(" | "," | "[" | "=>" | "else");
     let brace = (word..around.at).find(|i| around.word(*i) == "{").filter(|_| is_value)?;
     let end = around.closing(brace)?;
     // Reading stopped right behind it, or at it.

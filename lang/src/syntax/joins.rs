@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use luxel_core::diag::{Diagnostic, Span};
+use luxel_core::diag::{Diagnostic, Span, nearest};
 
 use super::around::{Around, Place, told};
 use super::defined::is_type;
@@ -224,9 +224,18 @@ fn negated(around: &Around<'_>, at: usize) -> usize {
     next
 }
 
-/// What is said of a word for `else if`, if it is one.
+/// What is said of a word that is not quite `else`.
+pub(crate) const ELSE: &str = "the other branch begins with `else`";
+
+/// What is said of a word for `else if`, or of `else` that is misspelt, if it is one.
 pub(super) fn branch(around: &Around<'_>, word: &Token<'_>) -> Option<Diagnostic> {
     let span = around.span(word);
-    let found = told(span, "a further branch is written `else if`");
-    matches!(word.text, "elif" | "elsif" | "elseif").then(|| found.fix(span, "else if"))
+    if matches!(word.text, "elif" | "elsif" | "elseif") {
+        return Some(told(span, "a further branch is written `else if`").fix(span, "else if"));
+    }
+    let behind = around.text[word.end()..].trim_start_matches([' ', '\t']);
+    let goes_on = behind.starts_with('{') || behind.starts_with("if ");
+    let is_behind = around.text[..word.start].trim_end().ends_with('}');
+    let is_one = word.text != "else" && nearest(word.text, ["else"]).is_some();
+    (goes_on && is_behind && is_one).then(|| told(span, ELSE).guess(span, "else"))
 }

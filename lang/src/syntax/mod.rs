@@ -55,6 +55,7 @@ pub(crate) use cut::{Cut, Cuts, resume_limit};
 pub(crate) use defined::{says_units, stray};
 pub(crate) use explain::COMPARES;
 pub(crate) use habits::ONE_WORD;
+pub(crate) use joins::ELSE;
 pub(crate) use lex::{Token, TokenKind, tokens};
 pub(crate) use number::parse as parse_number;
 pub(crate) use parse::{

@@ -113,7 +113,9 @@ fn lettered(around: &Around<'_>) -> Option<Diagnostic> {
     let back = around.at.saturating_sub(1);
     [back, around.at].into_iter().find_map(|i| {
         let (letter, text) = (around.tokens.get(i)?, around.tokens.get(i + 1)?);
-        let touch = letter.end() == text.start && letter.text.len() <= 2;
+        // `8 cm"too large"` lacks a comma.
+        let is_unit = i > 0 && around.tokens[i - 1].kind == TokenKind::Number;
+        let touch = letter.end() == text.start && letter.text.len() <= 2 && !is_unit;
         if letter.kind != TokenKind::Word || text.kind != TokenKind::Text || !touch {
             return None;
         }

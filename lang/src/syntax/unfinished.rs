@@ -6,7 +6,7 @@ use super::around::{Around, Place, is_category, told};
 use super::head::opens_block;
 use super::lex::{Token, TokenKind};
 use super::make::nameless;
-use crate::words::{BEFORE_NAMES, STATEMENTS};
+use crate::words::{BEFORE_NAMES, RESERVED, STATEMENTS};
 
 impl Around<'_> {
     /// A word that begins a line behind what wants something more, near the place where reading stopped: how
@@ -50,7 +50,29 @@ impl Around<'_> {
 
 /// Why the place cannot be read, if a line was only begun there.
 pub(super) fn unfinished(around: &Around<'_>) -> Option<Diagnostic> {
-    keyword(around).or_else(|| head(around)).or_else(|| parameter(around))
+    keyword(around)
+        .or_else(|| equals_first(around))
+        .or_else(|| head(around))
+        .or_else(|| parameter(around))
+}
+
+/// `let = tones [red, green]`, which is read up to the comma.
+fn equals_first(around: &Around<'_>) -> Option<Diagnostic> {
+    let i = around.tokens.iter().position(|token| token.kind != TokenKind::Doc)?;
+    let (word, name) = (&around.tokens[i], around.tokens.get(i + 2)?);
+    if !BEFORE_NAMES.contains(&word.text) || around.word(i + 1) != "=" || around.at <= i + 2 {
+        return None;
+    }
+    let found = nameless(word.text, around.span(word));
+    if word.text == "fn"
+        || name.kind != TokenKind::Word
+        || name.first_on_line
+        || RESERVED.contains(&name.text)
+    {
+        return Some(found);
+    }
+    let both = around.span(&around.tokens[i + 1]).to(around.span(name));
+    Some(found.guess(both, format!("{} =", name.text)))
 }
 
 /// `let`, and a line that begins another statement.

@@ -18,11 +18,11 @@ const NEAR: u32 = 500;
 /// Takes out what is told on the line of a bracket that is wrong, unless its mend is sure, it is a name that
 /// nothing stands for, or what an object lacks: without the bracket it is not known what belongs together there.
 /// Of two such brackets the first is told, and of several of which one was taken for what another is, it alone.
+/// Nothing but that is told of a line that begins with an `else` that is misspelt.
 /// Nor is it told that a value does not fit which a line gives to a name in which something cannot be read.
 pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
     let mut lines: BTreeMap<_, Span> = BTreeMap::new();
-    let is_wrong = |it: &&Diagnostic| is_bracket(it, sources) || it.message == ELSE;
-    let wrong = diagnostics.iter().filter(is_wrong);
+    let wrong = diagnostics.iter().filter(|it| is_bracket(it, sources));
     for at in wrong.filter_map(Diagnostic::span) {
         let first = lines.entry((at.source, line_of(at, sources))).or_insert(at);
         *first = at.min(*first);
@@ -35,20 +35,20 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         at.range().len() <= LINE && words.any(|word| names.contains(&(at.source, word.text)))
     };
     let displaced = displaced(diagnostics, sources);
+    let line = |at: Span| (at.source, line_of(at, sources));
     let branches = diagnostics.iter().filter(|found| found.message == ELSE);
-    let branches = branches.filter_map(Diagnostic::span);
-    let branches: BTreeSet<_> = branches.map(|at| (at.source, line_of(at, sources))).collect();
+    let branches: BTreeSet<_> = branches.filter_map(Diagnostic::span).map(line).collect();
     diagnostics.retain(|found| {
         let Some(at) = found.span() else { return true };
         // What is surely `=` for `:` is none in `fn f a: vec3, b: vec3) = a`.
         let is_judged = found.is_error() && (found.sure().is_none() || found.code == "E0017");
-        let first = lines.get(&(at.source, line_of(at, sources)));
-        let is_beside = !matches!(found.code, "E0101" | "E0403")
-            && first.is_some_and(|first| *first != at)
-            || branches.contains(&(at.source, line_of(at, sources))) && found.message != ELSE;
+        let first = lines.get(&line(at));
+        let is_beside =
+            !matches!(found.code, "E0101" | "E0403") && first.is_some_and(|first| *first != at);
+        let is_branch = branches.contains(&line(at)) && found.message != ELSE;
         let is_of_one = found.code.starts_with("E02") && !names.is_empty() && of_name(at);
         let is_displaced = displaced.contains(&(at, found.code));
-        !is_displaced && !(is_judged && (is_beside || is_of_one))
+        !is_displaced && !(is_judged && (is_beside || is_branch || is_of_one))
     });
 }
 

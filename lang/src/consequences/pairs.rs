@@ -1,14 +1,23 @@
 //! Mistakes next to one another that one slip brings, however many words stand between them.
 
-use luxel_core::diag::{Diagnostic, Fix, Grade, Label, Sources, Span};
+use std::collections::BTreeSet;
+
+use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
 use luxel_sdk::kind::Kind;
 
 /// Bytes from one to the other, at most; from one bracket to another.
 const BYTES: usize = 200;
 const FAR: usize = 500;
 
-/// Takes out one of two.
+/// Takes out one of two, and what is said of a doc comment behind which something cannot be read.
 pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
+    let unread = diagnostics.iter().filter(|found| found.code == "E0023");
+    let starts = unread.filter_map(Diagnostic::span).map(|at| (at.source, at.range().start));
+    let starts: BTreeSet<_> = starts.collect();
+    diagnostics.retain(|found| {
+        let doc = Some(found).filter(|found| found.code == "E0022");
+        doc.and_then(|doc| behind(doc, sources)).is_none_or(|next| !starts.contains(&next))
+    });
     let errors = diagnostics.iter().enumerate().filter(|(_, found)| found.is_error());
     let mut all: Vec<(Span, usize)> =
         errors.filter_map(|(i, found)| Some((found.span()?, i))).collect();
@@ -25,10 +34,21 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             is_out[*i] = true;
         } else if has_lost_its_kind(second, first, sources) {
             is_out[*j] = true;
+            // `group shape {`, and below it `cylinder {`: the word is no label.
+            if first.code == "E0401" {
+                diagnostics[*i].fixes.clear();
+            }
         }
     }
     let mut is_out = is_out.into_iter();
     diagnostics.retain(|_| !is_out.next().unwrap_or_default());
+}
+
+/// Where the next thing begins behind what something is said of.
+fn behind(found: &Diagnostic, sources: &Sources) -> Option<(SourceId, usize)> {
+    let at = found.span()?;
+    let rest = sources.text(at.source).get(at.range().end..)?;
+    Some((at.source, at.range().end + rest.len() - rest.trim_start().len()))
 }
 
 /// How a brace that does not close becomes the bracket that one behind it closes, which closes nothing else.
@@ -67,7 +87,7 @@ fn has_lost_its_kind(found: &Diagnostic, wrong: &Diagnostic, sources: &Sources) 
         && at.range().start - wrong.range().start <= BYTES;
     let above = text.get(wrong.range().start..at.range().start).filter(|_| is_near);
     let above = above.unwrap_or_default();
-    let before = above.trim_end_matches([' ', '\n', ')', ']', '}']);
+    let before = above.trim_end_matches([' ', '\n', ')', ']', '}', '{']);
     let last = before.split_whitespace().next_back().unwrap_or_default();
     let is_apart = !above[before.len()..].trim_matches(' ').is_empty();
     let is_kind = |kind: &str| last.ends_with(kind) && (last != kind || is_apart);

@@ -1,36 +1,41 @@
 //! What is unknown because another scene file is not read.
 
-use luxel_core::diag::{Diagnostic, Sources};
+use std::collections::BTreeSet;
+
+use luxel_core::diag::{Diagnostic, Sources, Span};
 
 use super::{LOOKED_AT, line_of};
+use crate::syntax::{TokenKind, tokens};
 
 /// What files may bring that are not read.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Unread {
-    pub(super) hide_labels: bool,
-    pub(super) hide_names: bool,
+#[derive(Default)]
+pub(super) struct Unread<'a> {
+    /// Labels.
+    pub(super) hides_labels: bool,
+    /// The words of their lines: an import has its name there.
+    pub(super) words: BTreeSet<&'a str>,
 }
 
-/// What a line hides that reads a file, and is wrong itself.
-pub(super) fn unread(diagnostics: &[Diagnostic], sources: &Sources) -> Unread {
+/// What lines hide that read a file and are wrong themselves.
+pub(super) fn unread<'a>(diagnostics: &[Diagnostic], sources: &'a Sources) -> Unread<'a> {
     let is_wrong = |found: &&Diagnostic| {
         found.is_error() && (found.code.starts_with("E00") || found.code.starts_with("E02"))
     };
-    let lines = diagnostics.iter().filter(is_wrong).filter(|found| reads_one(found, sources));
-    let hides = |out: Unread, found: &Diagnostic| Unread {
-        hide_labels: true,
-        // Of one that only stands in the wrong place it is known what it brings.
-        hide_names: out.hide_names || found.code != "E0001",
-    };
-    lines.fold(Unread::default(), hides)
+    let wrong = diagnostics.iter().filter(is_wrong);
+    let lines: Vec<_> = wrong.filter_map(|found| line(found.span()?, sources)).collect();
+    let words = lines.iter().flat_map(|line| tokens(line, 0..line.len()));
+    Unread {
+        hides_labels: !lines.is_empty(),
+        words: words.filter(|it| it.kind == TokenKind::Word).map(|it| it.text).collect(),
+    }
 }
 
-/// Whether a mistake stands on a line that reads another scene file.
-pub(super) fn reads_one(found: &Diagnostic, sources: &Sources) -> bool {
-    let Some(at) = found.span() else { return false };
-    let text = sources.text(at.source).as_bytes().get(line_of(at, sources)..).unwrap_or_default();
-    let text = &text[..text.len().min(LOOKED_AT)];
-    let line = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
-    line.trim_ascii_start().starts_with(b"include")
-        || memchr::memmem::find(line, b".scene\"").is_some()
+/// The line of a place, as far as it is looked at, if it reads another scene file.
+fn line(at: Span, sources: &Sources) -> Option<&str> {
+    let (text, start) = (sources.text(at.source), line_of(at, sources));
+    let near = &text.as_bytes()[start..text.len().min(start + LOOKED_AT)];
+    let end = memchr::memchr(b'\n', near).unwrap_or(near.len());
+    let line = text.get(start..start + end)?;
+    let reads = |word| line.trim_ascii_start().starts_with(word);
+    (reads("include") || reads("import") || line.contains(".scene\"")).then_some(line)
 }

@@ -66,13 +66,15 @@ fn unread(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
             |places: &BTreeSet<Span>| found.span().is_some_and(|at| places.contains(&at));
         let says_less = match found.code {
             "E0101" => {
-                let is_hidden =
-                    is_nameless || files.hide_names && !files::reads_one(found, sources);
-                let is_nobody = is_one_name || is_hidden && found.sure().is_none();
-                is_nobody || has_cause(&words) || is_category_behind(found, &braces, sources)
+                let is_nobody = is_one_name || is_nameless && found.sure().is_none();
+                let name = found.span().and_then(|at| sources.text(at.source).get(at.range()));
+                is_nobody
+                    || name.is_some_and(|name| files.words.contains(name))
+                    || has_cause(&words)
+                    || is_category_behind(found, &braces, sources)
             }
             // A text that does not end may be a label, and a file that is not read may bear it.
-            "E0109" => is_unended || files.hide_labels || has_others && is_label(found, sources),
+            "E0109" => is_unended || files.hides_labels || has_others && is_label(found, sources),
             "E0023" => has_cause(&braces),
             "E0416" => has_cause(&early),
             // What may stand there twice, or lack a comma.

@@ -291,6 +291,8 @@ impl<'a> Cutter<'a, '_> {
             TokenKind::Table => Kind::Table,
             // What stands for a type is one, whatever it is called.
             TokenKind::Word if before.is_some_and(|it| it.text == ":") => Kind::Word,
+            // `a.else` names a member, however little that is one.
+            TokenKind::Word if before.is_some_and(|it| it.kind == Kind::Dot) => Kind::Word,
             TokenKind::Word if KEYWORDS.contains(&token.text) => Kind::Keyword,
             // What is expected stands apart from its brackets.
             TokenKind::Word if before.is_some_and(|it| it.starts && it.text == "expect") => {

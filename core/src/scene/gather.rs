@@ -156,6 +156,7 @@ impl<P: Fn(Span) -> Span + Sync> Put<'_, P> {
         out.extend(nodes.zip(runs).map(|(node, params)| self.node(node, params)));
     }
 
+    /// Gives a copied parameter its new number and place.
     fn rename(&self, argument: &mut Argument) {
         if let Value::Node(id) | Value::Moved(id, _) = &mut argument.value {
             *id = self.id(*id);

@@ -23,7 +23,9 @@ pub(super) fn unread<'a>(diagnostics: &[Diagnostic], sources: &'a Sources) -> Un
     };
     let wrong = diagnostics.iter().filter(is_wrong);
     let lines: Vec<_> = wrong.filter_map(|found| line(found.span()?, sources)).collect();
-    let words = lines.iter().flat_map(|line| tokens(line, 0..line.len()));
+    // What stands in braces are values that the file is given.
+    let head = |line: &&'a str| tokens(line, 0..line.len()).take_while(|it| it.text != "{");
+    let words = lines.iter().flat_map(head);
     Unread {
         hides_labels: !lines.is_empty(),
         words: words.filter(|it| it.kind == TokenKind::Word).map(|it| it.text).collect(),
@@ -36,6 +38,6 @@ fn line(at: Span, sources: &Sources) -> Option<&str> {
     let near = &text.as_bytes()[start..text.len().min(start + LOOKED_AT)];
     let end = memchr::memchr(b'\n', near).unwrap_or(near.len());
     let line = text.get(start..start + end)?;
-    let reads = |word| line.trim_ascii_start().starts_with(word);
-    (reads("include") || reads("import") || line.contains(".scene\"")).then_some(line)
+    let first = tokens(line, 0..line.len()).next()?.text;
+    (matches!(first, "include" | "import") || line.contains(".scene\"")).then_some(line)
 }

@@ -62,10 +62,10 @@ pub(super) fn sift(diagnostics: &mut Vec<Diagnostic>, sources: &Sources) {
         }
         let Some(name) = name_or_parameter(found, sources) else { return true };
         // `rise(b: int) = b * 1 m`, which is read as a call too
-        let is_unread = places[&name].iter().any(|at| causes.contains(at));
-        let is_defined = is_unread || is_defined_by_one(name, found, &unread);
-        let is_defined = found.code == "E0101" && is_defined;
-        !is_defined && told_once(found, name, &places[&name], sources)
+        let is_unread = || places[&name].iter().any(|at| causes.contains(at));
+        let is_defined = || is_unread() || is_defined_by_one(name, found, &unread);
+        let is_hidden = found.code == "E0101" && is_defined();
+        !is_hidden && told_once(found, name, &places[&name], sources)
     });
 }
 

@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use luxel_core::diag::{Diagnostic, Fix, Grade, Label, SourceId, Sources, Span};
 use luxel_sdk::kind::Kind;
 
-/// Bytes from one to the other, at most; from one bracket to another.
+/// Bytes from one to the other, at most.
 const BYTES: usize = 200;
+
+/// Bytes from one bracket to another, at most.
 const FAR: usize = 500;
 
 /// Takes out one of two, and what is said of a doc comment behind which something cannot be read.
@@ -51,7 +53,8 @@ fn behind(found: &Diagnostic, sources: &Sources) -> Option<(SourceId, usize)> {
     Some((at.source, at.range().end + rest.len() - rest.trim_start().len()))
 }
 
-/// How a brace that does not close becomes the bracket that one behind it closes, which closes nothing else.
+/// How a brace that does not close, where a value stands, becomes the bracket that one behind it closes, which
+/// closes nothing else.
 fn of_another_kind(open: &Diagnostic, close: &Diagnostic, sources: &Sources) -> Option<Fix> {
     let (before, at) = (open.span()?, close.span()?);
     let is_one = (open.code, close.code) == ("E0008", "E0010") && before.source == at.source;
@@ -59,6 +62,9 @@ fn of_another_kind(open: &Diagnostic, close: &Diagnostic, sources: &Sources) -> 
         return None;
     }
     let text = sources.text(at.source);
+    if !text.get(..before.range().start)?.trim_end().ends_with(['=', '(', '[', ',']) {
+        return None;
+    }
     let opening = match (text.get(before.range())?, text.get(at.range())?) {
         ("{", ")") => "(",
         ("{", "]") => "[",

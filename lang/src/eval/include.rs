@@ -180,6 +180,7 @@ impl Evaluator<'_> {
 
     /// Whether what stands before the first statement, and is none, says units.
     fn follows_units(&self, first: &Stmt) -> bool {
+        // Of statements that are read one by one it is not known what stands between them.
         if self.begun.contains_key(&first.span.source) {
             return false;
         }

@@ -70,6 +70,10 @@ impl Unit {
     /// # Errors
     /// The part that is not a unit.
     pub fn parse(text: &str) -> Result<Self, String> {
+        // Most are a name alone, and are looked up for each number that is given.
+        if let Some(unit) = Self::named(text) {
+            return Ok(unit);
+        }
         let mut out = Self::ONE;
         let mut rest = text;
         let mut divide = false;

@@ -16,12 +16,15 @@ pub(crate) struct Known {
 }
 
 /// What a statement has to do with names, which are numbers here.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Numbered {
-    /// First the names that it uses and how often, by turns, then those that it defines, then labels.
+    /// Those of some statements.
     all: Arc<[u32]>,
-    /// How many of them are of the first sort and of the first two.
-    ends: [u32; 2],
+    /// Where its own begin: first the names that it uses and how often, by turns, then those that it defines,
+    /// then labels.
+    start: u32,
+    /// How many of them are of the first sort, of the first two, and of all three.
+    ends: [u32; 3],
     /// Nothing is wrong with it whatever stands around it.
     pub(super) is_sound: bool,
     /// A function stands in it.
@@ -66,17 +69,42 @@ impl Known {
         all.extend(facts.defines.iter().map(|name| self.number(&name.text)));
         let second = all.len();
         all.extend(facts.labels.iter().map(|name| self.number(&name.text)));
-        let ends = [first, second].map(|at| u32::try_from(at).unwrap_or(u32::MAX));
-        let has_functions = !facts.mentions.is_empty();
-        Numbered { all: all.into(), ends, is_sound: facts.sound, has_functions, is_known: true }
+        let ends = [first, second, all.len()].map(|at| u32::try_from(at).unwrap_or(u32::MAX));
+        let (is_sound, has_functions) = (facts.sound, !facts.mentions.is_empty());
+        Numbered { all: all.into(), start: 0, ends, is_sound, has_functions, is_known: true }
+    }
+}
+
+impl PartialEq for Numbered {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { all: _, start: _, ends, is_sound, has_functions, is_known } = self;
+        self.numbers() == other.numbers()
+            && *ends == other.ends
+            && *is_sound == other.is_sound
+            && *has_functions == other.has_functions
+            && *is_known == other.is_known
     }
 }
 
 impl Numbered {
-    /// Moves its numbers to where memory is taken now: those of statements that are moved one after another
-    /// are found soon.
-    pub(super) fn move_together(&mut self) {
-        self.all = Arc::from(&*self.all);
+    /// Makes the numbers of some statements one piece of memory: where they are looked through in this order,
+    /// the next are found soon.
+    pub(super) fn move_together(each: Vec<&mut Self>) {
+        let all: Vec<u32> = each.iter().flat_map(|numbered| numbered.numbers()).copied().collect();
+        // Of more, places would not fit.
+        if u32::try_from(all.len()).is_err() {
+            return;
+        }
+        let (all, mut start) = (Arc::from(all), 0);
+        for numbered in each {
+            (numbered.all, numbered.start) = (Arc::clone(&all), start);
+            start += numbered.ends[2];
+        }
+    }
+
+    fn numbers(&self) -> &[u32] {
+        let start = self.start as usize;
+        &self.all[start..start + self.ends[2] as usize]
     }
 
     /// Whether its numbers are still to be found.
@@ -86,17 +114,17 @@ impl Numbered {
 
     /// The names that others must define, and how often it uses each.
     pub(super) fn uses(&self) -> impl Iterator<Item = (u32, u32)> {
-        self.all[..self.ends[0] as usize].chunks_exact(2).map(|use_| (use_[0], use_[1]))
+        self.numbers()[..self.ends[0] as usize].chunks_exact(2).map(|use_| (use_[0], use_[1]))
     }
 
     /// The names that it defines.
     pub(super) fn defines(&self) -> &[u32] {
-        &self.all[self.ends[0] as usize..self.ends[1] as usize]
+        &self.numbers()[self.ends[0] as usize..self.ends[1] as usize]
     }
 
     /// The labels that it bears itself.
     pub(super) fn labels(&self) -> &[u32] {
-        &self.all[self.ends[1] as usize..]
+        &self.numbers()[self.ends[1] as usize..]
     }
 }
 

@@ -18,7 +18,7 @@ use crate::eval::Evaluator;
 use crate::eval::builtins;
 use crate::eval::env::Env;
 use crate::eval::exec::Body;
-use crate::eval::names::{Facts, Known};
+use crate::eval::names::{Facts, Known, Numbered};
 use crate::eval::note::Noting;
 use crate::eval::numbered::{Firsts, Tables};
 use crate::syntax::{Cut, Stmt, StmtNode};
@@ -199,8 +199,7 @@ impl Evaluator<'_> {
         let text: Arc<str> = self.sources.shared(SourceId(0));
         let n_shadows = stmts.iter().filter(|stmt| stmt.shadows).count();
         let found = scene.prepare(&place, &is_over).map(|()| {
-            let moved = stmts.iter_mut().take_while(|_| !is_over());
-            moved.for_each(|stmt| stmt.names.move_together());
+            Numbered::move_together(stmts.iter_mut().map(|stmt| &mut stmt.names).collect());
             let all = stmts.iter().take_while(|_| !is_over());
             let tables = Tables::of(&names, all.map(|stmt| &stmt.names)).0;
             let firsts = Firsts::new(&names, &tables);

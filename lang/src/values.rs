@@ -100,7 +100,7 @@ impl Layers {
         if newer.is_empty() {
             return;
         }
-        if !self.handed.0.is_empty() {
+        if newer.keys().any(|statement| self.handed.concerns(*statement)) {
             self.handed = Arc::new(self.handed.without(&newer));
         }
         while let Some(older) = self.notes.pop_if(|older| newer.len() * 2 > older.len()) {
@@ -155,6 +155,12 @@ impl HandedOn {
     fn get(&self, place: Place) -> Option<&Shown> {
         let i = self.0.binary_search_by_key(&place, |(place, _)| *place).ok()?;
         Some(&self.0[i].1)
+    }
+
+    /// Whether a name of a statement is among them.
+    fn concerns(&self, statement: SourceId) -> bool {
+        let first = self.0.partition_point(|((other, _), _)| *other < statement);
+        self.0.get(first).is_some_and(|((other, _), _)| *other == statement)
     }
 
     /// With newer ones.

@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-use super::compact::IsOver;
-use super::parts::{each_in_parts, in_parts};
+use luxel_sdk::kind::Kind;
+
+use super::compact::{IsOver, look};
+use super::parts::{each_in_parts, n_cores};
 use super::terms::{Sum, Terms, is_own};
 use super::{Argument, Arguments, Hash, Node, NodeId, Scene, Value};
 
@@ -20,35 +22,112 @@ pub struct Changed {
     pub value: u32,
 }
 
+/// Values that parameters get, by their numbers.
+#[derive(Clone, Copy)]
+pub struct NewValues<'a> {
+    /// How many there are.
+    pub n: u32,
+    /// One of them; `None` where the parameter keeps what it has.
+    pub get: &'a (dyn Fn(u32) -> Option<Value> + Sync),
+}
+
+/// What changes, and what it takes to hash it.
+struct Change<'a> {
+    values: NewValues<'a>,
+    /// Of each node its hash before, if a value that changes is a node; what refers to it is as it was.
+    hashes: Vec<Hash>,
+    is_over: IsOver<'a>,
+}
+
+/// Neighbours, of which none has its parameters in one piece of memory with one that stands elsewhere.
+struct Part<'a> {
+    /// The number of the first.
+    first: usize,
+    nodes: &'a mut [Node],
+    own: &'a mut [Hash],
+    /// The changes of each parameter.
+    each: &'a [&'a [Changed]],
+}
+
 /// The values of parameters before and after, hashed.
 #[derive(Default)]
 struct Said {
     before: Terms,
     after: Terms,
+    /// Whether the parameter of that name was one of the class's own.
+    is_own: Option<(Kind, &'static str, bool)>,
 }
 
-/// Neighbours whose parameters are one piece of memory.
-struct Block<'a> {
-    /// The number of the first.
-    first: usize,
-    nodes: &'a mut [Node],
-    own: &'a mut [Hash],
-    /// The changes of each parameter, and what they add to its node's hash.
-    each: &'a [&'a [Changed]],
-    terms: &'a [Sum],
+impl Said {
+    fn is_own(&mut self, kind: Kind, name: &'static str) -> bool {
+        match self.is_own {
+            Some((of, last, is_own)) if of == kind && std::ptr::eq(last, name) => is_own,
+            _ => self.is_own.insert((kind, name, is_own(kind, name))).2,
+        }
+    }
 }
 
-impl Block<'_> {
-    fn change(self, values: &[Value]) {
-        let Self { first, nodes, own, each, terms } = self;
+impl Part<'_> {
+    /// The first so many nodes, and the others.
+    fn split(self, n: usize) -> (Self, Self) {
+        let Self { first, nodes, own, each } = self;
+        let (nodes, other_nodes) = nodes.split_at_mut(n);
+        let (own, other_own) = own.split_at_mut(n);
+        let is_before = |changes: &&[Changed]| (changes[0].node as usize) < first + n;
+        let (each, other_each) = each.split_at(each.partition_point(is_before));
+        let others =
+            Self { first: first + n, nodes: other_nodes, own: other_own, each: other_each };
+        (Self { first, nodes, own, each }, others)
+    }
+
+    /// So many nodes or a few more: all whose parameters are one piece of memory.
+    fn n_beside(&self, n: usize) -> usize {
+        let Some(last) = n.checked_sub(1).filter(|last| *last < self.nodes.len()) else { return n };
+        let last = &self.nodes[last].params;
+        let more = self.nodes[n..].iter().take_while(|node| node.params.is_beside(last));
+        n + more.count()
+    }
+
+    /// Parts of so many nodes each, or a few more.
+    fn parts(self, n: usize) -> Vec<Self> {
+        let (mut out, mut left) = (vec![], self);
+        while !left.nodes.is_empty() {
+            let n = left.n_beside(n).min(left.nodes.len());
+            let (part, others) = left.split(n);
+            out.push(part);
+            left = others;
+        }
+        out
+    }
+
+    fn change(self, change: &Change<'_>) {
+        let mut left = self;
+        while !left.each.is_empty() && !(change.is_over)() {
+            let n = left.n_beside(1);
+            let (block, others) = left.split(n);
+            block.change_block(change);
+            left = others;
+        }
+    }
+
+    /// The same of nodes whose parameters are one piece of memory.
+    fn change_block(self, Change { values, hashes, .. }: &Change<'_>) {
+        let Self { first, nodes, own, each } = self;
+        if each.is_empty() {
+            return;
+        }
+        let child = |id: NodeId| hashes[id.0 as usize];
+        let mut said = Said::default();
         let (mut all, ranges) = Arguments::taken(nodes.iter_mut().map(|node| &mut node.params));
-        for (changes, term) in each.iter().zip(terms) {
-            let i = changes[0].node as usize - first;
-            let argument = &mut all[ranges[i].start as usize + changes[0].argument as usize];
-            put(&mut argument.value, changes, values);
-            let is_own = is_own(nodes[i].kind, argument.name);
+        for changes in each {
+            let (i, k) = (changes[0].node as usize - first, changes[0].argument as usize);
+            let Argument { name, value, .. } = &mut all[ranges[i].start as usize + k];
+            let before = said.before.param((k, name), value, child);
+            put(value, changes, *values);
+            let term = said.after.param((k, name), value, child).minus(before);
+            let is_own = said.is_own(nodes[i].kind, name);
             for hash in [&mut nodes[i].hash].into_iter().chain(is_own.then_some(&mut own[i])) {
-                *hash = Sum::of(hash).plus(*term).hash();
+                *hash = Sum::of(hash).plus(term).hash();
             }
         }
         for (node, params) in nodes.iter_mut().zip(Arguments::of_one(all, ranges)) {
@@ -58,16 +137,16 @@ impl Block<'_> {
 }
 
 /// Puts what changes of one parameter into its value.
-fn put(value: &mut Value, changes: &[Changed], values: &[Value]) {
+fn put(value: &mut Value, changes: &[Changed], values: NewValues<'_>) {
     for change in changes {
-        let new = &values[change.value as usize];
-        match (&mut *value, change.item, new) {
-            (Value::Vector(numbers), Some(i), Value::Number(x, _)) => {
+        match (&mut *value, change.item, (values.get)(change.value)) {
+            (_, _, None) => {}
+            (Value::Vector(numbers), Some(i), Some(Value::Number(x, _))) => {
                 if let Some(number) = numbers.get_mut(usize::from(i)) {
-                    *number = *x;
+                    *number = x;
                 }
             }
-            _ => *value = new.clone(),
+            (_, _, Some(new)) => *value = new,
         }
     }
 }
@@ -77,60 +156,30 @@ impl Scene {
     ///
     /// `changes` go by node and parameter, of a vector by number. `runs` are nodes that follow one another, of
     /// which one may refer to another before it in its run; nothing else refers to a node that changes, and no
-    /// value does. `None`, and a scene of no use, once it is over.
+    /// value does. In the place of a node comes a node, and of nothing else. `None`, and a scene of no use, once it is over.
     pub fn change(
         &mut self,
         runs: &[Range<usize>],
-        (changes, values): (&[Changed], &[Value]),
+        (changes, values): (&[Changed], NewValues<'_>),
         is_over: IsOver<'_>,
     ) -> Option<()> {
         let is_one = |one: &Changed, other: &Changed| {
             (one.node, one.argument) == (other.node, other.argument)
         };
         let each: Vec<&[Changed]> = changes.chunk_by(is_one).collect();
-        let terms = |some: &[&[Changed]], out: &mut Vec<Sum>| {
-            let mut said = Said::default();
-            out.extend(some.iter().map(|changes| self.term(changes, values, &mut said)));
+        let is_node = |i: u32| matches!((values.get)(i), Some(Value::Node(_) | Value::Moved(..)));
+        let hashes = if (0..values.n).any(is_node) {
+            self.nodes.iter().map(|node| node.hash).collect()
+        } else {
+            vec![]
         };
-        let terms = in_parts(&each, is_over, &terms)?;
-        each_in_parts(self.blocks(&each, &terms), &|block: Block<'_>| block.change(values));
+        let n = self.nodes.len().div_ceil(n_cores());
+        let all = Part { first: 0, nodes: &mut self.nodes, own: &mut self.own, each: &each };
+        let change = Change { values, hashes, is_over };
+        each_in_parts(all.parts(n), &|part: Part<'_>| part.change(&change));
+        look(is_over)?;
         self.hash_outer(runs);
         Some(())
-    }
-
-    /// What the changes of one parameter add to the hash of its node; what refers to it is as it was.
-    fn term(&self, changes: &[Changed], values: &[Value], said: &mut Said) -> Sum {
-        let Changed { node, argument, .. } = changes[0];
-        let Argument { name, value, .. } = &self.nodes[node as usize].params[argument as usize];
-        let (at, child) = ((argument as usize, *name), |id: NodeId| self.node(id).hash);
-        let before = said.before.param(at, value, child);
-        let after = if let [Changed { item: None, value, .. }] = changes {
-            said.after.param(at, &values[*value as usize], child)
-        } else {
-            let mut new = value.clone();
-            put(&mut new, changes, values);
-            said.after.param(at, &new, child)
-        };
-        after.minus(before)
-    }
-
-    /// The nodes whose parameters are one piece of memory, as far as they change, with what becomes of each.
-    fn blocks<'a>(&'a mut self, each: &'a [&'a [Changed]], terms: &'a [Sum]) -> Vec<Block<'a>> {
-        let mut out = vec![];
-        let (mut first, mut each, mut terms) = (0, each, terms);
-        let mut own = self.own.as_mut_slice();
-        let beside = |one: &Node, other: &Node| one.params.is_beside(&other.params);
-        for nodes in self.nodes.chunk_by_mut(beside) {
-            let (hashes, others) = std::mem::take(&mut own).split_at_mut(nodes.len());
-            let end = first + nodes.len();
-            let n = each.iter().take_while(|changes| (changes[0].node as usize) < end).count();
-            if n > 0 {
-                let (each, terms) = (&each[..n], &terms[..n]);
-                out.push(Block { first, nodes, own: hashes, each, terms });
-            }
-            (own, first, each, terms) = (others, end, &each[n..], &terms[n..]);
-        }
-        out
     }
 
     /// Hashes the nodes of runs that refer to others of their run.
@@ -169,9 +218,10 @@ mod tests {
         let mut scene = made([0.0, 1.0, 2.0, 3.0, 4.0]);
         let change = |node, value| Changed { node, argument: 0, item: None, value };
         let values = [7.0, 8.0].map(number);
+        let values = NewValues { n: 2, get: &|i| values.get(i as usize).cloned() };
         // What refers to the first is behind it in its run, what refers to the fourth too.
         let put = |scene: &mut Scene, changes: &[Changed]| {
-            scene.change(&[0..3, 3..5], (changes, &values), &|| false).unwrap();
+            scene.change(&[0..3, 3..5], (changes, values), &|| false).unwrap();
         };
         put(&mut scene, &[change(0, 0), change(2, 1), change(3, 0)]);
         assert_eq!(scene, made([7.0, 1.0, 8.0, 7.0, 4.0]));
@@ -192,7 +242,8 @@ mod tests {
         let mut scene = made(&f64::from);
         let change = |node| Changed { node, argument: 0, item: None, value: node % 2 };
         let changes: Vec<_> = (0..n).filter(|i| is_changed(*i)).map(change).collect();
-        scene.change(&[], (&changes, &[-1.0, -2.0].map(number)), &|| false).unwrap();
+        let values = NewValues { n: 2, get: &|i| Some(number(-1.0 - f64::from(i))) };
+        scene.change(&[], (&changes, values), &|| false).unwrap();
         let new = |i: u32| if is_changed(i) { -1.0 - f64::from(i % 2) } else { f64::from(i) };
         assert!(scene == made(&new));
     }
@@ -213,10 +264,11 @@ mod tests {
         let mut scene = made([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
         let change = |node, item, value| Changed { node, argument: 0, item, value };
         let values = [number(7.0), number(8.0), Value::vector([0.0; 3])];
+        let values = NewValues { n: 3, get: &|i| values.get(i as usize).cloned() };
         let changes = [change(0, Some(0), 0), change(0, Some(2), 1), change(1, Some(1), 1)];
-        scene.change(&[], (&changes, &values), &|| false).unwrap();
+        scene.change(&[], (&changes, values), &|| false).unwrap();
         assert_eq!(scene, made([[7.0, 2.0, 8.0], [4.0, 8.0, 6.0]]));
-        scene.change(&[], (&[change(1, None, 2)], &values), &|| false).unwrap();
+        scene.change(&[], (&[change(1, None, 2)], values), &|| false).unwrap();
         assert_eq!(scene, made([[7.0, 2.0, 8.0], [0.0; 3]]));
     }
 

@@ -25,7 +25,7 @@ impl Scene {
     /// Nothing may stand in itself, nor so deep that the recursion has no room. `None`, and a scene of no
     /// use, once it is over.
     pub fn compact(&mut self, is_over: IsOver<'_>) -> Option<()> {
-        let Order { nodes, groups, n_nodes, n_groups, .. } = Order::of(self);
+        let Order { nodes, groups, n_nodes, n_groups } = self.order();
         look(is_over)?;
         self.rename(&nodes, &groups);
         look(is_over)?;
@@ -33,6 +33,19 @@ impl Scene {
         arrange(&mut self.groups, groups, n_groups);
         self.own.clear();
         self.hash_more(is_over)
+    }
+
+    /// In which order what the world and the settings refer to is met.
+    pub fn order(&self) -> Order {
+        let (nodes, groups) = (vec![UNMET; self.nodes.len()], vec![UNMET; self.groups.len()]);
+        let order = Order { nodes, groups, n_nodes: 0, n_groups: 0 };
+        let mut walk = Walk { scene: self, order };
+        walk.items(&self.root.items);
+        let slots = [self.camera, self.film, self.integrator, self.sampler];
+        for id in slots.into_iter().chain([self.filter, self.medium]).flatten() {
+            walk.node(id);
+        }
+        walk.order
     }
 
     /// Computes the hashes of the nodes that were put among `nodes` since it was last called; `None`, and
@@ -106,29 +119,25 @@ struct HashFrom {
     terms: Terms,
 }
 
-/// New numbers, by the old ones.
-pub(super) struct Order<'a> {
-    scene: &'a Scene,
+/// The numbers of nodes and groups in the order in which they are met from the world on, by those that they
+/// have: the same for as long as each refers to the same ones.
+#[derive(Clone, Debug)]
+pub struct Order {
     pub(super) nodes: Vec<u32>,
     pub(super) groups: Vec<u32>,
     pub(super) n_nodes: u32,
     pub(super) n_groups: u32,
 }
 
-impl<'a> Order<'a> {
-    pub(super) fn of(scene: &'a Scene) -> Self {
-        let (nodes, groups) = (vec![UNMET; scene.nodes.len()], vec![UNMET; scene.groups.len()]);
-        let mut out = Self { scene, nodes, groups, n_nodes: 0, n_groups: 0 };
-        out.items(&scene.root.items);
-        let slots = [scene.camera, scene.film, scene.integrator, scene.sampler];
-        for id in slots.into_iter().chain([scene.filter, scene.medium]).flatten() {
-            out.node(id);
-        }
-        out
-    }
+/// The order of what has been met so far.
+struct Walk<'a> {
+    scene: &'a Scene,
+    order: Order,
+}
 
+impl Walk<'_> {
     fn node(&mut self, id: NodeId) {
-        if self.nodes[id.0 as usize] != UNMET {
+        if self.order.nodes[id.0 as usize] != UNMET {
             return;
         }
         let node = self.scene.node(id);
@@ -140,17 +149,17 @@ impl<'a> Order<'a> {
         for (_, material) in &node.overrides {
             self.node(*material);
         }
-        self.nodes[id.0 as usize] = self.n_nodes;
-        self.n_nodes += 1;
+        self.order.nodes[id.0 as usize] = self.order.n_nodes;
+        self.order.n_nodes += 1;
     }
 
     fn group(&mut self, id: GroupId) {
-        if self.groups[id.0 as usize] != UNMET {
+        if self.order.groups[id.0 as usize] != UNMET {
             return;
         }
         self.items(&self.scene.group(id).items);
-        self.groups[id.0 as usize] = self.n_groups;
-        self.n_groups += 1;
+        self.order.groups[id.0 as usize] = self.order.n_groups;
+        self.order.n_groups += 1;
     }
 
     fn items(&mut self, items: &[Placed]) {

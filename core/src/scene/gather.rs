@@ -13,14 +13,14 @@ use super::{
 use crate::diag::Span;
 
 impl Scene {
-    /// The scene that `compact` would make of this one, whose nodes are hashed, with every place in a
-    /// file as `place` has it; `None` once it is over.
+    /// The scene that `compact` would make of this one, whose nodes are hashed and in this order, with every
+    /// place in a file as `place` has it; `None` once it is over.
     pub fn gathered(
         &self,
+        order: &Order,
         place: &(impl Fn(Span) -> Span + Sync),
         is_over: IsOver<'_>,
     ) -> Option<Self> {
-        let order = Order::of(self);
         look(is_over)?;
         let nodes = met(&order.nodes, order.n_nodes);
         let groups = met(&order.groups, order.n_groups);
@@ -81,8 +81,10 @@ impl Scene {
         // Those before are as many small pieces of memory as there are nodes.
         leave(std::mem::replace(&mut self.nodes, nodes));
         // Next to one another, so that copying finds them soon.
-        for label in self.nodes.iter_mut().filter_map(|node| node.label.as_mut()) {
-            *label = Arc::from(&**label);
+        let label = |node: &Node| node.label.as_deref().map(Arc::from);
+        let labels: Vec<Option<Arc<str>>> = self.nodes.iter().map(label).collect();
+        for (node, label) in self.nodes.iter_mut().zip(labels) {
+            node.label = label;
         }
         self.groups = self.groups.iter().map(|group| put.group(group)).collect();
         self.root = put.large_group(&self.root, is_over)?;
@@ -229,10 +231,11 @@ mod tests {
         let mut kept = scene.clone();
         kept.prepare(&|span| span, &|| false).unwrap();
         scene.compact(&|| false).unwrap();
-        assert_eq!(kept.gathered(&|span| span, &|| false).unwrap(), scene);
+        let order = kept.order();
+        assert_eq!(kept.gathered(&order, &|span| span, &|| false).unwrap(), scene);
         assert_eq!(scene.copied(&|| false).unwrap(), scene);
         let later = |span: Span| Span { start: span.start + 3, ..span };
-        let further = kept.gathered(&later, &|| false).unwrap();
+        let further = kept.gathered(&order, &later, &|| false).unwrap();
         assert_eq!(further.nodes[1].span.start, scene.nodes[1].span.start + 3);
         assert_eq!(further.nodes[1].params[0].span.start, scene.nodes[1].span.start + 3);
         assert_eq!(further.root.items[0].span.start, 10);
@@ -253,10 +256,11 @@ mod tests {
         };
         let mut kept = made();
         kept.prepare(&|span| span, &|| false).unwrap();
+        let order = kept.order();
         let ways: [Way<'_>; 4] = [
             &|is_over| made().compact(is_over),
             &|is_over| made().prepare(&|span| span, is_over),
-            &|is_over| kept.gathered(&|span| span, is_over).map(drop),
+            &|is_over| kept.gathered(&order, &|span| span, is_over).map(drop),
             &|is_over| kept.copied(is_over).map(drop),
         ];
         for way in ways {
@@ -290,6 +294,6 @@ mod tests {
         fresh.groups = vec![Group { label: None, items: vec![placed(Target::Node(NodeId(1)), 0)] }];
         fresh.root.items = vec![placed(Target::Group(GroupId(0)), 0)];
         fresh.compact(&|| false).unwrap();
-        assert_eq!(kept.gathered(&|span| span, &|| false).unwrap(), fresh);
+        assert_eq!(kept.gathered(&kept.order(), &|span| span, &|| false).unwrap(), fresh);
     }
 }

@@ -31,9 +31,9 @@ use self::terms::{Sum, Terms};
 use crate::diag::Span;
 
 pub use arguments::Arguments;
-pub use changed::Changed;
+pub use changed::{Changed, NewValues};
 pub use color::Color;
-pub use compact::IsOver;
+pub use compact::{IsOver, Order};
 pub use conform::{
     DefaultUnits, Given, Misfit, bare_help, conform, describe, number_words, range_words, said,
     said_unit, wanted,

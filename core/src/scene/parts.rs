@@ -6,7 +6,8 @@ use luxel_sdk::params::leave;
 
 use super::compact::{IsOver, STRIDE};
 
-fn n_cores() -> usize {
+/// How many threads share the work.
+pub(super) fn n_cores() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 

@@ -6,19 +6,25 @@ use std::ops::Range;
 
 use luxel_core::diag::{SourceId, Span};
 use luxel_core::registry::Registry;
-use luxel_core::scene::{self, Changed, IsOver, Node, NodeId};
+use luxel_core::scene::{self, Changed, IsOver, NewValues, Node, NodeId};
 
-use super::formula::Formula;
+use super::formula::{Formula, narrow};
 use super::handing::{Handing, Place, Wanted, is_simple};
 use super::made::Cost;
 use super::values::KeptValues;
 use super::{State, Statement, source_of};
 use crate::eval::Evaluator;
+use crate::eval::arithmetic::Measured;
 use crate::eval::env::Env;
-use crate::eval::note::shown_vector;
+use crate::eval::note::{number_later, shown_vector};
 use crate::eval::value::{FieldValue, ObjectValue, Value};
+use crate::shares;
 use crate::syntax::Name;
 use crate::values::{Shown, Unsaid};
+
+/// Bytes that a place, or what is wanted, counts for where threads share them: it takes as long as so much
+/// text.
+pub(super) const SIZE: usize = 1 << 6;
 
 /// What hands on changed values.
 #[derive(Debug, Default)]
@@ -46,19 +52,48 @@ pub(super) struct Fitted {
 
 /// A value for a parameter.
 #[derive(Clone, Debug)]
-pub(super) struct FittedValue {
-    /// By the numbers of nodes that were evaluated; `None` where a mistake hides it.
-    pub(super) value: Option<scene::Value>,
+pub(super) enum FittedValue {
+    /// A number, and what it is said to be. It was reckoned, which takes no steps.
+    Number {
+        value: Measured,
+        said: Measured,
+    },
+    Other(Box<OtherValue>),
+    /// A mistake hides it, and nothing more is told of it.
+    Hidden,
+}
+
+/// A value that was evaluated.
+#[derive(Clone, Debug)]
+pub(super) struct OtherValue {
+    /// By the numbers of nodes that were evaluated.
+    value: scene::Value,
     /// How an editor shows it, if it does.
-    pub(super) shown: Option<Shown>,
+    shown: Option<Shown>,
     /// Steps that it takes to fit.
-    pub(super) steps: u64,
+    steps: u64,
 }
 
 impl FittedValue {
-    /// That of a parameter whose value a mistake hides, of which nothing more is told.
-    pub(super) fn hidden(is_shown: bool) -> Self {
-        Self { value: None, shown: is_shown.then_some(Shown::Nothing), steps: 0 }
+    /// How an editor shows it, if it does.
+    fn shown(&self) -> Option<Shown> {
+        match self {
+            Self::Number { said: (x, measure), .. } => Some(number_later(*x, *measure)),
+            Self::Other(other) => other.shown.clone(),
+            Self::Hidden => Some(Shown::Nothing),
+        }
+    }
+
+    /// The parameter's value, by the numbers that nodes have now; nothing of one that is hidden.
+    fn value(&self, nodes: &[u32]) -> Option<scene::Value> {
+        match self {
+            Self::Number { value: (x, measure), .. } => Some(scene::Value::Number(*x, *measure)),
+            Self::Other(other) => Some(match &other.value {
+                scene::Value::Node(NodeId(id)) => scene::Value::Node(NodeId(nodes[*id as usize])),
+                value => value.clone(),
+            }),
+            Self::Hidden => None,
+        }
     }
 }
 
@@ -70,7 +105,20 @@ impl Fitted {
 
     /// What it costs to put the values everywhere, at most: what was there before may have cost as much.
     pub(super) fn cost(&self, handed: &Handed) -> Cost {
-        Cost::of_steps(handed.places.iter().map(|(_, place)| self.at(place).steps).sum())
+        let steps = |(_, place): &(SourceId, Place)| match self.at(place) {
+            FittedValue::Other(other) => other.steps,
+            FittedValue::Number { .. } | FittedValue::Hidden => 0,
+        };
+        Cost::of_steps(handed.places.iter().map(steps).sum())
+    }
+
+    /// Whether one of them may be a node.
+    pub(super) fn has_nodes(&self) -> bool {
+        let is_node = |value: &FittedValue| match value {
+            FittedValue::Other(other) => matches!(other.value, scene::Value::Node(_)),
+            FittedValue::Number { .. } | FittedValue::Hidden => false,
+        };
+        self.values.iter().any(is_node)
     }
 }
 
@@ -190,18 +238,16 @@ impl State {
     ) -> Option<Fitted> {
         let is_over = evaluator.sink.over();
         let n_told = evaluator.sink.kept().len();
-        let reckoned = self.reckoned(handed, env, evaluator);
-        let mut values: HashMap<u32, Value> = HashMap::new();
+        let mut fitted = self.reckoned(handed, env, evaluator);
         let mut of_wanted = vec![u32::MAX; self.handing.n_wanted()];
-        let mut fitted = Vec::with_capacity(handed.wanted.len());
-        for (i, reckoned) in handed.wanted.iter().zip(reckoned.into_iter().flatten()) {
+        for (i, k) in handed.wanted.iter().zip(0..) {
+            of_wanted[*i as usize] = k;
+        }
+        let mut values: HashMap<u32, Value> = HashMap::new();
+        let wanted = handed.wanted.iter().zip(&mut fitted);
+        for (i, fitted) in wanted.filter(|(_, reckoned)| reckoned.is_none()) {
             if is_over() {
                 return None;
-            }
-            of_wanted[*i as usize] = u32::try_from(fitted.len()).ok()?;
-            if let Some(reckoned) = reckoned {
-                fitted.push(reckoned);
-                continue;
             }
             let (wanted, formula) = (self.handing.wanted(*i), self.handing.formula(*i));
             let value = match values.get(&wanted.formula) {
@@ -212,13 +258,14 @@ impl State {
                 return None;
             }
             values.insert(wanted.formula, value.clone());
-            if value.is_poison() {
-                fitted.push(FittedValue::hidden(evaluator.noted.is_some()));
-                continue;
-            }
-            fitted.push(self.fit((wanted, formula), value, (handed, env), evaluator)?);
+            *fitted = Some(if value.is_poison() {
+                FittedValue::Hidden
+            } else {
+                FittedValue::Other(self.fit((wanted, formula), value, (handed, env), evaluator)?)
+            });
         }
-        Some(Fitted { values: fitted, of_wanted })
+        let values: Vec<_> = fitted.into_iter().collect::<Option<_>>()?;
+        Some(Fitted { values, of_wanted })
     }
 
     /// The value of a formula for a parameter, and how an editor shows it; `None` if it is not that simple,
@@ -229,7 +276,7 @@ impl State {
         value: Value,
         (handed, env): (&Handed, &Env),
         evaluator: &mut Evaluator<'_>,
-    ) -> Option<FittedValue> {
+    ) -> Option<Box<OtherValue>> {
         // What it stands in stands in what the statement makes, each in the next one at most.
         let is_deep = |object: &ObjectValue| {
             object.depth + handed.most_nodes >= self.settings.budgets.nesting
@@ -255,7 +302,7 @@ impl State {
         let value = evaluator.conform(param, &field)?;
         let steps = evaluator.steps - first;
         let is_fit = before == spent(evaluator) && is_simple(&value, &evaluator.scene.nodes);
-        is_fit.then_some(FittedValue { value: Some(value), shown, steps })
+        is_fit.then(|| Box::new(OtherValue { value, shown, steps }))
     }
 
     /// Gives the parameters their new values. `nodes` are the numbers here of those that were evaluated.
@@ -263,18 +310,16 @@ impl State {
     pub(super) fn hand_on(
         &mut self,
         handed: Handed,
-        fitted: Fitted,
+        fitted: &Fitted,
         nodes: &[u32],
         is_over: IsOver<'_>,
     ) -> Option<()> {
         let Fitted { values, of_wanted } = fitted;
-        let kept = |FittedValue { mut value, .. }: FittedValue| {
-            if let Some(scene::Value::Node(NodeId(id))) = &mut value {
-                *id = nodes[*id as usize];
-            }
-            value
-        };
-        let values: Vec<_> = values.into_iter().map(kept).collect::<Option<_>>()?;
+        if values.iter().any(|value| matches!(value, FittedValue::Hidden)) {
+            return None;
+        }
+        let value = |i: u32| values[i as usize].value(nodes);
+        let values = NewValues { n: narrow(values.len()), get: &value };
         let change = |(_, Place { node, argument, item, wanted, .. }): (SourceId, Place)| Changed {
             node,
             argument,
@@ -283,7 +328,7 @@ impl State {
         };
         let mut changes: Vec<_> = handed.places.into_iter().map(change).collect();
         changes.sort_unstable_by_key(|change| (change.node, change.argument, change.item));
-        self.scene.change(&handed.runs, (&changes, &values), is_over)
+        self.scene.change(&handed.runs, (&changes, values), is_over)
     }
 }
 
@@ -293,16 +338,17 @@ impl KeptValues {
         let is_one = |(one, a): &(SourceId, Place), (other, b): &(SourceId, Place)| {
             (one, a.node, a.argument) == (other, b.node, b.argument)
         };
-        let shown = handed.places.chunk_by(is_one).filter_map(|places| {
+        let each: Vec<&[(SourceId, Place)]> = handed.places.chunk_by(is_one).collect();
+        let shown = |places: &[(SourceId, Place)]| {
             let (statement, place) = places[0];
-            let shown = fitted.at(&place).shown.clone()?;
             let shown = match place.item {
-                None => shown,
+                None => fitted.at(&place).shown()?,
                 Some(_) => fitted.vector(places, nodes)?,
             };
             Some(((statement, place.field), shown))
-        });
-        self.own.hand_on(shown.collect());
+        };
+        let some = |part: &[&[_]]| -> Vec<_> { part.iter().copied().filter_map(shown).collect() };
+        self.own.hand_on(shares::join(shares::map(&each, |_| SIZE, some)));
         self
     }
 }
@@ -315,10 +361,10 @@ impl Fitted {
         let scene::Value::Vector(numbers) = &argument.value else { return None };
         let (mut numbers, mut measured) = (numbers.clone(), None);
         for (_, place) in places {
-            let (x, measure) = match self.at(place).value {
-                Some(scene::Value::Number(x, measure)) => (x, measure),
-                Some(_) => return None,
-                None => return Some(Shown::Nothing),
+            let (x, measure) = match self.at(place) {
+                FittedValue::Number { value, .. } => *value,
+                FittedValue::Other(_) => return None,
+                FittedValue::Hidden => return Some(Shown::Nothing),
             };
             *numbers.get_mut(usize::from(place.item?))? = x;
             measured = Some(measure);

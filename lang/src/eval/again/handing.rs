@@ -25,7 +25,7 @@ const TEXTS: usize = 1 << 12;
 
 /// Vectors that are taken as a whole, in each share of the file: what many statements say alike is evaluated
 /// once.
-const WHOLE: usize = 2;
+const WHOLE: usize = 1;
 
 /// What values are handed on, and where.
 #[derive(Debug, Default)]

@@ -47,6 +47,11 @@ pub(super) struct Told {
 }
 
 impl Made {
+    /// Whether it put something into the world or gave a setting.
+    pub(super) fn stands_somewhere(&self) -> bool {
+        self.n_items > 0 || self.rare.as_ref().is_some_and(|rare| !rare.slots.is_empty())
+    }
+
     /// Whether other files came into it.
     pub(super) fn has_read(&self) -> bool {
         self.rare.as_ref().is_some_and(|rare| rare.has_read)

@@ -37,7 +37,7 @@ use std::sync::Arc;
 use luxel_core::diag::{SourceId, Sources, Span};
 use luxel_core::files::Files;
 use luxel_core::registry::Registry;
-use luxel_core::scene::{Pose, Scene};
+use luxel_core::scene::{Order, Pose, Scene};
 use luxel_sdk::params::leave;
 
 use self::asked::{Questions, Remembering};
@@ -45,6 +45,7 @@ use self::handing::{Handing, Hands};
 use self::made::{Cost, Made};
 pub(super) use self::record::Record;
 use self::values::KeptValues;
+use self::warn::warnings;
 use super::Evaluator;
 use super::names::{Known, Numbered};
 use super::numbered::Tables;
@@ -106,6 +107,8 @@ pub(crate) struct State {
     n_ids: usize,
     /// All nodes and groups of all statements, those that are gone too; hashed, in no order.
     scene: Scene,
+    /// In which order it is given, if what stands in it is what it was when that was found.
+    order: Option<Order>,
     /// What of it is handed on, by nodes of that scene.
     handing: Handing,
     /// Nodes and groups when nothing was gone.
@@ -228,12 +231,13 @@ impl State {
         let place = |span: Span| in_file(span, &starts);
         let is_wanted = !settings.without_scene || !self.scene.expectations.is_empty();
         if is_wanted {
-            evaluator.scene = self.scene.gathered(&place, &evaluator.sink.over())?;
+            let order = self.order.get_or_insert_with(|| self.scene.order());
+            evaluator.scene = self.scene.gathered(order, &place, &evaluator.sink.over())?;
         } else {
             evaluator.scene.camera = self.scene.camera;
         }
         evaluator.lacks();
-        let diagnostics = self.warnings(&starts);
+        let diagnostics = warnings(&rare, &starts);
         if evaluator.sink.errors() > 0 || diagnostics.len() > self.settings.budgets.diagnostics {
             return None;
         }

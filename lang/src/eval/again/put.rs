@@ -28,12 +28,16 @@ impl State {
         [nodes, groups]: [Vec<u32>; 2],
     ) -> Option<()> {
         self.is_broken = true;
+        let is_arranged = fitted.has_nodes() || self.arranges(&plan, &made);
         let is_over = evaluator.sink.over();
         let mut evaluated = std::mem::take(&mut evaluator.scene);
         let open = std::mem::take(&mut evaluator.open_groups);
         evaluated.root = open.into_iter().next().unwrap_or_default().group;
         let items = self.scene.take_over(evaluated, [&nodes, &groups], &is_over)?;
-        self.put_items(&plan, &made, items);
+        if is_arranged {
+            self.put_items(&plan, &made, items);
+            self.order = None;
+        }
         for made in &mut made {
             made.nodes = renamed(&made.nodes, &nodes);
             made.groups = renamed(&made.groups, &groups);
@@ -42,7 +46,7 @@ impl State {
             }
         }
         let Plan { edit, gone, fresh, tasks, tables, n_names, handed, .. } = plan;
-        self.hand_on(handed, fitted, &nodes, &is_over)?;
+        self.hand_on(handed, &fitted, &nodes, &is_over)?;
         self.n_names = n_names;
         if let Some(tables) = tables {
             self.tables = tables;
@@ -89,6 +93,15 @@ impl State {
         for (i, hands) in new.iter().zip(hands) {
             self.stmts[*i].hands = hands;
         }
+    }
+
+    /// Whether something is put into the world or a setting is given, or was by what is gone. Whatever uses
+    /// what either of these makes is evaluated too.
+    fn arranges(&self, plan: &Plan, made: &[Made]) -> bool {
+        let new = || plan.tasks.iter().zip(made).filter(|(task, _)| task.is_new);
+        let replaced = new().filter_map(|(task, _)| Some(&self.stmts[plan.old(task.i)?]));
+        let gone = self.stmts[plan.gone.clone()].iter().chain(replaced).map(|stmt| &stmt.made);
+        gone.chain(new().map(|(_, made)| made)).any(Made::stands_somewhere)
     }
 
     /// Puts what stands in the world now in the place of what stood there.

@@ -7,18 +7,14 @@ use luxel_core::scene::{self, Given, conform};
 use luxel_sdk::params::{Dimension, Param};
 
 use super::State;
-use super::handed::{FittedValue, Handed};
+use super::handed::{FittedValue, Handed, SIZE};
 use super::handing::{Handing, Wanted};
 use super::vector;
 use crate::eval::Evaluator;
 use crate::eval::arithmetic::Measured;
 use crate::eval::env::Env;
-use crate::eval::note::number_later;
 use crate::eval::value::Value;
 use crate::shares;
-
-/// Bytes that a formula counts for where threads share them: it takes as long as so much text.
-const SIZE: usize = 1 << 6;
 
 /// From what numbers are reckoned, and what becomes of them.
 struct Reckoning<'a> {
@@ -30,19 +26,16 @@ struct Reckoning<'a> {
     names: Vec<(u32, Measured)>,
     /// Names whose values mistakes hide, in order.
     hidden: Vec<u32>,
-    /// Whether anybody is shown values.
-    is_shown: bool,
 }
 
 impl State {
-    /// For each that is wanted its value, if it is a number that fits, in shares. Of the others, nothing is
-    /// known.
+    /// For each that is wanted its value, if it is a number that fits. Of the others, nothing is known.
     pub(super) fn reckoned(
         &self,
         handed: &Handed,
         env: &Env,
         evaluator: &Evaluator<'_>,
-    ) -> Vec<Vec<Option<FittedValue>>> {
+    ) -> Vec<Option<FittedValue>> {
         let number = |name: u32| match env.get(self.names.name(name)) {
             Some(Value::Number(x, measure)) => Some((name, (x, measure))),
             _ => None,
@@ -54,14 +47,13 @@ impl State {
             units: &env.file.units,
             names: handed.names().filter_map(number).collect(),
             hidden: handed.names().filter(is_hidden).collect(),
-            is_shown: evaluator.noted.is_some(),
         };
         let is_over = evaluator.sink.over();
         let some = |part: &[u32]| -> Vec<Option<FittedValue>> {
             let mut last = None;
             part.iter().map(|i| reckoning.value(*i, &mut last).filter(|_| !is_over())).collect()
         };
-        shares::map(handed.wanted(), |_| SIZE, some)
+        shares::join(shares::map(handed.wanted(), |_| SIZE, some))
     }
 }
 
@@ -93,7 +85,7 @@ impl<'a> Reckoning<'a> {
         let formula = self.handing.formula(i);
         let is_hidden = |name: u32| self.hidden.binary_search(&name).is_ok();
         if !self.hidden.is_empty() && formula.names().any(is_hidden) {
-            return Some(FittedValue::hidden(self.is_shown));
+            return Some(FittedValue::Hidden);
         }
         if wanted.is_node {
             return None;
@@ -109,13 +101,10 @@ impl<'a> Reckoning<'a> {
             _ => return None,
         };
         let value = match (conform(param, given, &units).ok()?, wanted.n_items) {
-            (value @ scene::Value::Number(..), 0) => value,
-            (scene::Value::Vector(numbers), 1..) => {
-                scene::Value::Number(*numbers.first()?, measure)
-            }
+            (scene::Value::Number(x, measure), 0) => (x, measure),
+            (scene::Value::Vector(numbers), 1..) => (*numbers.first()?, measure),
             _ => return None,
         };
-        let shown = self.is_shown.then(|| number_later(x, measure));
-        Some(FittedValue { value: Some(value), shown, steps: 0 })
+        Some(FittedValue::Number { value, said: (x, measure) })
     }
 }

@@ -237,6 +237,7 @@ impl Evaluator<'_> {
             n_evaluated: stmts.len(),
             stmts,
             scene,
+            order: None,
             handing,
             sources: self.sources.clone(),
             params,

@@ -71,7 +71,11 @@ impl State {
         }
         let set = Cost::of(&evaluator).minus(before).plus(fitted.cost(&plan.handed));
         let values = self.values_after(&plan, evaluator.noted.take())?;
-        let values = values.handed_on(&plan.handed, &fitted, &self.scene.nodes);
+        let values = if settings.noting {
+            values.handed_on(&plan.handed, &fitted, &self.scene.nodes)
+        } else {
+            values
+        };
         let after = After::of(self, &plan.gone, &plan.fresh);
         let (spent, n_moved) = self.spent(&plan, &made, &after, set)?;
         let is_told_of_sets = !evaluator.sink.kept().is_empty();

@@ -6,7 +6,7 @@ use std::ops::{Range, RangeInclusive};
 
 use luxel_core::diag::{Diagnostic, SourceId, Span};
 
-use super::made::{Made, Told};
+use super::made::{Made, Rare, Told};
 use super::plan::{After, Plan, Task};
 use super::record::{Record, in_statement};
 use super::{State, Statement, in_file, source_of};
@@ -138,6 +138,13 @@ impl State {
     }
 }
 
+/// All warnings, by places in the file: first of how it is written.
+pub(super) fn warnings(rare: &[&Rare], starts: &[usize]) -> Vec<Diagnostic> {
+    let read = rare.iter().map(|rare| &rare.told.read);
+    let all = read.chain(rare.iter().map(|rare| &rare.told.found)).flatten();
+    all.map(|told| placed(told, |span| in_file(span, starts))).collect()
+}
+
 impl State {
     /// Keeps what is said of the statements that were evaluated; `None` if it is said of others too.
     pub(super) fn warn(
@@ -166,14 +173,5 @@ impl State {
             }
         }
         Some(())
-    }
-
-    /// All warnings, by places in the file: first of how it is written.
-    pub(super) fn warnings(&self, starts: &[usize]) -> Vec<Diagnostic> {
-        let rare = self.stmts.iter().filter_map(|stmt| stmt.made.rare.as_ref());
-        let (read, found): (Vec<_>, Vec<_>) =
-            rare.map(|rare| (&rare.told.read, &rare.told.found)).unzip();
-        let all = read.into_iter().chain(found).flatten();
-        all.map(|told| placed(told, |span| in_file(span, starts))).collect()
     }
 }

@@ -201,7 +201,9 @@ fn ending(text: &str, from: usize, starts: &[usize], unclosed: &[usize], limit: 
         0 => from,
         i => starts[i - 1],
     };
-    let first = unclosed.iter().min();
+    let is_brace = |open: &usize| text[*open..].starts_with('{');
+    // Lines tell only where braces close.
+    let first = unclosed.iter().min().filter(|_| unclosed.iter().any(is_brace));
     if let Some(found) = first.and_then(|open| closing(text, begins(open), limit)) {
         return found;
     }

@@ -111,6 +111,7 @@ fn others(objects: &str) -> Vec<Case> {
 fn mistakes(objects: &str) -> Vec<Case> {
     let of_number = |name, to| case(name, objects, [NUMBER[0], to]);
     let unclosed = ["shape sphere \"ball 50001", "let z = (1 m\nshape sphere \"ball 50001"];
+    let block = ["shape sphere \"ball 50001", "group {\nshape sphere \"ball 50001"];
     let twice = ["let rare", "let r = 40 cm\nlet rare"];
     let wrong = objects.replacen("radius = r", "radus = r", 1);
     vec![
@@ -119,6 +120,7 @@ fn mistakes(objects: &str) -> Vec<Case> {
         case("objects, a length of all that is defined twice", objects, twice),
         of_number("objects, an open bracket", "ball 50001\" { center = ((1.2"),
         case("objects, an open bracket at the end", objects, unclosed),
+        case("objects, an open block at the end", objects, block),
         of_number("objects, an open block", "ball 50001\" { { center = (1.2"),
         of_number("objects, a text that does not end", "ball 50001 { center = (1.2"),
         Case { mistakes: 1, ..case("objects, a number, where a mistake stands", &wrong, NUMBER) },

@@ -11,6 +11,9 @@ use crate::prescan::{Fault, is_one, scan, scan_until};
 /// Bytes of a statement that are looked at for where its braces most likely close.
 const MOST: usize = 1 << 24;
 
+/// Bytes behind a block whose lines do not tell where it ends, in which those of blocks in it are looked at.
+const UNTOLD: usize = 1 << 18;
+
 /// How a statement most likely ends in which braces never close.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Closing {
@@ -43,6 +46,11 @@ impl Open<'_> {
     fn ends_before(&mut self, indent: usize) -> bool {
         let tells = *self.tells_end.get_or_insert(indent > self.indent);
         self.bracket == "{" && tells && indent <= self.indent
+    }
+
+    /// Whether its lines do not tell where it ends, and it is as long as that at this byte.
+    fn is_untold(&self, at: usize) -> bool {
+        self.tells_end == Some(false) && at - self.at > UNTOLD
     }
 
     /// A line can only stand in the block, however far it is indented: it does not end.
@@ -87,7 +95,7 @@ pub(super) fn closed(piece: &str, base: usize, limit: usize) -> Option<Mended> {
 }
 
 /// Which braces close before which byte; `None` if none does so, a block is open at the end whose lines do not
-/// tell, so many brackets are open, or it is as long as that.
+/// tell, so many brackets are open, or it is too long to be looked at.
 fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>> {
     let line = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
     let mut current = line(start);
@@ -95,7 +103,8 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
     let (mut open, mut braces): (Vec<Open<'_>>, _) = (vec![], vec![]);
     let (mut is_choice, mut ends_block) = (false, false);
     for token in tokens(text, start..text.len()) {
-        if token.start - start > MOST {
+        let is_untold = open.first().is_some_and(|first| first.is_untold(token.start));
+        if token.start - start > MOST || is_untold {
             return None;
         }
         let is = |marks: &str| token.kind == TokenKind::Mark && marks.contains(token.text);
@@ -265,6 +274,17 @@ mod tests {
         ] {
             assert_eq!(ended(text), None, "{text}");
         }
+    }
+
+    #[test]
+    fn a_block_whose_lines_tell_nothing_is_not_looked_through_for_long() {
+        let text = |n: usize| {
+            let ball = "shape ball {\n  r = 1\nlet a = 1\n";
+            format!("group {{\n{ball}{}}}\nlet b", "let c = 1\n".repeat(n))
+        };
+        let (short, long) = (text(10), text(UNTOLD / 10 + 10));
+        assert_eq!(ended(&short).map(|(_, rest)| rest), Some("let b"));
+        assert_eq!(ended(&long), None);
     }
 
     #[test]

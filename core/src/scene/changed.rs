@@ -156,7 +156,8 @@ impl Scene {
     ///
     /// `changes` go by node and parameter, of a vector by number. `runs` are nodes that follow one another, of
     /// which one may refer to another before it in its run; nothing else refers to a node that changes, and no
-    /// value does. In the place of a node comes a node, and of nothing else. `None`, and a scene of no use, once it is over.
+    /// value does. In the place of a node comes a node, and of nothing else. `None`, and a scene of no use, once
+    /// it is over.
     pub fn change(
         &mut self,
         runs: &[Range<usize>],

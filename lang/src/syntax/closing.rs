@@ -24,9 +24,9 @@ pub(super) struct Closing {
 }
 
 /// A bracket that is open.
-struct Open<'a> {
+struct Open {
     at: usize,
-    bracket: &'a str,
+    bracket: u8,
     /// How far the line is indented on which it stands.
     indent: usize,
     /// Whether lines tell where it ends, once its first content has been met: that stands on its own line or is
@@ -36,16 +36,16 @@ struct Open<'a> {
     is_choice: bool,
 }
 
-impl Open<'_> {
+impl Open {
     /// Whether a line that is indented so far and closes a block closes another one.
     fn is_right_of(&self, indent: usize) -> bool {
-        self.bracket == "{" && self.indent > indent
+        self.bracket == b'{' && self.indent > indent
     }
 
     /// Whether a line that is indented so far stands behind the block.
     fn ends_before(&mut self, indent: usize) -> bool {
         let tells = *self.tells_end.get_or_insert(indent > self.indent);
-        self.bracket == "{" && tells && indent <= self.indent
+        self.bracket == b'{' && tells && indent <= self.indent
     }
 
     /// Whether its lines do not tell where it ends, and it is as long as that at this byte.
@@ -100,14 +100,17 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
     let line = |at: usize| text[..at].rfind('\n').map_or(0, |end| end + 1);
     let mut current = line(start);
     let mut indent = indent(&text[current..]);
-    let (mut open, mut braces): (Vec<Open<'_>>, _) = (vec![], vec![]);
+    let (mut open, mut braces): (Vec<Open>, _) = (vec![], vec![]);
     let (mut is_choice, mut ends_block) = (false, false);
     for token in tokens(text, start..text.len()) {
         let is_untold = open.first().is_some_and(|first| first.is_untold(token.start));
         if token.start - start > MOST || is_untold {
             return None;
         }
-        let is = |marks: &str| token.kind == TokenKind::Mark && marks.contains(token.text);
+        let mark = match token.text.as_bytes() {
+            [mark] if token.kind == TokenKind::Mark => *mark,
+            _ => 0,
+        };
         let begun = Some(token).filter(|token| token.first_on_line).map(|it| line(it.start));
         let blank = |begun: &usize| text[*begun..token.start].trim().is_empty();
         current = begun.unwrap_or(current);
@@ -125,26 +128,23 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
         if token.text == "else" && !ends_block {
             braces.extend(open.pop_if(|last| last.is_choice).map(|block| (block.at, token.start)));
         }
-        ends_block = is("}");
+        ends_block = mark == b'}';
         is_choice |= token.text == "if";
-        if is("([{") {
-            if open.len() >= limit {
-                return None;
+        match mark {
+            b'(' | b'[' | b'{' => {
+                if open.len() >= limit {
+                    return None;
+                }
+                let is_choice = mark == b'{' && std::mem::take(&mut is_choice);
+                let (at, bracket) = (token.start, mark);
+                open.push(Open { at, bracket, indent, tells_end: None, is_choice });
             }
-            let is_choice = token.text == "{" && std::mem::take(&mut is_choice);
-            open.push(Open {
-                at: token.start,
-                bracket: token.text,
-                indent,
-                tells_end: None,
-                is_choice,
-            });
-        } else if is(")]}") {
-            close(&mut open, token.text, current);
+            b')' | b']' | b'}' => close(&mut open, mark, current),
+            _ => {}
         }
     }
     for block in open.iter().rev() {
-        if block.bracket != "{" || block.tells_end != Some(true) {
+        if block.bracket != b'{' || block.tells_end != Some(true) {
             return None;
         }
         braces.push((block.at, text.len()));
@@ -153,7 +153,7 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
 }
 
 /// The blocks that end before a line that is indented so far, by where they open: they are open no more.
-fn ended(open: &mut Vec<Open<'_>>, indent: usize, line: &str, first: &str) -> Vec<usize> {
+fn ended(open: &mut Vec<Open>, indent: usize, line: &str, first: &str) -> Vec<usize> {
     let is_field = is_field(line);
     let (mut n_open, mut ended) = (open.len(), vec![]);
     while let Some(last) = open.last_mut() {
@@ -173,10 +173,10 @@ fn ended(open: &mut Vec<Open<'_>>, indent: usize, line: &str, first: &str) -> Ve
 
 /// Closes what a bracket on the line from byte `line` on closes. One of another kind leaves those inside it open,
 /// or stands for one that opened on its line.
-fn close(open: &mut Vec<Open<'_>>, bracket: &str, line: usize) {
+fn close(open: &mut Vec<Open>, bracket: u8, line: usize) {
     let opens =
-        |open: &Open<'_>| matches!((open.bracket, bracket), ("(", ")") | ("[", "]") | ("{", "}"));
-    let stands = |open: &[Open<'_>]| open.last().is_some_and(|last| last.at >= line);
+        |open: &Open| matches!((open.bracket, bracket), (b'(', b')') | (b'[', b']') | (b'{', b'}'));
+    let stands = |open: &[Open]| open.last().is_some_and(|last| last.at >= line);
     let end = open.iter().rposition(opens);
     let end = end.unwrap_or_else(|| open.len() - usize::from(stands(open)));
     open.truncate(end);

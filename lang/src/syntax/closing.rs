@@ -108,8 +108,8 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
             return None;
         }
         let mark = match token.text.as_bytes() {
-            [mark] if token.kind == TokenKind::Mark => *mark,
-            _ => 0,
+            [mark] if token.kind == TokenKind::Mark => Some(*mark),
+            _ => None,
         };
         let begun = Some(token).filter(|token| token.first_on_line).map(|it| line(it.start));
         let blank = |begun: &usize| text[*begun..token.start].trim().is_empty();
@@ -128,18 +128,17 @@ fn braces(text: &str, start: usize, limit: usize) -> Option<Vec<(usize, usize)>>
         if token.text == "else" && !ends_block {
             braces.extend(open.pop_if(|last| last.is_choice).map(|block| (block.at, token.start)));
         }
-        ends_block = mark == b'}';
+        ends_block = mark == Some(b'}');
         is_choice |= token.text == "if";
         match mark {
-            b'(' | b'[' | b'{' => {
+            Some(bracket @ (b'(' | b'[' | b'{')) => {
                 if open.len() >= limit {
                     return None;
                 }
-                let is_choice = mark == b'{' && std::mem::take(&mut is_choice);
-                let (at, bracket) = (token.start, mark);
-                open.push(Open { at, bracket, indent, tells_end: None, is_choice });
+                let is_choice = bracket == b'{' && std::mem::take(&mut is_choice);
+                open.push(Open { at: token.start, bracket, indent, tells_end: None, is_choice });
             }
-            b')' | b']' | b'}' => close(&mut open, mark, current),
+            Some(bracket @ (b')' | b']' | b'}')) => close(&mut open, bracket, current),
             _ => {}
         }
     }

@@ -28,13 +28,13 @@ impl State {
         [nodes, groups]: [Vec<u32>; 2],
     ) -> Option<()> {
         self.is_broken = true;
-        let is_arranged = fitted.has_nodes() || self.arranges(&plan, &made);
+        let is_rearranged = fitted.has_nodes() || self.rearranges(&plan, &made);
         let is_over = evaluator.sink.over();
         let mut evaluated = std::mem::take(&mut evaluator.scene);
         let open = std::mem::take(&mut evaluator.open_groups);
         evaluated.root = open.into_iter().next().unwrap_or_default().group;
         let items = self.scene.take_over(evaluated, [&nodes, &groups], &is_over)?;
-        if is_arranged {
+        if is_rearranged {
             self.put_items(&plan, &made, items);
             self.order = None;
         }
@@ -97,7 +97,7 @@ impl State {
 
     /// Whether something is put into the world or a setting is given, or was by what is gone. Whatever uses
     /// what either of these makes is evaluated too.
-    fn arranges(&self, plan: &Plan, made: &[Made]) -> bool {
+    fn rearranges(&self, plan: &Plan, made: &[Made]) -> bool {
         let new = || plan.tasks.iter().zip(made).filter(|(task, _)| task.is_new);
         let replaced = new().filter_map(|(task, _)| Some(&self.stmts[plan.old(task.i)?]));
         let gone = self.stmts[plan.gone.clone()].iter().chain(replaced).map(|stmt| &stmt.made);
